@@ -54,12 +54,12 @@ def assemble(
     used_up: bool = False,
     problem: Problem | None = None,
 ) -> Program:
-    """Find and check the encodings of settings.
+    """Find, read and check the encodings and constraints of settings, and return them as a program.
 
-    With ``used_up``, they are those of plans in which items are used up. ``problem`` is the question; warns
-    of names in rules that do not occur in its network. Raises :class:`UserError` for files that are missing
-    or at fault, for ``#script``, for constants that no encoding has and for clingo options that would change
-    what an answer means.
+    With ``used_up``, the encodings are those of plans in which items are used up. ``warn`` receives warnings;
+    with a ``problem``, also about names in rules that do not occur in its network. Raises :class:`UserError`
+    for files that are missing or at fault, for ``#script``, for constants that no encoding has and for clingo
+    options that would change what an answer means.
     """
     ours = encodings_folder() / USED_UP if used_up else encodings_folder()
     folder = _find_encodings(settings.encodings, ours)
@@ -140,14 +140,15 @@ def assemble(
 
 
 def program_of(problem: Problem, settings: Settings, warn: Callable[[str], None]) -> Program:
-    """Assemble the encodings of a question as :func:`assemble` does, without clingo where possible."""
+    """Return the program of a question as :func:`assemble` does, without clingo where possible."""
     return ready_made(problem, settings, warn) or assemble(settings, warn, problem=problem)
 
 
 def ready_made(problem: Problem, settings: Settings, warn: Callable[[str], None]) -> Program | None:
-    """Return the program of a question whose rules are all ready-made, without clingo; ``None`` for others.
+    """Return the program of a question whose user rules are all ready-made constraints, without clingo.
 
-    The question has to be small, or to be about a store, or units have to be required.
+    ``None`` for other rules, for items that are used up, and for large networks, unless these are parts of a
+    store or the rules require units.
     """
     rules = _ready_made_rules(settings)
     if rules is None or problem.items is not None:
@@ -212,7 +213,10 @@ def _is_ours(encoding: "Encoding") -> bool:
 
 
 def _ready_made_rules(settings: Settings) -> "ReadyMade | None":
-    """Return the added rules where all are ready-made constraints, else ``None``."""
+    """Return the added rules if all are ready-made constraints, else ``None``.
+
+    Also ``None`` without reductions, with other encodings, and with rewritten constraints or bounds.
+    """
     if not settings.constraints or not settings.reductions or settings.replaced is not None:
         return None
     if settings.relaxed is not None or settings.bounded is not None:
@@ -223,9 +227,9 @@ def _ready_made_rules(settings: Settings) -> "ReadyMade | None":
 
 
 def _reads(encodings: "Sequence[Encoding]") -> frozenset[tuple[str, str]]:
-    """Return the predicates that user rules read and that lack facts in some questions.
+    """Return the predicates that user rules read and that have no facts in some questions.
 
-    Each comes with its first argument.
+    Pairs of the name and its first argument, which is empty if it is no name.
     """
     predicates: set[tuple[str, str]] = set()
     for encoding in encodings:
@@ -235,7 +239,7 @@ def _reads(encodings: "Sequence[Encoding]") -> frozenset[tuple[str, str]]:
 
 
 def _checks(encodings: "Sequence[Encoding]") -> list[Stated]:
-    """Return the overflow checks of user encodings."""
+    """Return the rules that detect overflow of numbers in user encodings."""
     if not encodings:
         return []
     from foon_asp.encoding.number_checks import CHECKS_FILE  # noqa: PLC0415
@@ -251,9 +255,12 @@ def _understood(settings: Settings) -> "Rules | None":
 
 
 class ReachOfRules(Enum):
-    """The units that rules may be about: ``NEEDED`` for a goal, of the ``TREE``, or ``ALL``.
+    """The units that rules may be about.
 
-    Under ``TREE`` rules read facts about the tree alone, and may require units that no goal needs.
+    ``NEEDED``: units that a goal can need.
+    ``TREE``: units of the tree. Rules read facts about the tree alone, and may require units that no goal
+    needs.
+    ``ALL``: all units of the network.
     """
 
     NEEDED = auto()
@@ -272,8 +279,8 @@ def reach_of_rules(settings: Settings) -> ReachOfRules:
 def hold_for_parts(settings: Settings) -> bool:
     """Whether the added rules are antimonotone, so that they hold for every subtree as well.
 
-    They also have to be antimonotone in every part of the network, and with more object nodes available than
-    in the kitchen of the rules. Raises as :func:`assemble` does.
+    They have to be so in every part of the network, and also if more object nodes are available than the
+    kitchen has. ``True`` without rules. Raises as :func:`assemble` does.
     """
     if settings.replaced is not None:
         return False
@@ -284,7 +291,7 @@ def hold_for_parts(settings: Settings) -> bool:
 
 
 def leave_unsettled(settings: Settings) -> bool:
-    """Whether added rules do more than remove and require units, so that clingo has to enforce them.
+    """Whether clingo has to enforce added rules, since they do more than remove and require units.
 
     Raises as :func:`assemble` does.
     """
@@ -293,9 +300,9 @@ def leave_unsettled(settings: Settings) -> bool:
 
 
 def varying_available(settings: Settings) -> "Rules | None":
-    """Return the added rules for questions in which more object nodes are available.
+    """Return the added rules, analysed for questions that differ in which object nodes are available.
 
-    Raises as :func:`assemble` does.
+    ``None`` without rules. Raises as :func:`assemble` does.
     """
     rules = _understood(settings)
     return None if rules is None else rules.varying({("available", 1)})
@@ -304,7 +311,8 @@ def varying_available(settings: Settings) -> "Rules | None":
 def need_whole_network(problem: Problem, settings: Settings) -> bool:
     """Whether added rules may be about units beyond those that the goals can need.
 
-    A part of a store is enough where every rule is local and none requires units that no goal needs.
+    Then a part of a store is not enough for the question. It is enough if every rule is local and none
+    requires units that no goal needs.
     """
     if not settings.constraints and settings.replaced is None:
         return False
@@ -317,7 +325,7 @@ def rules_digest(
 ) -> dict[str, str]:
     """Return a digest of the added rules under the key ``rules``; empty without rules.
 
-    All rows of results have it. Warns and raises as :func:`assemble` does.
+    Every row of results has it. Warns and raises as :func:`assemble` does.
     """
     if not (settings.constraints or settings.constants or settings.encodings):
         return {}
@@ -327,7 +335,10 @@ def rules_digest(
 
 
 def _find_encodings(path: Path | None, ours: Path) -> Path:
-    """Return a folder of encodings: the path itself, or a built-in one by name (``by_need``)."""
+    """Return the folder of encodings: ``path``, a built-in folder of that name, or ``ours`` without a path.
+
+    Raises :class:`UserError` if it has no encodings.
+    """
     if path is None:
         return ours
     folder = ours / path.name if not path.is_dir() and path.name == str(path) else path

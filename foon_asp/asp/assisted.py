@@ -18,8 +18,8 @@ _OF_DOERS = {("rate", 2), ("risk", 2), ("_takes_over", 2), ("_by_person", 1)}
 def assisted(twins: Mapping[int, int], max_assisted: int) -> Bounded:
     """Return bounds on trees: a person does at most ``max_assisted`` units, and no unit is done twice.
 
-    ``twins`` has for each unit of the person the same unit done by the robot, by ids in the whole network.
-    For :class:`foon_asp.asp.Settings`.
+    ``twins`` maps each unit done by the person to the same unit done by the robot, by ids in the whole
+    network. The result is for ``bounded`` of :class:`foon_asp.asp.Settings`.
     """
     return Bounded(write_assisted(twins, max_assisted), (question_encoding("assist.lp"),))
 
@@ -39,9 +39,10 @@ def sees_who_does_it(constraints: Sequence[Constraint]) -> bool:
 
 
 def require_local(settings: Settings) -> None:
-    """Require that constraints are local and name no unit by number, since every unit is there twice.
+    """Require that constraints are local and name no unit by number.
 
-    Raises :class:`UserError` with the place of a rule that does not do so.
+    Each unit may exist twice: done by the robot and by the person. Raises :class:`UserError` with the place
+    of the first rule that is not local or names a unit by number.
     """
     from foon_asp.encoding.encoding import read_encoding  # noqa: PLC0415 (takes clingo along)
     from foon_asp.rules.numbered_units import numbered_unit  # noqa: PLC0415

@@ -9,9 +9,10 @@ from foon_asp.problem import Costs, Objective
 
 
 def better_than(incumbents: Iterable[Costs], objectives: Iterable[Objective]) -> Bounded:
-    """Return bounds that exclude trees dominated by known ones: better by one objective than each of them.
+    """Return bounds that a tree meets if it is better than each incumbent by some objective.
 
-    For :class:`foon_asp.asp.Settings`. The objectives are without ``success``. Raises :class:`UserError` for
+    They exclude trees that an incumbent dominates. The result is for ``bounded`` of
+    :class:`foon_asp.asp.Settings`. The objectives are without ``success``. Raises :class:`UserError` for
     numbers beyond those of clingo.
     """
     by = tuple(objectives)
@@ -22,6 +23,6 @@ def better_than(incumbents: Iterable[Costs], objectives: Iterable[Objective]) ->
 
 
 def _bounded(bounds: Iterable[Mapping[Objective, int]]) -> Bounded:
-    """Return bounds on trees: a tree has to meet at least one bound of each set."""
+    """Return bounds on trees in whole numbers: of each mapping, a tree has to meet at least one bound."""
     rules = "".join(write_at_most(number, bound) for number, bound in enumerate(bounds))
     return Bounded(rules, (question_encoding("at_most.lp"),))

@@ -23,9 +23,9 @@ from foon_asp.rules.passed_constraint import Constraint
 class BareProgram(NamedTuple):
     """The files, arguments and text for a command line of clingo.
 
-    ``files`` are encodings and constraints, ``constants`` the arguments that set constants. ``facts`` and
-    ``rules`` without a file are the text of one more file, as ``foon-asp facts`` prints it. The program has
-    no reduction, bound or second step.
+    ``files`` are encodings and constraints, ``constants`` the arguments that set constants. ``facts``, and
+    ``rules`` that are in no file, are the text of one more file, as ``foon-asp facts`` prints it. The program
+    has no reduction, bound or second step.
     """
 
     files: tuple[Path, ...]
@@ -44,8 +44,8 @@ def bare_program(
 ) -> BareProgram:
     """Return a question for bare clingo, which finds the same optimum.
 
-    ``soft`` are the weights of constraints that may be broken; the least sum of weights then comes
-    first. Under ``success`` clingo compares rounded weights alone. Raises :class:`UserError` like
+    ``soft`` has the weight of each constraint that may be broken; then the first objective is the least sum
+    of weights. Under ``success`` clingo compares rounded weights alone. Raises :class:`UserError` like
     :func:`foon_asp.asp.solve`.
     """
     penalty = ""
@@ -81,7 +81,7 @@ def bare_program(
 def printed_program(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, soft: Mapping[Constraint, int]
 ) -> BareProgram:
-    """Return a question as :func:`bare_program` does; with rules, of the whole network."""
+    """Return a question as :func:`bare_program` does; if there are rules, for the whole network."""
     ruled = settings.constraints or settings.encodings or soft
     return bare_program(problem.whole if ruled else problem, objectives, settings, soft)
 
@@ -89,10 +89,11 @@ def printed_program(
 def bare_plans(
     outcome: Outcome, objectives: Sequence[Objective], settings: Settings
 ) -> tuple[BareProgram | None, dict[int, tuple[int, int]]]:
-    """Return a question about plans for bare clingo, with an optimal plan known.
+    """Return the program of a question about plans for bare clingo, and the most executions of each unit.
 
-    Returns the program, which leaves executions open, and for each unit its public number and the most
-    executions in any plan as good by the first objective; ``None`` for the program where these are unbounded.
+    ``outcome`` is an optimal plan. The program leaves the numbers of executions open. The second value maps
+    each unit id to its public number and its most executions in any plan that is as good by the first
+    objective. Returns ``None`` and an empty mapping if these are unbounded.
     """
     settings = settings._replace(deadline=None)
     executions = executions_as_good(outcome, settings)
@@ -109,7 +110,7 @@ def bare_plans(
 
 
 def _require_no_amounts(problem: Problem) -> None:
-    """Raise :class:`UserError` where amounts are counted: in the encodings each execution has one copy."""
+    """Raise :class:`UserError` if amounts are counted: the encodings have one copy of each output."""
     if problem.counts_amounts:
         raise UserError("amounts are not built for bare clingo, whose encodings have one copy of each output")
 

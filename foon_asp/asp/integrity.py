@@ -53,13 +53,13 @@ def relax(
     deadline: Deadline | None = None,
     before: Iterable[Constraint] = (),
 ) -> tuple[tuple[IntegrityConstraint, ...], Relaxed]:
-    """Number the integrity constraints of constraint files from 1, and relax them.
+    """Number integrity constraints from 1, and rewrite them so that trees may break them.
 
     Without ``soft``, integrity constraint number C holds unless ``_dropped(C)`` does
-    (``questions/clash.lp``). With ``soft``, the constraint becomes a rule for ``_broken(C,Way)``, where
-    ``Way`` has the values of its variables (``questions/soft.lp``). Other rules stay as they are. ``before``
-    are constraints whose texts are numbered first in messages. Raises as
-    :func:`foon_asp.encoding.encoding.read_encoding` does.
+    (``questions/clash.lp``). With ``soft``, it becomes a rule for ``_broken(C,Way)``, where ``Way`` has the
+    values of its variables (``questions/soft.lp``). Other rules of the ``constraints`` stay as they are.
+    ``before`` are other constraints of the question; in messages, their texts are numbered before these.
+    Raises as :func:`foon_asp.encoding.encoding.read_encoding` does.
     """
     numbered: list[IntegrityConstraint] = []
     rules: dict[str, Source] = {}
@@ -92,7 +92,7 @@ def relax(
 
 
 def _statements(rules: Loaded) -> list[AST]:
-    """Return the statements without comments and ``#program``."""
+    """Return the parsed statements of a constraint, without comments and ``#program``."""
     statements: list[AST] = []
     parse(rules, statements.append, lambda *_: None)
     return [statement for statement in statements if statement.ast_type not in _PASSED_OVER]
@@ -100,7 +100,7 @@ def _statements(rules: Loaded) -> list[AST]:
 
 @contextmanager
 def placed(relaxed: Relaxed, text: str) -> Iterator[None]:
-    """Return a context in which errors in the rewritten text are reported at their places in the files."""
+    """Return a context in which errors in the rewritten ``text`` are raised with places in the files."""
     try:
         yield
     except InputError as error:
@@ -118,7 +118,10 @@ def placed(relaxed: Relaxed, text: str) -> Iterator[None]:
 
 
 def _look_over(rules: Loaded, deadline: Deadline) -> None:
-    """Raise the errors of a constraint while their places are known: later it is only rewritten text."""
+    """Parse and ground one constraint without facts, so that its errors are raised with their places.
+
+    Later it is only rewritten text.
+    """
     read_encoding(rules)
     try:  # without facts, for unsafe variables alone
         ground((rules,), "", (), deadline, endless=True).close()
@@ -134,10 +137,12 @@ def _is_constraint(statement: AST) -> bool:
 
 
 def _unless_dropped(rule: AST, number: int) -> str:
+    """Return the rule with ``not _dropped(number)`` added to its body."""
     return str(rule.update(body=[*rule.body, *_parsed(f":- not _dropped({number}).").body]))
 
 
 def _broken(rule: AST, number: int) -> str:
+    """Return the rule with a head: ``_broken(number,Way)``, where ``Way`` has its global variables."""
     way = ",".join(sorted(set(_global_variables(rule.body))))
     head = _parsed(f"_broken({number},_way({way})).") if way else _parsed(f"_broken({number},_way).")
     return str(rule.update(head=head.head))

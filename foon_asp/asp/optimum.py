@@ -20,8 +20,9 @@ def solve(
 ) -> Outcome:
     """Find the best tree or plan under a lexicographic list of objectives, and prove it.
 
-    ``units`` decides last. Stops at the limits with the best so far. Raises :class:`UserError` as
-    :func:`foon_asp.asp.solver.solve` and :func:`foon_asp.plans.plan_search.solve_used_up` do.
+    ``units`` decides last. At a limit, the outcome has the best tree so far. The other arguments are those of
+    :func:`foon_asp.asp.solver.solve`. Raises :class:`UserError` as that function and
+    :func:`foon_asp.plans.plan_search.solve_used_up` do.
     """
     if problem.items is None:
         return solver.solve(problem, objectives, settings, reporter, mattered, solved)

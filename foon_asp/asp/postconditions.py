@@ -37,8 +37,8 @@ class Postconditions:
     def tree(self, units: Collection[int]) -> tuple[int, ...]:
         """Require that units execute and make the goals; return them in an executable order.
 
-        Where possible, each item can be used up in that order. Raises :class:`UserError` where user rules
-        made a tree that does not execute.
+        If there is an order in which each item can even be used up, that order is returned. Raises
+        :class:`UserError` where user rules made a tree that does not execute.
         """
         problem = self.problem
         order = executable_order(problem, units)
@@ -58,7 +58,7 @@ class Postconditions:
         return listed if run.order is None else tuple(listed[position] for position in run.order)
 
     def no_tree(self) -> None:
-        """Require that no tree makes all goals, by forward reachability over their relevant units.
+        """Require that no tree makes all goals, by forward reachability over the units relevant for them.
 
         The required sets of a restriction are goals as well.
         """
@@ -136,7 +136,11 @@ class Postconditions:
         )
 
     def no_better(self, harder: Outcome, easier: Outcome, by: str) -> None:
-        """Require that a tree is no better than the proved optimum of a question that allows more trees."""
+        """Require that a tree is not better than the proved optimum of an easier question.
+
+        The easier question allows more trees; ``by`` names it in the message. Checks nothing if its optimum
+        is not proved.
+        """
         if harder.costs is None or easier.status not in {Status.OPTIMAL, Status.INFEASIBLE}:
             return
         theirs = easier.costs
@@ -173,7 +177,7 @@ class Postconditions:
             )
 
     def _reduced(self, outcome: Outcome, costs: Costs, reduced: Reduced, exact: ExactCosts) -> None:
-        """Require that the reductions measure the tree as its costs do, and that their bound allows it."""
+        """Require that reductions and outcome agree on the costs, and that the bound allows the tree."""
         assert outcome.units is not None
         units = frozenset(outcome.units)
         size = len(self.problem.network)
@@ -247,7 +251,7 @@ def _shown(costs: Costs | None) -> str:
 
 
 def _text(figure: int | Fraction | None) -> str:
-    """Write a figure: a product of rates may have more digits than Python turns into text at once."""
+    """Return a figure as text, also if it has more digits than Python converts at once."""
     if figure is None:
         return "unknown"
     above, below = Decimal(figure.numerator), Decimal(figure.denominator)

@@ -37,13 +37,16 @@ if TYPE_CHECKING:  # often clingo need not run
 class Prepared:
     """A question, prepared for the search.
 
-    ``levels`` are the objectives as optimized, ``units`` the units of the network that the cut keeps, and
-    ``tree`` some tree of them, ``None`` where nothing makes the goals. ``reduced`` is the result of the
-    reductions, ``None`` where none ran. ``stopped`` says that a limit or ctrl-C interrupted the cut, so that
-    nothing is known. ``kept`` is the problem restricted by user rules, where these are applied before the
-    search. ``contradicted`` says that user rules allow no tree, ``full_program`` is the program with all user
-    rules. ``unsettled`` says that clingo has to enforce some rules, which ``tree`` and ``reduced`` ignore.
-    ``redundant`` says that trees under these rules may need redundant units, which lead to no goal.
+    ``levels``: the objectives as optimized.
+    ``units``: the units of the network that remain after the cut.
+    ``tree``: a tree of these units, ``None`` if nothing makes the goals.
+    ``reduced``: the result of the reductions, ``None`` if none ran.
+    ``stopped``: whether a limit or ctrl-C interrupted the cut, so that nothing is known.
+    ``kept``: the problem restricted by user rules, if rules were applied before the search.
+    ``contradicted``: whether user rules allow no tree.
+    ``full_program``: the program with all user rules, if rules were applied.
+    ``unsettled``: whether clingo has to enforce some rules; ``tree`` and ``reduced`` ignore these.
+    ``redundant``: whether trees under these rules may need units that lead to no goal.
     """
 
     problem: Problem
@@ -75,7 +78,7 @@ class Prepared:
 
     @cached_property
     def facts(self) -> str:
-        """The facts of the problem, as text, without the facts of the objectives.
+        """The facts of the problem, as text, except the facts about objectives.
 
         Raises ``KeyboardInterrupt`` at a limit.
         """
@@ -97,9 +100,9 @@ class Prepared:
             return facts + writing.write_required([map(number, sorted(remaining & units)) for units in sets])
 
     def keeps(self, units: Collection[int]) -> bool | None:
-        """Whether a tree keeps to all user rules; all of them are local.
+        """Whether a tree keeps to all user rules, which have to be local.
 
-        ``None`` where a limit came first. Raises :class:`UserError` for a fault in a rule.
+        ``None`` if a limit was reached first. Raises :class:`UserError` for a fault in a rule.
         """
         program = self.full_program or self.program
         if program.ready_made is not None:
@@ -112,7 +115,7 @@ class Prepared:
         return True if ended.units is not None else (False if ended.exhausted else None)
 
     def require_kept(self, units: Collection[int]) -> None:
-        """Require that a tree keeps to the rules applied before the search, where they are local."""
+        """Require that a tree keeps to the rules applied before the search, if these are local."""
         rules = self.full_program.added if self.full_program else None
         if rules is not None and rules.local and not self.unsettled:
             kept = self.keeps(units)
@@ -130,7 +133,7 @@ class Prepared:
     ) -> "Run":
         """Run clingo with additional facts and encodings, as :func:`foon_asp.encoding.clingo_run.run` does.
 
-        Returns an empty run where a limit comes first.
+        Returns an empty run if a limit is reached before that.
         """
         from foon_asp.encoding.clingo_run import run  # noqa: PLC0415 (both take clingo along)
         from foon_asp.encoding.run import Run  # noqa: PLC0415
@@ -170,13 +173,16 @@ def prepare(
     """Prepare a question: cut the network down to the units that can matter.
 
     Without user rules, these are the units that the goals can need; with user rules, all units that can
-    execute, since a constraint may require units that no goal needs. Rules that are understood are applied
-    first, unless there are no reductions; settled rules need not be enforced again. With a ``listener``,
-    which receives trees and bounds, there are reductions: they may exclude every tree but one of the best.
-    With bounds on trees there are none, since perhaps only excluded trees keep to the bounds. ``for_sale``
-    are object nodes that may be added to the kitchen. ``brief`` says that the best tree without the unsettled
-    rules is not needed. ``solved`` are other goals of the same question. Raises :class:`UserError` where an
-    objective needs rates that are not known.
+    execute, since a constraint may require units that no goal needs. User rules that are understood are
+    applied first, unless ``settings`` are without reductions. Raises :class:`UserError` if an objective needs
+    rates that are not known.
+
+    ``listener``: receives trees and bounds. With one, there are reductions, which may exclude every tree but
+    one of the best. If ``program`` has bounds on trees, there are none, since perhaps only excluded trees
+    meet the bounds.
+    ``for_sale``: object nodes that may be added to the kitchen.
+    ``brief``: whether the best tree without the unsettled rules is not needed.
+    ``solved``: solved goals of the same question.
     """
     if problem.items is not None:
         raise UserError("this question is not built for items that are used up")
@@ -235,7 +241,11 @@ def prepare(
 
 
 def _applied(prepared: Prepared, rules: "Rules | ReadyMade") -> Prepared:
-    """Apply the user rules that remove units or require sets of them."""
+    """Apply the user rules that remove units or require sets of units, and return the question.
+
+    If other rules remain, the question is ``unsettled``; if rules are not local, it may be returned
+    unchanged.
+    """
     if rules.unsettled and not rules.local:
         return prepared
     problem = prepared.problem
@@ -255,7 +265,7 @@ def _applied(prepared: Prepared, rules: "Rules | ReadyMade") -> Prepared:
 
 
 def _limits_unsettled(prepared: Prepared) -> bool:
-    """Whether reductions by cost limits stay valid under the unsettled rules."""
+    """Whether reductions by cost run although clingo has to enforce some rules."""
     return (
         prepared.unsettled and not prepared.program.bounded and Reduction.DEAR in prepared.settings.reductions
     )

@@ -17,18 +17,23 @@ if TYPE_CHECKING:  # clingo, which is not needed where no rule is added
 class Program(NamedTuple):
     """Encodings in the order of loading, and clingo's arguments.
 
-    ``constants`` are those of the ``arguments`` that set constants. ``rules`` are added to them as text.
-    ``exact_success`` is loaded with ``files`` when products of rates are compared exactly. ``replaced`` says
-    that some of the first three files differ from the built-in ones. ``own`` says that every rule is built
-    in, so that units that the goals do not need cannot matter. ``bounded`` says that a tree of the unbounded
-    question may be excluded. ``looked_at`` are the predicates, by name and arity, that user rules read.
-    ``text`` is the content of the files when they were checked. ``endless`` says that grounding may not
-    terminate. ``encodings`` is the folder that replaces the built-in encodings, ``None`` without one.
-    ``ours`` are the files without those that the user added. ``understood`` are the added rules, analysed:
-    ``None`` where there are none, where encodings are replaced, and where some of the rules may be broken or
-    dropped. ``named`` are the names of constants that files define. Where all rules are ``ready_made``
-    constraints, clingo runs the ``whole`` program. ``reads`` are the predicates without facts in some
-    questions that user rules read, with their first argument where it is a name.
+    ``exact_success``: an encoding for exact comparison of products of rates, loaded after ``files``.
+    ``arguments``, ``constants``: all arguments, and those of them that set constants, which come first.
+    ``replaced``: whether some of the first three files differ from the built-in ones.
+    ``own``: whether every rule is built in, so that units that the goals do not need cannot matter.
+    ``rules``: rules as text, besides the files.
+    ``bounded``: whether a tree of the unbounded question may be excluded.
+    ``looked_at``: the predicates that user rules read, by name and arity.
+    ``text``: the content of the files when they were checked.
+    ``endless``: whether grounding may not terminate.
+    ``encodings``: the folder that replaces the built-in encodings, ``None`` without one.
+    ``ours``: the files without those that the user added.
+    ``understood``: the added rules, analysed. ``None`` if there are none, if encodings are replaced, or if
+    rules may be broken or dropped.
+    ``named``: the names of constants that files define.
+    ``reads``: the predicates that user rules read and that have no facts in some questions, with their first
+    argument where it is a name.
+    ``ready_made``: the added rules if all are ready-made constraints; clingo then runs the ``whole`` program.
     """
 
     files: tuple[Loaded, ...]
@@ -72,7 +77,7 @@ class Program(NamedTuple):
 
     @property
     def settled(self) -> "Program":
-        """The program without user rules, for a problem that they were applied to."""
+        """The program without user rules, for a problem to which these rules were applied."""
         return self._replace(
             files=(*self.ours, question_encoding("required.lp")),
             arguments=self.arguments[len(self.constants) :],

@@ -27,10 +27,10 @@ class _Tree(NamedTuple):
 class Ranked:
     """The trees of a question, the best first, under a lexicographic list of objectives.
 
-    Trees that contain an earlier one are excluded. Iterate to get each tree as unit ids in an executable
-    order, with its costs. ``complete`` says afterwards that there are no others; it is false after a limit or
-    ctrl-C. Then ``pending`` has, in order, further trees found, before which others may come.
-    Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
+    Trees that contain an earlier one are excluded. Construction cuts the network down. Iterate to get each
+    tree as unit ids in an executable order, with its costs. After iteration, ``complete`` is true if there
+    are no other trees; after a limit or ctrl-C it is false. Then ``pending`` has the other trees found, in
+    order, but better trees may be missing. Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
     """
 
     def __init__(
@@ -51,9 +51,9 @@ class Ranked:
     def __iter__(self) -> Iterator[tuple[tuple[int, ...], Costs]]:
         """Iterate over trees in order of exact costs.
 
-        clingo finds them in order of rounded costs. A tree is yielded once no later tree can come before it:
-        with rounded costs, a later tree can be better if its weight is higher by less than the number of
-        units whose weight is rounded down (docs/dev/exact-success.md).
+        clingo finds trees in order of rounded costs. A tree is yielded once no better tree can be found
+        later. With rounded costs, a tree found later can be better if its weight is higher by less than the
+        number of units whose weight is rounded down (docs/dev/exact-success.md).
         """
         if self.complete or self._prepared.stopped:
             return
@@ -100,7 +100,7 @@ class Ranked:
         return _Tree(order, costs, tuple(rounded))
 
     def _check(self, ended: Run, tree: _Tree, earlier: Sequence[_Tree]) -> None:
-        """Require the right rounded costs of a tree, their order, and that it contains no earlier tree.
+        """Require right rounded costs of a tree, in order, and that it contains no earlier tree.
 
         Raises :class:`UserError` where replaced encodings measure something else.
         """
@@ -124,7 +124,7 @@ class Ranked:
         )
 
     def _next_in_order(self, waiting: list[_Tree]) -> tuple[tuple[int, ...], Costs]:
-        """Pop the best waiting tree, and require that it is no better than those yielded before."""
+        """Remove and return the best waiting tree; require that it is not better than trees before it."""
         units, costs, _ = waiting.pop(0)
         key = costs.key(self.levels)
         self._holds.require(
@@ -134,7 +134,7 @@ class Ranked:
         return units, costs
 
     def _is_settled(self, tree: _Tree, last: Rounded) -> bool:
-        """Whether no tree with rounded costs of at least ``last`` is better than a tree."""
+        """Whether a tree is at least as good as every tree with rounded costs of ``last`` or more."""
         by = self._prepared.scales.rounded
         if by is None:
             return True

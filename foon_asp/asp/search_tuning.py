@@ -4,16 +4,17 @@ from typing import NamedTuple
 
 
 class SearchTuning(NamedTuple):
-    """How much clingo gets at once, and how much is kept.
+    """Sizes of the programs that clingo gets, and of the results that are stored.
 
-    ``nearest_units``: size of the first reduced-cost neighbourhood, and of landmarks explored at once.
-    ``nearest_growth``: factor by which the neighbourhood grows where it has no tree. ``explored_units``:
-    limit of explored units, not counting units that mattered before; ``explored_growth``: factor by which
-    they grow in each round. ``open_rounds``: searches for trees with open preconditions, each with fewer open
-    ones than before. ``cut_objects``: object nodes of the cuts kept for a certificate to try first; it finds
-    others by itself. ``units_without_clingo``: units of a network that is searched faster than clingo is
-    imported. ``max_weight``: greatest weight of a constraint that may be broken or dropped, so that sums of
-    weights fit clingo.
+    ``nearest_units``: units of the first reduced-cost neighbourhood, and of landmarks explored at once.
+    ``nearest_growth``: factor by which the neighbourhood grows if it has no tree.
+    ``explored_units``: explored units, at most, not counting units that mattered before.
+    ``explored_growth``: factor by which the explored units grow in each round.
+    ``open_rounds``: searches for trees with open preconditions, each with more units explored.
+    ``cut_objects``: object nodes of the cuts that a certificate tries first; it finds others by itself.
+    ``units_without_clingo``: units of a network that is searched faster than clingo is imported.
+    ``max_weight``: greatest weight of a constraint that may be broken or dropped, so that sums of weights fit
+    clingo.
     """
 
     nearest_units: int = 200

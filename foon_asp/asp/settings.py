@@ -19,8 +19,8 @@ from foon_asp.rules.passed_constraint import Constraint
 class Relaxed(NamedTuple):
     """Constraints that are loaded rewritten.
 
-    They are checked like others, but replaced by ``rules`` and the built-in ``encoding``
-    (``encodings/questions``). ``places`` has the place of each rule in ``files``.
+    They are checked like others, but replaced by ``rules`` and the built-in ``encoding``, a file of
+    ``encodings/questions``. ``places`` maps the text of each rule to its place in ``files``.
     """
 
     constraints: tuple[Constraint, ...]
@@ -33,12 +33,15 @@ class Relaxed(NamedTuple):
 class Bounded(NamedTuple):
     """Upper bounds on the costs of a tree, as built-in encodings.
 
-    ``files`` are encodings of ``encodings/questions`` and ``rules`` the facts that they read. The bounds
-    are antimonotone: every subtree of a tree that meets them does, too, so that units that the goals do not
-    need cannot matter. ``below`` are sets of costs by objectives with fractions; a tree has to be below one
-    cost of each set. They are written once their scale is known. Where items are used up there are no rules
-    and files, and each set has one cost; ``incomparable`` are the executions by unit of known plans, none
-    of which a plan may contain.
+    ``files``: encodings of ``encodings/questions``.
+    ``rules``: the facts that these read.
+    ``below``: mappings of costs with fractions, by objective; of each, a tree has to be below at least one
+    cost. They are written once their scale is known.
+    ``incomparable``: known plans, as executions by unit; no plan may contain one.
+
+    The bounds are antimonotone: every subtree of a tree that meets them meets them, too, so units that the
+    goals do not need cannot matter. If items are used up, there are no rules and files, and each of ``below``
+    has one cost.
     """
 
     rules: str = ""

@@ -29,8 +29,8 @@ class SoftOutcome(NamedTuple):
     """An answer under soft constraints.
 
     ``penalty`` is the sum of ``weight`` times ``ways`` over all soft ``constraints``, for the tree of
-    ``outcome``. Without a tree, they are ``None`` and empty. An ``optimal`` outcome has the least penalty of
-    all trees, and is the best by the objectives among those with that penalty.
+    ``outcome``. Without a tree, ``penalty`` is ``None`` and ``constraints`` is empty. An ``optimal`` outcome
+    has the least penalty of all trees, and is the best by the objectives among the trees with that penalty.
     """
 
     outcome: Outcome
@@ -43,7 +43,8 @@ def soft_rules(
 ) -> tuple[tuple[IntegrityConstraint, ...], dict[int, int], Relaxed]:
     """Number the integrity constraints of soft constraints, with their weights, and rewrite them.
 
-    Raises :class:`UserError` for one that is among the constraints of the settings, too.
+    Returns the constraints, the weight by number, and the rewritten rules. Raises :class:`UserError` for a
+    soft constraint that is also a constraint of ``settings``.
     """
     weight_of = {find_constraint(constraint): weight for constraint, weight in weights.items()}
     both = weight_of.keys() & set(map(find_constraint, settings.constraints))
@@ -66,9 +67,9 @@ def solve_soft(
 ) -> SoftOutcome:
     """Find the tree with the least penalty, and among these the best by a lexicographic list of objectives.
 
-    ``weights`` are by soft constraint; the constraints of ``settings`` are hard. Each broken instance of a
-    rule, by the values of its global variables, costs its weight.
-    Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
+    ``weights`` are by soft constraint; the constraints of ``settings`` are hard. Each instance of a rule that
+    a tree breaks costs the weight of the rule; instances differ in the values of global variables. Raises
+    :class:`UserError` like :func:`foon_asp.asp.solve`.
     """
     settings = settings._replace(deadline=settings.begun)
     constraints, by_number, relaxed = soft_rules(settings, weights)

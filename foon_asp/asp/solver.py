@@ -47,11 +47,11 @@ def solve(
 ) -> Outcome:
     """Find the best task tree under a lexicographic list of objectives, and prove it.
 
-    ``units`` decides last, so that the tree is irredundant. Stops at the time limit or at ctrl-C with the
+    ``units`` decides last, so that the tree is irredundant. At the time limit or ctrl-C, the outcome has the
     incumbent. ``mattered`` are public numbers of units that mattered in a similar question; the units that
-    matter in this one are added. ``solved`` are other goals of the same question; this one is added. Raises
-    :class:`UserError` for faults in constraints, encodings and options, and where ``success`` is asked for
-    and no rates are known.
+    matter in this question are added to it. ``solved`` are solved goals of the same question; this goal is
+    added. Raises :class:`UserError` for faults in constraints, encodings and options, and for ``success``
+    without known rates.
     """
     settings, reporter = settings or Settings(), reporter or Reporter()
     if not problem.has_stand_ins_for(objectives):
@@ -75,7 +75,7 @@ def solve_prepared(prepared: Prepared, objectives: Sequence[Objective], rules: s
 
 
 class _IncumbentListener(Listener):
-    """Listener that keeps the incumbent and reports improvements and bounds."""
+    """Listener that stores the incumbent, and reports better trees and bounds."""
 
     def __init__(self, problem: Problem, objectives: Sequence[Objective], reporter: Reporter) -> None:
         self.problem, self.levels, self.reporter = problem, levels(tuple(objectives)), reporter
@@ -106,7 +106,7 @@ class _IncumbentListener(Listener):
 
 
 class _Solver:
-    """Branch-and-bound search of one prepared question with clingo."""
+    """The search for the best tree of one prepared question, with clingo where reductions do not suffice."""
 
     def __init__(
         self,
@@ -149,11 +149,12 @@ class _Solver:
 
     @property
     def _initial_incumbent(self) -> Units | None:
-        """The tree of the cut, ``None`` where user rules or bounds may exclude it."""
+        """The tree found while the network was cut down; ``None`` if user rules or bounds may exclude it."""
         decided = self.program.own and not self.program.bounded
         return self.prepared.tree if decided else None
 
     def _solve(self) -> Outcome:
+        """Return the outcome of the search; a limit raises ``KeyboardInterrupt``."""
         prepared = self.prepared
         if prepared.stopped:
             return self._outcome(Status.UNKNOWN, None, {})
@@ -180,7 +181,7 @@ class _Solver:
     def _solve_unsettled(self, reduced: Reduced, subproblem: Subproblem, tree: Units) -> Outcome:
         """Find the best tree under rules that the reductions ignored.
 
-        If the best tree without these rules keeps to them, it is optimal.
+        ``tree`` is the best one without these rules, if that is proved; if it keeps to them, it is optimal.
         """
         if self._mattered:  # the tree breaks rules, as in the similar question
             return self._solve_violated(subproblem, tree)
@@ -219,7 +220,7 @@ class _Solver:
         return self._gap_bounded(subproblem, self._best_reported(run.units), run)
 
     def _with_priced_limit(self, subproblem: Subproblem, tree: Units) -> Outcome | None:
-        """Find the best tree by a Lagrangian price on a limited sum; ``None`` where no price decides."""
+        """Find the best tree by a Lagrangian price on a limited sum; ``None`` if no price decides."""
         from foon_asp.hypergraph.priced_limit import limited  # noqa: PLC0415 (of use with few rules)
 
         program = self.prepared.full_program
@@ -258,9 +259,9 @@ class _Solver:
                 return run
 
     def _gap_bounded(self, subproblem: Subproblem, tree: Units, run: "Run | None") -> Outcome:
-        """Search the gap-bounded subproblem: all units that trees up to the cost of a tree can have.
+        """Search the gap-bounded subproblem: all units that trees up to the cost of ``tree`` can have.
 
-        ``run`` is the search that found the tree, ``None`` where none did.
+        ``run`` is the search that found the tree, ``None`` if the tree was found without clingo.
         """
         try:
             with self.deadline.watched("cutting the network", late=True):
@@ -273,11 +274,12 @@ class _Solver:
         return self._search(tree)
 
     def _with_open_preconditions(self, subproblem: Subproblem, tree: Units) -> "Run | None":
-        """Search the relaxation in which units outside ``explored`` have open preconditions.
+        """Search a relaxation: preconditions of units outside ``explored`` may stay open.
 
         Every tree that keeps to the rules has a part that is feasible in the relaxation. So an infeasible
         relaxation proves that there is no tree, and a best tree without open preconditions is optimal.
-        Every tree has a unit of each landmark, too. ``None`` where the relaxation decides nothing within
+        Landmarks are required as well, since every tree has a unit of each. Units of best trees are explored
+        in further rounds. Returns the run that proves one of these, ``None`` if no run does within
         ``SEARCH.open_rounds``.
         """
         from foon_asp.encoding.fact_writer import write_known, write_objectives, write_required  # noqa: PLC0415
@@ -333,10 +335,10 @@ class _Solver:
     def _settle_open_preconditions(
         self, run: "Run", program: Program, text: str, explored: Collection[int], fewest: int
     ) -> "Run | None":
-        """Find the exactly best tree where costs are rounded and trees may have open preconditions.
+        """Find the exactly best tree of a relaxation with open preconditions, where costs are rounded.
 
-        Every tree has at least ``fewest`` units. Returns the run with that tree; ``None`` if it is not
-        proved best, or has units that were not ``explored``, so that it may have open preconditions.
+        Every tree has at least ``fewest`` units. Returns the run with the best tree; ``None`` if it is not
+        proved best, or if it has units outside ``explored``, so that it may have open preconditions.
         """
         assert run.units is not None
         self._measures_agree(run.units, run.cost, self.levels)
@@ -384,16 +386,16 @@ class _Solver:
         return self._optimal(best) if proved else self._limited(best, run.lower)
 
     def _best_reported(self, units: Units) -> Units:
-        """Return the incumbent; with replaced encodings ``units``, since these may define another order."""
+        """Return the incumbent; ``units`` with replaced encodings, which may define another order."""
         assert self.listener.incumbent is not None
         return units if self.program.replaced else self.listener.incumbent[0]
 
     def _opt_mode(self, incumbent: Units) -> tuple[str, bool]:
         """Return clasp's ``--opt-mode`` bounded by the incumbent, and whether the bound is strict.
 
-        After the reductions, trees as good as the incumbent need not be among the remaining units. Where
-        rates multiply, rounded weights do not decide, so the bound is not strict. No bound is below 0, which
-        some strategies of clasp do not support.
+        After the reductions, trees as good as the incumbent need not be among the remaining units, so only
+        better trees are searched. Where rates multiply, rounded weights do not decide, so the bound is not
+        strict. No bound is below 0, which some strategies of clasp do not support.
         """
         prepared = self.prepared
         if (
@@ -432,11 +434,13 @@ class _Solver:
         bounds: bool = False,
         fewer: Mapping[int, int] | None = None,
     ) -> "Run":
-        """Run clingo for the best tree by some of the levels.
+        """Run clingo for the best tree by some of the levels, and report trees.
 
-        Trees with one of the success ``products``, given by exponents, are excluded, unless they have fewer
-        units than ``fewer`` has for the index of the product. With ``wanted``, the product of this index is
-        required instead. Reports trees, and with ``bounds`` also bounds on the question.
+        ``products``: products of success rates, given by exponents. Trees with one of them are excluded.
+        ``wanted``: the index of a product that is required instead.
+        ``fewer``: by index of a product, a number of units; trees with the product and fewer units are
+        allowed.
+        ``bounds``: whether to report bounds on the question, too.
         """
         on_bound = self._report_bound if bounds and not self.program.replaced else None
 
@@ -467,7 +471,7 @@ class _Solver:
         wanted: int | None,
         fewer: Mapping[int, int],
     ) -> "Grounded":
-        """Return the ground program of a question, cached for the last question."""
+        """Return the ground program of a question; ground it unless the last question was the same."""
         question = objectives, len(products), wanted, fewer
         if self._ground:
             before, program = self._ground
@@ -521,10 +525,10 @@ class _Solver:
         return Units(units)
 
     def _settle(self, best: Units, fewest: int = 0) -> tuple[Units, bool]:
-        """Examine every total that rounding may have hidden; see docs/dev/exact-success.md.
+        """Find the best tree by exact costs where clingo compares rounded ones (docs/dev/exact-success.md).
 
-        No tree has fewer units than ``fewest``. Returns the best tree by exact costs, and whether that is
-        proved.
+        Examines every total that rounding may have hidden. No tree has fewer units than ``fewest``. Returns
+        the best tree, and whether it is proved best.
         """
         scales = self._scaled()
         if scales.rounded not in self.levels:  # a kept program has other levels, too
@@ -578,10 +582,11 @@ class _Solver:
         return chosen, True
 
     def _measures_agree(self, units: Units, cost: Sequence[int], objectives: Sequence[Objective]) -> bool:
-        """Compare clingo's costs (modulo 2^32) with the weights of units, and these with their costs.
+        """Return whether clingo's costs (modulo 2^32) are the weights of the units.
 
-        A replaced objectives.lp may measure something else: then the optimum is the one it defines. A kept
-        program measures all levels, with 0 for those that are not optimized.
+        Also requires that the weights fit the exact costs. A replaced objectives.lp may measure something
+        else: then its optimum is returned, with a warning. clingo may report all levels, with 0 for those not
+        optimized.
         """
         scales, costs = self._scaled(), self.listener.costs(units)
         weights = {objective: scales.weight(objective, units) for objective in objectives}
@@ -618,10 +623,10 @@ class _Solver:
     def _bounds(self, lower: Sequence[int]) -> dict[Objective, int | Fraction]:
         """Turn clingo's lower bounds, highest priority first, into bounds on the objectives.
 
-        Before the first bound, no cost is below 0 and no success above 1. A bound on trees better than the
-        incumbent is capped by the incumbent. The bound of the cuts on the first objective counts, too.
-        Objectives after a rounded one have no bound, since rounded weights do not decide among which trees
-        they count.
+        Without a bound of clingo, costs are at least 0 and success at most 1. The bound of the cuts on the
+        first objective counts, too. A bound on a cost is capped by the incumbent, since clingo may search for
+        better trees alone. Objectives after a rounded one have no bound, since rounded weights do not decide
+        among which trees they count.
         """
         bounds: dict[Objective, int | Fraction] = {}
         for objective, value in zip(self.levels, lower or [0], strict=False):
@@ -695,9 +700,10 @@ class _Solver:
 
 
 def _cuts(reduced: Reduced | None) -> list[frozenset[int]]:
-    """Return the cuts of the best bound: those found before reduced-cost fixing, and those between fixings.
+    """Return the objects of the cuts of the best bound, and of cuts that hold for more actions.
 
-    Excluded actions may cross many of the former; the latter count all units.
+    Excluded actions may cross many cuts of the best bound. The cuts found before any reduction count all
+    actions, and tight cuts the actions remaining at the time.
     """
     if reduced is None:
         return []

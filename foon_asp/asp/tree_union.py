@@ -25,9 +25,9 @@ _JUST_ABOVE = Fraction(1, 10**30)  # a cost that is this much above a limit is a
 class TreeUnion(NamedTuple):
     """The units of some tree and of every tree.
 
-    ``in_some`` are units that some tree has, ``in_every`` those that every tree has, by id. A limit may leave
-    units ``undecided``: units outside ``some`` that a tree may have, and units in ``some`` that every tree
-    may have.
+    ``in_some`` are ids of units that some tree has, ``in_every`` ids of units that every tree has. After a
+    limit, ``undecided`` are the units for which it is not known: those outside ``in_some`` may be in some
+    tree, those in ``in_some`` may be in every tree.
     """
 
     best: Outcome
@@ -45,11 +45,11 @@ def tree_union(
 ) -> TreeUnion:
     """Find the units of some and of every tree up to a cost, as brave and cautious consequences.
 
-    With ``worse`` 0, these are the optimal trees; else all trees without redundant units whose first
+    If ``worse`` is 0, the trees are the optimal ones. Otherwise they are all irredundant trees whose first
     objective is worse than the best value by at most this share of it. Each search finds a tree that adds a
     unit to the units of some tree, or removes one from the units of every tree; the last search proves that
-    no such tree is left. Raises :class:`UserError` like :func:`foon_asp.asp.solve`, and for rules with
-    ``worse``.
+    there is no such tree. Raises :class:`UserError` like :func:`foon_asp.asp.solve`, and for rules if
+    ``worse`` is not 0.
     """
     best = solve(problem, objectives, settings, reporter)
     if best.status is not Status.OPTIMAL or best.units is None or best.costs is None:
@@ -78,7 +78,7 @@ class _Union:
         self._avoided = 0
 
     def run(self) -> TreeUnion:
-        """Search until nothing is undecided, or until a limit."""
+        """Search until no unit is undecided or a limit is reached."""
         candidates = self._candidates()
         self._prepared = replace(self._prepared, units=candidates)
         undecided = set[int]()
@@ -96,7 +96,7 @@ class _Union:
         return TreeUnion(self._best, in_some, in_every, frozenset(undecided))
 
     def _candidates(self) -> tuple[int, ...]:
-        """Return the units that a tree up to the limit can have; with added rules a superset."""
+        """Return the units that trees up to the cost limit can have; with added rules a superset."""
         prepared, deadline = self._prepared, self._prepared.deadline
         if not prepared.program.own or prepared.unsettled or not prepared.settings.reductions:
             return prepared.units
@@ -124,7 +124,10 @@ class _Union:
 
     @cached_property
     def _opt_mode(self) -> str:
-        """The mode of the search: where no cost is rounded, trees above the cost of the best do not count."""
+        """The ``--opt-mode`` of clasp, bounded by the costs of the best tree unless costs are rounded.
+
+        Without a bound if worse trees count, too.
+        """
         scales, by = self._prepared.scales, self._prepared.levels
         if self._worse or scales.rounded is not None:
             return "opt"
@@ -140,9 +143,9 @@ class _Union:
         return best * (1 + self._worse) + _JUST_ABOVE
 
     def _next(self, question: str) -> bool | None:
-        """Find another tree that changes the result, and add its units.
+        """Find another tree that changes the result, and add its units; return ``True``.
 
-        Returns ``False`` if no tree does, ``None`` at a limit.
+        Returns ``False`` if there is no such tree, ``None`` at a limit.
         """
         problem, by = self._prepared.problem, self._prepared.levels
         while True:
@@ -170,7 +173,7 @@ class _Union:
             return True
 
     def _is_beyond(self, tree: Sequence[int]) -> bool:
-        """Whether all remaining trees cost too much to count, by the weights of this tree."""
+        """Whether this tree and all trees not found yet cost too much to count, by rounded weights."""
         prepared, costs = self._prepared, self._prepared.problem.costs(tree)
         scales = prepared.scales
         for objective in prepared.levels[:1] if self._worse else prepared.levels:

@@ -18,9 +18,9 @@ from foon_asp.problem import Objective, Problem, levels, reach
 
 
 class UserRuleCheck:
-    """Constraints, read once, by which executable trees are checked (plans, where items are used up).
+    """Constraints, read once, by which executable trees are checked; or plans, if items are used up.
 
-    ``local`` says that whether a tree breaks them does not depend on units outside the tree.
+    ``local`` says that units outside a tree do not decide whether it breaks a constraint.
     """
 
     def __init__(self, settings: Settings, used_up: bool = False) -> None:
@@ -39,9 +39,10 @@ class UserRuleCheck:
         self._program = assemble(self._settings, lambda _: None, used_up)
 
     def broken(self, problem: Problem, tree: Collection[int]) -> tuple[IntegrityConstraint, ...]:
-        """Return the rules that a tree breaks, given by unit ids; a plan with repeats, once per execution.
+        """Return the rules that a tree or plan breaks.
 
-        Raises ``KeyboardInterrupt`` at a limit, and :class:`UserError` for a rule without a value.
+        ``tree`` has unit ids; for a plan, the id of a unit comes once per execution. Raises
+        ``KeyboardInterrupt`` at a limit, and :class:`UserError` for a rule without a value.
         """
         self._program.require_facts(problem, (Objective.UNITS,))
         ended = self._tree(problem, tree) if problem.items is None else self._plan(problem, tree)

@@ -7,12 +7,12 @@ from foon_asp.hypergraph.goal_graph import GoalGraph
 
 
 def relevant_beside_landmarks(graph: GoalGraph, allowed: Container[int]) -> set[int]:
-    """Return the allowed actions that stay: action landmarks, and actions relevant beside them.
+    """Return the allowed actions that an irredundant tree can have: action landmarks and relevant others.
 
-    The only achiever of a goal is an action landmark, so its preconditions are goals, too. Every tree has the
-    effects of the landmark, so that other achievers of these effects are of no use, unless the landmark may
-    be derived from its own effects. The search backwards from the extended goals stops at effects of
-    landmarks; every irredundant tree remains.
+    The only achiever of a goal is an action landmark, and its preconditions become goals, too. Every tree
+    makes the effects of an action landmark, so other achievers of these effects are redundant, unless the
+    preconditions of the landmark may be derived from its effects. So the backward search from the goals stops
+    at effects of landmarks.
     """
     needs, gives, achievers = graph.needs, graph.gives, graph.makers
     goals = list(graph.goals)

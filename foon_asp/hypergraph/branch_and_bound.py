@@ -1,11 +1,10 @@
 """Branch and cut for the cheapest derivation, over the linear relaxation of hitting all landmarks.
 
-At each node, some actions are used and some are forbidden. The preconditions of the used ones are targets,
-too, and the used ones cost nothing any more. Cuts are separated by an LP solution as in
-:mod:`foon_asp.hypergraph.cost_partition`. A cut holds at every node that has a target in it, so cuts are kept
-from node to node. A node is closed only by whole numbers: by a cost partition that is rounded so that no
-action carries more than its cost, or by a cut that no action crosses. The floats of HiGHS decide only where
-to look.
+At each node of the search tree, some actions are used and some are forbidden. The preconditions of used
+actions are targets, too, and used actions cost nothing more. Cuts that an LP solution violates are added as
+in :mod:`foon_asp.hypergraph.cost_partition`. A cut is valid at every node at which it contains a target, so
+all nodes share their cuts. Integers alone close a node: a cost partition, rounded so that the weights on each
+action add up to at most its cost, or a cut with an empty landmark. The floats of HiGHS only guide the search.
 """
 
 import math
@@ -32,10 +31,12 @@ class TooLongError(Exception):
 
 @dataclass(slots=True, eq=False)
 class _Node:
-    """A node of the search tree: the used and the forbidden actions, and a bound on its derivations.
+    """A node of the search tree: the derivations with all ``used`` and no ``forbidden`` actions.
 
-    No derivation of the node costs less than ``bound``, in parts, by the ``weights`` of rows. No derivation
-    with an action of ``above_cutoff`` beats the incumbent. A node is either closed, or has two children.
+    Actions are columns of the relaxation. ``bound`` is a lower bound on the cost of the derivations, in
+    :data:`PARTS` of 1; ``weights`` are the pairs of row and weight that prove it. ``hopeless`` is a cut with
+    an empty landmark, if the node has no derivation. Derivations with an action of ``above_cutoff`` are no
+    better than the incumbent. After branching on ``action``, the children are ``without`` and ``using``.
     """
 
     used: frozenset[int]
@@ -52,11 +53,15 @@ class _Node:
 class Branching:
     """Branch and cut for derivations of the targets that cost less than ``total``.
 
-    All of the actions can run, and each costs more than 0. ``cuts`` are sets of objects of cuts to begin
-    with. ``guess`` is the primal heuristic: it proposes derivations from the LP values of the actions and
-    from the forbidden ones. ``incumbent`` is the best derivation found, if any; no better one costs less than
-    ``bound``. ``closed`` is true where it is proved that no derivation costs less than the incumbent (without
-    one: than ``total``). ``effort`` is the remaining budget of a search, in actions looked at.
+    ``actions``: actions that derivations may have. All of them can run, and each costs more than 0.
+    ``cuts``: cuts to begin with, each as a set of objects.
+    ``guess``: the primal heuristic. It proposes derivations from the LP values of actions and the forbidden
+    actions.
+    ``incumbent``: the best derivation found, ``None`` before the first.
+    ``bound``: a lower bound on the cost of derivations that are better than the incumbent.
+    ``closed``: whether all nodes are closed. Then the incumbent is optimal or, without an incumbent, all
+    derivations cost at least ``total``.
+    ``effort``: the remaining budget of a search, in actions looked at.
     """
 
     def __init__(
@@ -92,7 +97,8 @@ class Branching:
     def search(self, effort: int, expired: Callable[[], bool]) -> Iterator[None]:
         """Branch, best bound first, until no node is open or ``effort`` actions were looked at.
 
-        Yields after each new incumbent or bound, and at the end.
+        Yields after each new incumbent or bound, and once all nodes are closed. ``expired`` returns whether
+        time is up.
         """
         self.effort = effort
         waiting = [(0, 0, 0, self._root)]
@@ -122,14 +128,14 @@ class Branching:
     def proof(self, max_length: float = math.inf, expired: Callable[[], bool] = lambda: False) -> Proof:
         """Return the proof of a search that closed all nodes.
 
-        Raises :class:`TooLongError` where time is up, and where the proof would list more than ``max_length``
-        objects and landmark actions.
+        Raises :class:`TooLongError` if ``expired`` says that time is up, or if the proof would list more than
+        ``max_length`` objects and landmark actions.
         """
         self._length_budget, self._expired = max_length, expired
         return self._proof(self._root)[0]
 
     def cases(self) -> Cases:
-        """Return the tree of actions branched on, without the actions fixed by reduced cost."""
+        """Return the case split: the tree of actions branched on, without actions fixed by reduced cost."""
         return self._cases(self._root)
 
     def _cases(self, node: _Node) -> Cases:
@@ -141,15 +147,15 @@ class Branching:
         return self.effort <= 0 or expired()
 
     def _closes(self, bound: int) -> bool:
-        """Return whether no derivation of a node with this bound is better than the incumbent."""
+        """Return whether a bound, in parts, excludes every derivation that is better than the incumbent."""
         return bound > self._below() * PARTS
 
     def _below(self) -> int:
-        """Return the greatest cost of a derivation that is better than the incumbent: the cutoff."""
+        """Return the cutoff: the greatest cost that a derivation better than the incumbent can have."""
         return (self._total - 1) // self._unit * self._unit
 
     def _go_to(self, node: _Node, targets: set[int]) -> None:
-        """Change the bounds and rows of the relaxation to those of a node."""
+        """Set the bounds of columns and rows of the relaxation for a node with these targets."""
         used, forbidden = self._relaxed_at
         for action in (used ^ node.used) | (forbidden ^ node.forbidden):
             upper = 0.0 if action in node.forbidden else 1.0 if action in node.used else math.inf
@@ -162,7 +168,7 @@ class Branching:
                 self._covering.demand(row, float(active))
 
     def _solve(self, node: _Node, number: int, expired: Callable[[], bool]) -> bool:
-        """Close a node or branch on it; return whether there was time for that."""
+        """Close a node or branch on it; return ``False`` if time or effort ran out before that."""
         targets = set(self._targets).union(*(self._graph.needs[a] for a in node.used))
         self.effort -= len(self._actions)
         cutter = Cutter(self._graph, targets, node.forbidden)
@@ -218,7 +224,10 @@ class Branching:
         return True
 
     def _rounded_derivation(self, cutter: Cutter, shares: Any, node: _Node) -> set[int]:
-        """Return the rounded LP solution; if it misses a target, add a cut, and return the empty set."""
+        """Record the rounded LP solution as a derivation and return its columns.
+
+        If it does not reach all targets, add a cut that it violates, and return the empty set.
+        """
         chosen = node.used.union(self._np.flatnonzero(shares > 0.5).tolist()) - node.forbidden
         self.effort -= len(cutter.actions)
         cut = cutter.cut(chosen, cutter.actions)
@@ -229,6 +238,7 @@ class Branching:
         return set(chosen)
 
     def _record(self, actions: set[int]) -> None:
+        """Make a derivation the incumbent if it is better."""
         total = sum(self._costs[i] for i, a in enumerate(self._actions) if a in actions)
         if total < self._total:
             self._total, self.incumbent = total, frozenset(actions)
@@ -242,14 +252,14 @@ class Branching:
                 self._record(set(derivation))
 
     def _separate(self, cutter: Cutter, shares: Any, node: _Node, expired: Callable[[], bool]) -> bool:
-        """Add disjoint cuts that an LP solution violates; return whether there are any."""
+        """Add disjoint cuts that an LP solution violates; return whether any was added."""
         budget = min(self.effort, tuning.RELAXATION.cuts * len(cutter.actions))
         added, looks = self._relaxation.separate([cutter], node.used, shares.copy(), budget, expired)
         self.effort -= looks
         return added > 0
 
     def _weigh(self, node: _Node) -> None:
-        """Raise the bound of a node to that of the rounded dual solution, if it is greater."""
+        """Round the LP dual to weights of rows; the node takes them if they raise its bound."""
         reduced_costs = self._parts.copy()
         paid = sum(self._costs[a] for a in node.used) * PARTS
         reduced_costs[list(node.used)] = 0
@@ -264,20 +274,23 @@ class Branching:
             node.weights = [(row, weight) for row, weight in weights.items() if weight]
 
     def _reduced_costs(self, node: _Node) -> Any:
-        """Return the reduced cost of each action by the weights of a node, in parts."""
+        """Return each action's cost (in parts) minus the weights of the node's open cuts with the action.
+
+        A cut is open if its landmark has no used action.
+        """
         reduced_costs = self._parts.copy()
         for row, weight in self._carrying(node):
             reduced_costs[self._relaxation.rows[row]] -= weight
         return reduced_costs
 
     def _carrying(self, node: _Node) -> Iterator[tuple[int, int]]:
-        """Return the rows with their weights, without rows that a used action satisfies."""
+        """Yield the rows of open cuts and their weights, without rows that a used action satisfies."""
         for row, weight in node.weights:
             if node.used.isdisjoint(self._relaxation.rows[row].tolist()):
                 yield row, weight
 
     def _proof(self, node: _Node) -> tuple[Proof, set[int]]:
-        """Return the proof of a closed node, and the forbidden actions that the proof relies on."""
+        """Return the proof of a closed node, and the columns of forbidden actions that it relies on."""
         if node.hopeless is not None:
             cut = frozenset(node.hopeless.objects)
             return Hopeless(self._stated(cut, node)), {*self._relaxation.members(cut)} & node.forbidden
@@ -295,7 +308,7 @@ class Branching:
         return proof, (barred - node.above_cutoff) | overloaded
 
     def _packing(self, node: _Node) -> tuple[Packing, set[int]]:
-        """Return the cost partition of a node, and the forbidden actions that its proof relies on."""
+        """Return the cost partition of a node, and the columns of forbidden actions that it overloads."""
         weights: list[tuple[Cut, tuple[Fraction]]] = []
         self._length_budget -= 5000  # which limits the depth of the branching, too
         for row, weight in self._carrying(node):
@@ -308,7 +321,7 @@ class Branching:
         return Packing(tuple(weights)), overloaded & node.forbidden
 
     def _stated(self, cut: frozenset[int], node: _Node) -> Cut:
-        """Return a cut in the whole graph, with the actions that cross it at a node."""
+        """Return a cut by its numbers in the whole graph, without landmark actions that a node forbids."""
         crossing = (self._actions[a] for a in self._relaxation.members(cut) if a not in node.forbidden)
         return Cut(tuple(sorted(self._relaxation.whole(cut))), tuple(sorted(crossing)))
 
@@ -322,11 +335,11 @@ def branched(
     total: int,
     expired: Callable[[], bool],
 ) -> Proof | None:
-    """Prove that no derivation costs less than ``total``; arguments are those of :class:`Branching`.
+    """Return a proof that no derivation costs less than ``total``; ``None`` where that takes too long.
 
-    The weights of the proof add up to more than ``total - 1``, to be rounded up. Returns ``None`` where the
-    proof takes too long, where a derivation costs less, where an action costs nothing, and where all costs
-    have a common divisor above 1.
+    Arguments are those of :class:`Branching`. Bounds of the proof exceed ``total - 1``, which suffices since
+    costs are whole numbers. The proof is also ``None`` where a derivation costs less, where an action costs
+    nothing, and where all costs have a common divisor above 1.
     """
     costs = [cost(action) for action in actions]
     if math.gcd(*costs) != 1 or 0 in costs:

@@ -1,8 +1,8 @@
 """Coprime bases: factors of numbers, by which products of powers of the numbers can be compared.
 
-Numbers without common divisors, each above 1, are *independent*: a product of rational powers of them is 1
-only if all exponents are 0. So when every rate is written in powers of such numbers, equal products have
-equal exponents. Finding them takes greatest common divisors alone, and no prime factors.
+Pairwise coprime numbers above 1 are *independent*: a product of rational powers of them is 1 only if all
+exponents are 0. So when every rate is written as a product of powers of such numbers, equal products have
+equal exponents. A coprime base is computed by greatest common divisors alone, without prime factors.
 """
 
 import math
@@ -11,7 +11,7 @@ from fractions import Fraction
 
 
 def coprime_base(numbers: Iterable[int]) -> list[int]:
-    """Return a coprime base: numbers above 1, pairwise coprime, whose powers multiply to each number."""
+    """Return pairwise coprime numbers above 1 such that each given number is a product of their powers."""
     base: list[int] = []
     waiting = sorted(set(numbers))
     while waiting:
@@ -30,7 +30,7 @@ def coprime_base(numbers: Iterable[int]) -> list[int]:
 
 
 def powers(number: int, base: Sequence[int]) -> dict[int, int]:
-    """Return the nonzero exponents of a number in a coprime base made for it."""
+    """Return the exponents of a number by factor of its coprime base, without exponents of 0."""
     exponents: dict[int, int] = {}
     for factor in base:
         while number % factor == 0:

@@ -2,8 +2,8 @@
 
 Greedy weights of cuts depend on the order of the cuts. Here all cuts are weighed at once, and cuts that the
 LP solution violates are added until none is found (Bonet and Helmert 2010; Katz and Domshlak 2010 for cost
-partitioning). The floats of HiGHS are rounded to parts such that no action carries more than its cost, so the
-bound holds whatever the floats were.
+partitioning). The floats of HiGHS are rounded to integers such that the weights on each action add up to at
+most its cost. So the bound is valid whatever the floats were.
 """
 
 import math
@@ -20,11 +20,13 @@ from foon_asp.hypergraph.landmark_relaxation import PARTS, LandmarkRelaxation
 
 
 class SharedCosts(NamedTuple):
-    """A cost partition over cuts: objects and weight of each cut, in :data:`PARTS` of 1.
+    """A cost partition over cuts, in :data:`PARTS` of 1.
 
-    No derivation by the actions looked at costs less than ``bound``, in parts. ``reduced_costs`` has the
-    reduced cost of each action, in parts, and ``shares`` its LP value. ``tight`` are the cuts that the LP
-    solution satisfies with equality; the next relaxation begins with them.
+    ``bound``: a lower bound on the cost of derivations by the actions of the relaxation.
+    ``reduced_costs``: the reduced cost of each action.
+    ``cuts``: the objects of each cut, and its weight.
+    ``shares``: the LP value of each action.
+    ``tight``: the cuts that the LP solution satisfies with equality; the next relaxation begins with them.
     """
 
     bound: int
@@ -43,7 +45,7 @@ def quotient(a: int, b: int) -> float:
 
 
 def stalled(values: Sequence[float], lacks: float) -> bool:
-    """Return whether the last solutions closed hardly any of the gap ``lacks``."""
+    """Return whether the last few of the LP ``values`` closed hardly any of the remaining gap ``lacks``."""
     return (
         len(values) > tuning.RELAXATION.stalled_solutions
         and values[-1] - values[-1 - tuning.RELAXATION.stalled_solutions]
@@ -52,10 +54,10 @@ def stalled(values: Sequence[float], lacks: float) -> bool:
 
 
 class CostPartitioning:
-    """An optimal cost partition over landmark cuts of the targets, found solution by solution.
+    """An optimal cost partition over landmark cuts of the targets, improved with each LP solution.
 
-    All of the actions can run, and actions of cost 0 count as used. ``known_cuts`` are the objects of cuts to
-    begin with. ``converged`` is true where no further solution is of use, or time is up.
+    All of the actions can run, and actions of cost 0 count as used. ``known_cuts`` are cuts to begin with,
+    each by its objects. ``converged`` becomes true when further solutions would not help, or when time is up.
     """
 
     def __init__(
@@ -82,10 +84,10 @@ class CostPartitioning:
             relaxation.add_known(known_cuts)
 
     def advance(self, enough: int, max_solutions: float = math.inf) -> SharedCosts | None:
-        """Solve and separate violated cuts until the bound is ``enough``, ``max_solutions`` times at most.
+        """Solve the LP and add violated cuts, until the bound is ``enough``, ``max_solutions`` times at most.
 
         Returns the cost partition of the last solution; ``None`` where the targets cannot be reached or are
-        all available, and where HiGHS fails.
+        all initial, and where HiGHS fails.
         """
         if self._cutter.hopeless or not self._cutter.targets:
             self.converged = True
@@ -130,7 +132,7 @@ class CostPartitioning:
         return Weighed(solved.value, solved.x, self._relaxation.covering.weights())
 
     def _separate(self, x: list[float]) -> bool:
-        """Add disjoint cuts that an LP solution violates; return whether there are any."""
+        """Add disjoint cuts that an LP solution violates; return whether any was added."""
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
         relaxation = self._relaxation
@@ -142,7 +144,10 @@ class CostPartitioning:
         return added > 0
 
     def _by_target(self, graph: Hypergraph) -> tuple[list[Cutter], list[Cutter]]:
-        """Return a cutter for each target with few relevant actions, and one for all other targets."""
+        """Return cutters for single targets with few relevant actions, and a cutter for all other targets.
+
+        The second list is empty if there are no other targets.
+        """
         count, targets = len(self._relaxation.actions), self._cutter.targets
         alone: list[Cutter] = []
         others: list[int] = []

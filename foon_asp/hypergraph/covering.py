@@ -38,8 +38,8 @@ class UnsolvedError(BugError):
 class Relaxed(NamedTuple):
     """A basic optimal solution: its value, the values ``x`` of the columns, and its basis.
 
-    ``columns`` are the basic columns and ``rows`` the rows that hold with equality by the basis: both have
-    the same number, and the square matrix between them gives the solution and the weights of the rows.
+    ``columns`` are the basic columns, and ``rows`` are as many rows that are tight by the basis. The square
+    matrix of these rows and columns determines the solution and the dual values.
     """
 
     value: float
@@ -57,10 +57,10 @@ class Weighed(NamedTuple):
 
 
 class Covering:
-    """Minimize the sum of ``costs[c] * x[c]``, ``x >= 0``, with ``x`` adding up to 1 or more in every row.
+    """A linear program: minimize the sum of ``costs[c] * x[c]`` where each row adds up to at least 1.
 
-    A limit is one more row: the sum of ``amounts[c] * x[c]`` is at most ``max_amount``. Solved by HiGHS; rows
-    are added between solutions, each of which starts from the one before.
+    No ``x[c]`` is below 0. A limit is another kind of row: the sum of ``amounts[c] * x[c]`` is at most
+    ``max_amount``. Rows can be added between solutions; HiGHS then continues from the last solution.
     """
 
     def __init__(self, costs: Sequence[float]) -> None:
@@ -74,23 +74,23 @@ class Covering:
         self._highs.changeColsCost(count, np.arange(count, dtype=np.int32), np.array(costs, dtype=float))
 
     def add(self, row: Sequence[int]) -> None:
-        """Add a row: the values of its columns add up to at least 1."""
+        """Add a row: the values of these columns add up to at least 1."""
         np_row = self._array(row, dtype="int32")
         ones = self._array([1.0] * len(row))
         self._highs.addRow(1.0, self._library.kHighsInf, len(row), np_row, ones)
 
     def limit(self, amounts: Mapping[int, Fraction], max_amount: Fraction) -> None:
-        """Add a row of a limit; amounts may be negative."""
+        """Add a limit: the sum of amounts times values is at most ``max_amount``; amounts may be negative."""
         columns = self._array(list(amounts), dtype="int32")
         takes = self._array([-float(amount) for amount in amounts.values()])
         self._highs.addRow(-float(max_amount), self._library.kHighsInf, len(amounts), columns, takes)
 
     def bound(self, column: int, lower: float, upper: float) -> None:
-        """Set the bounds of a column."""
+        """Set the lower and the upper bound of the value of a column."""
         self._highs.changeColBounds(column, lower, upper)
 
     def demand(self, row: int, lower: float) -> None:
-        """Set the least sum of a row; 0 makes the row redundant."""
+        """Set the least sum of the values in a row; 0 makes the row redundant."""
         self._highs.changeRowBounds(row, lower, self._library.kHighsInf)
 
     def _set(self, options: dict[str, bool | str | float]) -> None:
@@ -98,9 +98,10 @@ class Covering:
             self._highs.setOptionValue(option, value)
 
     def interior_point(self, expired: Callable[[], bool] = lambda: False) -> Weighed | None:
-        """Return an interior-point solution: with many rows faster than a basic one, and less exact.
+        """Return an interior-point solution: less exact than a basic one, but faster with many rows.
 
-        ``None`` where HiGHS does not converge within the run's seconds, or where time is up.
+        ``None`` where HiGHS does not converge in time: within ``tuning.RELAXATION.run_seconds`` and before
+        ``expired``.
         """
         self._at_vertex = False
         self._run(_INTERIOR_POINT, expired)
@@ -115,9 +116,10 @@ class Covering:
         run(self._highs, expired)
 
     def solve(self, expired: Callable[[], bool] = lambda: False) -> Relaxed:
-        """Return a basic optimal solution of the rows so far; where time is up, the current basic solution.
+        """Return a basic optimal solution; where time is up, the basic solution reached by then.
 
-        ``expired`` is called now and then. Raises :class:`UnsolvedError` where HiGHS ends for another reason.
+        ``expired`` returns whether time is up. Raises :class:`UnsolvedError` where HiGHS fails for another
+        reason.
         """
         highs = self._highs
         if not self._at_vertex:  # steps of the simplex algorithm would start from nothing

@@ -1,7 +1,7 @@
 """Disjunctive action landmarks from cuts: every derivation of the targets uses one of their actions.
 
-Take a set of objects with a target and no initial object in it. The first action of a derivation that
-achieves an object of the set needs no object of the set. So every derivation uses an action that achieves an
+Take a set of objects that contains a target and no initial object. In any derivation, the first action that
+achieves an object of the set needs no object of the set. So every derivation has an action that achieves an
 object of the set and needs none: these actions are a *landmark*, and the set is its *cut*. Bonet and Helmert
 (2010) bound delete-free plans by hitting sets of landmarks of this kind.
 """
@@ -15,19 +15,21 @@ from foon_asp.hypergraph.hypergraph import Hypergraph
 
 
 class Cut(NamedTuple):
-    """A cut and its landmark: object numbers and action numbers, both ascending."""
+    """A cut (``objects``) and its landmark (``members``): numbers of objects and of actions, ascending."""
 
     objects: tuple[int, ...]
     members: tuple[int, ...]
 
 
 class Cutter:
-    """Finds cuts of the targets of a hypergraph, without its forbidden actions.
+    """Finds cuts for the targets of a hypergraph, as if the ``forbidden`` actions did not exist.
 
-    Initial ``targets`` are left out. ``actions`` are the relevant ones: they can run and lead to a target.
-    Every cut found holds for all actions that are not forbidden. ``hopeless`` is a cut with an empty landmark
-    where a target cannot be reached, or else ``None``. Construction takes time linear in the size of the
-    hypergraph or, with the ``reachable`` objects given, in the size of the relevant part.
+    ``targets``: the targets that are not initial.
+    ``actions``: the relevant actions. They can run and lead to a target.
+    ``hopeless``: a cut with an empty landmark if a target cannot be reached, else ``None``.
+
+    Landmarks contain every crossing action that is not forbidden. Construction takes time linear in the size
+    of the hypergraph or, if the ``reachable`` objects are given, in the size of the relevant part.
     """
 
     def __init__(
@@ -83,12 +85,12 @@ class Cutter:
         )
 
     def cut(self, keep: Iterable[int], order: Iterable[int]) -> Cut | None:
-        """Return a cut with a small landmark, without actions of ``keep``, mostly late in ``order``.
+        """Return a cut with a small landmark: no action of ``keep``, and rather actions late in ``order``.
 
-        Grows a set of actions that does not reach the targets, first by ``keep`` and then along ``order``,
-        until no action can be added. The landmark consists of the refused actions that the targets need.
-        ``None`` where ``keep`` alone reaches the targets. Landmarks contain only actions of ``order``, so it
-        should contain all :attr:`actions`.
+        Grows a set of actions that does not reach the targets, first by ``keep`` and then along ``order``. An
+        action with which it would reach the targets is refused; the landmark consists of refused actions.
+        ``None`` where ``keep`` alone reaches the targets. ``order`` should contain all :attr:`actions`, since
+        no other action can be in the landmark.
         """
         growth = _Growth(self, self._missing)
         positions = self._positions
@@ -102,15 +104,15 @@ class Cutter:
         return self._shrink(first, refused, reached, self._consumer_counts)
 
     def among(self, actions: Iterable[int]) -> tuple[int, ...] | None:
-        """Return the actions that are not forbidden; ``None`` where some are not in :attr:`actions`."""
+        """Return the given actions that are not forbidden; ``None`` if one is not in :attr:`actions`."""
         remaining = tuple(a for a in actions if a not in self._forbidden)
         return remaining if self._positions.keys() >= set(remaining) else None
 
     def widened(self, objects: Iterable[int]) -> Cut:
-        """Return the cut of some objects, with unreachable objects that keep its landmark small.
+        """Return the cut of some objects, with unreachable objects added to keep its landmark small.
 
-        An action that can never run needs an unreachable object: with the object in the cut, the action does
-        not cross it. So a cut found among the actions that can run keeps its landmark.
+        An action that cannot run needs an unreachable object. Once this object is in the cut, the action does
+        not cross the cut. So a cut found among the actions that can run keeps its landmark.
         """
         graph, reachable = self._graph, self._reachable
         inside = {o for o in objects if not graph.at_start[o]}
@@ -119,11 +121,12 @@ class Cutter:
     def _shrink(
         self, target: int, members: set[int], reached: bytearray, consumer_counts: Mapping[int, float]
     ) -> Cut:
-        """Return a cut grown backwards from an unreached object, as small as this greedy choice makes it.
+        """Return a small cut, grown backwards from the unreached ``target``.
 
-        Every action outside the landmark that achieves an object of the cut needs unreached objects. Of
-        these, the object with the most consumers is added to the cut, since other actions need it, too.
-        Objects without achiever have no count of consumers, and come first.
+        If an action outside ``members`` achieves an object of the cut, one of its unreached preconditions is
+        added to the cut, so that the action does not cross the cut. The precondition with the most consumers
+        is added, since it helps against other actions, too; objects without an entry in ``consumer_counts``
+        come first.
         """
 
         def most_consumed(action: int) -> int | None:
@@ -135,7 +138,11 @@ class Cutter:
         return self._closed({target}, most_consumed)
 
     def _closed(self, inside: set[int], needed: Callable[[int], int | None]) -> Cut:
-        """Return the cut of objects, and of the objects that ``needed`` returns for crossing actions."""
+        """Return the cut of the objects ``inside``, extended until crossing actions need nothing more.
+
+        For each crossing action, ``needed`` returns a precondition to add to the cut; ``None`` leaves the
+        action in the landmark.
+        """
         graph, forbidden = self._graph, self._forbidden
         stack = list(inside)
         achievers: set[int] = set()
@@ -167,14 +174,14 @@ class _Growth:
         self._targets = len(cutter.targets)
 
     def admit_all(self, actions: Iterable[int]) -> bool:
-        """Admit actions; return whether the targets are reached, after which the growth is of no more use."""
+        """Admit actions; return ``True`` if they reach all targets: then the growth must not go on."""
         return not self._unreached or bool(self.refuse(actions, max_refused=1))
 
     def refuse(self, actions: Iterable[int], max_refused: int = sys.maxsize) -> list[int]:
-        """Admit actions one by one; refuse and return actions with which the targets would be reached.
+        """Admit actions one by one; refuse and return those with which all targets would be reached.
 
-        Ends after ``max_refused`` refusals. The consequences of an object are followed once: if they include
-        all targets, further actions that achieve the object are refused at once.
+        Ends after ``max_refused`` refusals. If an object alone suffices to reach all targets, that is found
+        out once; afterwards, actions that achieve the object are refused at once.
         """
         waiting, missing, gives = self._waiting, self._missing, self._gives
         reached, decisive, spread = self.reached, self._decisive, self._spread
@@ -199,7 +206,7 @@ class _Growth:
         return refused
 
     def _learn(self, refused: list[int]) -> None:
-        """Record an object whose consequences alone include all targets, if ``refused`` has one."""
+        """If one of the ``refused`` objects alone suffices to reach all targets, record it as decisive."""
         for o in refused:
             unreached = self._unreached
             new = None if len(refused) == 1 else self._spread([o])
@@ -210,9 +217,9 @@ class _Growth:
             self._unreached = unreached
 
     def _spread(self, objects: list[int]) -> list[int] | None:
-        """Reach objects and their consequences by admitted actions; return all new objects.
+        """Mark objects, and all that admitted actions make of them, as reached; return the new ones.
 
-        ``None``, and nothing changes, where the targets are reached.
+        If all targets would be reached, nothing changes, and ``None`` is returned.
         """
         waiting, missing, reached = self._waiting, self._missing, self.reached
         consumers, gives, decisive, targets = self._consumers, self._gives, self._decisive, self._targets

@@ -7,12 +7,12 @@ from foon_asp.hypergraph.goal_graph import GoalGraph
 
 
 def undominated(graph: GoalGraph, actions: Collection[int], cost: Callable[[int], int]) -> set[int]:
-    """Return the actions that stay: those that no other action dominates.
+    """Return the actions that no other action dominates.
 
-    An action dominates another if it has a subset of its preconditions, all its effects, and no greater cost.
-    In any tree, the dominating action can replace the dominated one, and the tree costs no more under the
-    whole list of objectives, since ``cost`` compares by all of them. Effects that no action needs do not
-    count. Of actions that dominate each other, one stays.
+    Action A dominates action B if the preconditions of A are a subset of those of B, A has all effects of B,
+    and A costs no more. Then A can replace B in any tree, and the tree costs no more: ``cost`` covers the
+    whole list of objectives. Effects that no action or goal needs do not count. Of actions that dominate each
+    other, one stays.
     """
     start = graph.start
     needed = {a: frozenset(o for o in graph.needs[a] if o not in start) for a in actions}
@@ -56,7 +56,7 @@ class _PreconditionTrie:
                 self._achievers.setdefault((node, o), []).append(action)
 
     def with_subset(self, needs: Sequence[int], effect: int) -> Iterator[int]:
-        """Yield the achievers of ``effect`` with a subset of some preconditions."""
+        """Yield the achievers of ``effect`` whose preconditions are a subset of ``needs``."""
         children, achievers = self._children, self._achievers
         nodes = [0]  # reached by subsets of the preconditions so far
         yield from achievers.get((0, effect), ())

@@ -23,12 +23,13 @@ class TooFineError(Exception):
 
 
 class ExactCosts:
-    """The cost of each action as one whole number, by which sums compare lexicographically.
+    """The cost of each action as one integer; sums of these costs compare lexicographically.
 
-    An additive objective is scaled to whole numbers and multiplied by more than the greatest sum of the
-    objectives after it. Where rates multiply, each factor of a coprime base has a rounded logarithm of forty
-    digits: equal products are then equal sums, and sums that differ by more than ``doubt`` compare exactly in
-    spite of rounding. ``doubt`` is 0 where nothing is rounded.
+    An additive objective is scaled to integers and multiplied by more than the greatest sum of the objectives
+    after it. Where rates multiply, logarithms are added: each factor of a coprime base of the rates has a
+    logarithm rounded to forty digits, so equal products have equal sums. ``doubt`` is greater than all
+    rounding errors: sums that differ by more compare exactly. It is 0 where nothing is rounded. Raises
+    :class:`TooFineError` for rates that are 0 or have large denominators.
     """
 
     def __init__(self, problem: Problem, objectives: Sequence[Objective], actions: Collection[int]) -> None:
@@ -52,9 +53,9 @@ class ExactCosts:
     def priced(
         self, counts: Callable[[int], int], price: int | Fraction, limit: int | None = None
     ) -> "ExactCosts":
-        """Return these costs plus a price on each unit, multiplied by the count of the unit.
+        """Return these costs with ``price * counts(unit)`` added to the cost of each unit.
 
-        Where the price is a fraction, all costs are multiplied by its denominator. With a ``limit``, a search
+        If the price is a fraction, all costs are multiplied by its denominator. With a ``limit``, a search
         ends as soon as a bound reaches the limit or a tree costs less.
         """
         units, costs = self._units, copy(self)
@@ -65,7 +66,7 @@ class ExactCosts:
 
     @property
     def limited(self) -> bool:
-        """Whether a search ends at any tree below the limit."""
+        """Whether there is a limit, so that a search ends at the first tree below it."""
         return self._limit is not None
 
     @property
@@ -103,7 +104,10 @@ class ExactCosts:
         return cost
 
     def first(self, total: int) -> int | Fraction:
-        """Return the bound on the first objective (for success, an upper one) by a lower bound on sums."""
+        """Turn a lower bound on total costs into a bound on the first objective.
+
+        The result is an upper bound for success.
+        """
         figure = total // self._factors[self._objectives[0]]
         if self._objectives[0] not in self._multiplied:
             return self.total(self._objectives[0], figure)
@@ -113,8 +117,9 @@ class ExactCosts:
     def met(self, cuts: Cuts, tree: Collection[int]) -> bool:
         """Return whether a cost partition proves this tree optimal, exactly.
 
-        The weight of each cut is the reduced cost of its cheapest action. Where rates multiply, weights and
-        reduced costs are recomputed as vectors of exponents of rates, which are exact.
+        With a limit, return whether the bound reaches the limit or the tree costs less. The weight of each
+        cut is the reduced cost of its cheapest action. Where rates multiply, weights and reduced costs are
+        recomputed exactly, as vectors of exponents of rates.
         """
         total = sum(map(self, tree))
         if self._limit is not None:
@@ -148,7 +153,7 @@ class ExactCosts:
         return not _large(proved) and order.sign(proved) >= 0
 
     def of(self, costs: Costs) -> int:
-        """Return the cost of a tree, which may be too great by the rounding error."""
+        """Return the cost of a tree from its costs by objective; rounding may make it too great."""
         total = 0
         for objective, factor in self._factors.items():
             measure = Fraction(costs.measure(objective))
@@ -164,11 +169,11 @@ class ExactCosts:
         return [(objective, self._figure(objective, action)) for objective in self._objectives]
 
     def total(self, objective: Objective, figure: int) -> int | Fraction:
-        """Return the cost by an additive objective that belongs to a scaled sum."""
+        """Return the cost by an additive objective for ``figure``, a sum of scaled costs."""
         return figure if objective.row.whole else Fraction(figure, self._steps[objective])
 
     def is_logarithm(self, figure: int, product: Fraction) -> bool:
-        """Return whether a sum of rounded logarithms, ``figure``, belongs to a product of rates."""
+        """Return whether ``figure``, a sum of rounded logarithms, is ``-log(product)`` up to rounding."""
         return abs(figure - _logarithm(product.denominator) + _logarithm(product.numerator)) < _ROUNDED
 
     def rate(self, action: int) -> Fraction:
@@ -192,7 +197,7 @@ def _large(vector: Sequence[int]) -> bool:
 
 
 class _Vectors:
-    """Costs as vectors: one coordinate for an additive objective, one for each rate where rates multiply."""
+    """Costs as vectors: a coordinate for each additive objective, and for each rate where rates multiply."""
 
     def __init__(self, costs: ExactCosts, coordinates: dict[Fraction, int]) -> None:
         self._costs, self._coordinates = costs, coordinates
@@ -242,7 +247,10 @@ def _coarse(rate: Fraction) -> int:
 
 
 def _weights(rates: set[Fraction]) -> dict[Fraction, int]:
-    """Return for each rate the sum of the rounded scaled logarithms of its coprime factors."""
+    """Return ``-log(rate)`` of each rate, scaled, as a sum of rounded logarithms of its coprime factors.
+
+    Raises :class:`TooFineError` for rates that are 0 or have large denominators.
+    """
     # logarithms at this scale distinguish rates up to such denominators for sure
     if not all(0 < rate <= 1 and rate.denominator <= 10**9 for rate in rates):
         raise TooFineError

@@ -14,10 +14,10 @@ Limit = tuple[Mapping[int, Fraction], Fraction]
 
 
 class ExactOptimum(NamedTuple):
-    """The optimum of a covering problem: the value of each column and the dual of each row, where above 0.
+    """The optimum of a covering problem: the value of each column and the dual of each row, without zeros.
 
-    ``value`` is the cost of the columns. It equals the sum of the duals of rows, less the sum of each limit's
-    dual times its amount.
+    ``x`` has the values, ``weights`` the duals. ``value`` is the cost of the solution. By duality, it equals
+    the sum of the duals of the covering rows, minus the dual of each limit times its amount.
     """
 
     x: dict[int, Fraction]
@@ -39,11 +39,14 @@ def exact_optimum(
 ) -> ExactOptimum | None:
     """Solve a covering problem over ordered costs exactly, from a basis near the optimum.
 
-    Each of the ``rows`` lists the columns that cover it. ``costs`` has the cost of each column, none below 0.
-    Before these rows come ``limits``: the amount that each column consumes, and the amount available. The
-    basis is given by its columns and by as many tight rows. Each step solves the basis anew, and Bland's rule
-    prevents cycling. ``None`` after too many steps, and where floats suggest a basis that is singular or
-    infeasible.
+    ``rows``: for each row, the columns that cover it.
+    ``costs``: the cost of each column, none below 0.
+    ``columns``, ``tight``: the first basis, as columns and as many tight rows.
+    ``limits``: the amount that each column consumes, and the amount available. Limits are numbered as rows
+    before ``rows``.
+
+    Each step solves the basis anew, and Bland's rule prevents cycling. ``None`` after too many steps, and
+    where a basis is singular or infeasible.
     """
     basic_columns, tight_rows = set(columns), set(tight)
     full = [{column: -amount for column, amount in amounts.items()} for amounts, _ in limits]
@@ -68,9 +71,9 @@ def exact_optimum(
 class _Basis:
     """A basis: columns and as many tight rows, with its primal and dual solution.
 
-    ``x`` are the values of the basic columns, by which the tight rows hold with equality; ``slack`` is the
-    slack of each row; ``weights`` are the duals of the tight rows, by which the basic columns have reduced
-    cost 0. Raises :class:`NowhereError` where there is no solution or a negative value or slack.
+    ``x`` are the values of the basic columns; with these, tight rows hold with equality. ``slack`` is the
+    slack of each row. ``weights`` are the duals of the tight rows; with these, basic columns have reduced
+    cost 0. Raises :class:`NowhereError` where the basis is singular, or a value or slack is negative.
     """
 
     def __init__(
@@ -135,9 +138,9 @@ class _Basis:
 def solve_exactly(matrix: Matrix, right: Mapping[int, Vector]) -> dict[int, Vector]:
     """Solve a sparse square system for several right-hand sides at once, by Gaussian elimination.
 
-    ``matrix[i]`` maps unknowns to coefficients, ``right[i]`` are the right-hand sides of row i. The shortest
-    row is eliminated first, which keeps systems of cuts sparse. Returns the values by unknown. Raises
-    :class:`NowhereError` where the system is singular.
+    ``matrix[i]`` maps the unknowns of row i to coefficients; ``right[i]`` has its right-hand sides. The
+    shortest row is eliminated first, which keeps systems of cuts sparse. Returns for each unknown its values,
+    one per right-hand side. Raises :class:`NowhereError` where the system is singular.
     """
     rows = {number: dict(row) for number, row in matrix.items()}
     right_sides = dict(right)

@@ -1,4 +1,4 @@
-"""Extensions of a tree for the goals alone by a unit of each required set."""
+"""Extensions: units added to a tree for the goals, so that it has a unit of each required set."""
 
 from collections.abc import Callable, Collection
 from dataclasses import replace
@@ -15,7 +15,7 @@ _FIRST = 500  # actions nearest to the required sets, among which an extension i
 def extended(
     graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int], max_actions: int
 ) -> set[int] | None:
-    """Return a tree extended by a unit of each required set and its derivation, following h_add.
+    """Return a tree with a unit of each required set added, and the actions that derive the units by h_add.
 
     ``None`` where no extension is found among ``max_actions`` actions.
     """
@@ -39,10 +39,10 @@ def extensions(
     limit: int,
     expired: Callable[[], bool],
 ) -> set[int]:
-    """Return the actions of extensions that cost up to ``limit`` where ``free`` actions cost nothing.
+    """Return a superset of the actions of extensions up to a cost of ``limit``; ``free`` ones cost nothing.
 
-    The path from each action of an extension to a required set belongs to the extension, so its cost counts
-    in full. So does the cost of the action's derivation, except free actions.
+    An action is excluded if its derivation and its path to a required set cost more. All actions on the path
+    belong to the extension, so they count in full, while free actions of the derivation count as 0.
     """
     towards, price = _towards_required(graph), _free(free, cost)
     all_actions = range(len(graph.needs))
@@ -64,6 +64,7 @@ def extensions(
 
 
 def _towards_required(graph: GoalGraph) -> GoalGraph:
+    """Return the graph with the required sets as its only goals."""
     return replace(graph, goals=tuple(graph.required), known_makers=graph.makers)
 
 

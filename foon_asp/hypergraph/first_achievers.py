@@ -1,8 +1,9 @@
 """First achievers of objects, by fact landmarks (Imai and Fukunaga 2015).
 
-An object that every derivation of another object makes is a *landmark* of it. An add effect that is a
-landmark of the action's preconditions was true before, so the action never achieves it first. Without these
-add effects the same derivations remain, and fewer actions cross a cut: actions that only undo others do not.
+Object L is a *landmark* of object O if every derivation of O makes L. If an add effect of an action is a
+landmark of one of its preconditions, the effect was true before, so the action never achieves it first. Such
+add effects can be removed: the same derivations remain, and fewer actions cross a cut. For example, an action
+that only undoes another does not cross it.
 """
 
 from collections import deque
@@ -15,9 +16,10 @@ _STEPS = 1000  # actions processed between two looks at the time
 
 
 class FirstAchievers:
-    """A graph all of whose actions can run, without add effects that they never achieve first.
+    """A graph without the add effects that an action never achieves first, computed at construction.
 
-    In large graphs, only landmarks among the first objects are computed; where time is up, no landmarks are.
+    All actions of the given graph can run. In large graphs, only landmarks among the first objects are
+    computed; where time is up, no add effect is removed.
     """
 
     def __init__(self, graph: Hypergraph, expired: Callable[[], bool] = lambda: False) -> None:
@@ -55,10 +57,10 @@ class FirstAchievers:
         )
 
     def widened(self, cut: frozenset[int]) -> frozenset[int]:
-        """Return a cut with objects added so that its crossing actions are just its first achievers.
+        """Return the cut of the given graph with the same landmark as this cut of :attr:`graph`.
 
-        For an action that achieves an object of the cut but not first, a precondition is added that has a
-        landmark in the cut.
+        If an action achieves an object of the cut, but never first, one of its preconditions has a landmark
+        in the cut. This precondition is added, so that the action does not cross the cut.
         """
         widened, inside, stack = set(cut), _bits(cut), list(cut)
         needs, before, landmarks = self._plain.needs, self._before, self._landmarks
@@ -80,10 +82,11 @@ def _bits(objects: Iterable[int]) -> int:
 
 
 def _landmarks(graph: Hypergraph, tracked: int, expired: Callable[[], bool]) -> list[int]:
-    """Return the landmarks of each object among the first ``tracked`` ones, as bit sets.
+    """Return the landmarks of each object as a bit set, among the first ``tracked`` objects alone.
 
-    A greatest fixpoint: an object has itself and the landmarks common to all its achievers, an achiever has
-    the landmarks of its preconditions (Keyder, Richter and Helmert 2010).
+    A greatest fixpoint (Keyder, Richter and Helmert 2010). The landmarks of an object are the object itself
+    and the landmarks that all its achievers share; the landmarks of an achiever are those of its
+    preconditions. All bit sets are empty where time is up.
     """
     own = [1 << o if o < tracked else 0 for o in range(graph.size)]
     landmarks: list[int | None] = [None] * graph.size

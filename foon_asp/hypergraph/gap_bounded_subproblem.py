@@ -16,10 +16,10 @@ from foon_asp.problem import Problem
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Subproblem:
-    """A question with cuts that hold for every tree, before any reduction.
+    """A question with landmark cuts from before any reduction, so that they hold for every tree.
 
-    ``remaining`` are the actions for which the cuts hold. With ``redundant``, trees may have units that lead
-    to no goal, since rules can require such units; ``costs`` then cover all actions.
+    ``remaining`` are the actions over which the cuts were found. With ``redundant``, trees may have units
+    that lead to no goal, since rules can require such units; ``costs`` then cover all actions.
     """
 
     problem: Problem
@@ -45,19 +45,19 @@ class Subproblem:
         return {achiever for o in needed.union(graph.goals) for achiever in graph.makers[o]}
 
     def rival_achievers(self, units: Iterable[int]) -> set[int]:
-        """Return the achievers of everything that some units achieve, these units among them."""
+        """Return all achievers of the objects that some units achieve, including these units."""
         graph, kitchen = self.graph, self.problem.kitchen
         made = {o for unit in units for o in graph.gives[unit] if o not in kitchen}
         return {achiever for o in made for achiever in graph.makers[o]}
 
     def left_of(self, numbers: Iterable[int]) -> set[int]:
-        """Return the units of this network by their numbers in the larger network, without removed ones."""
+        """Return the ids of units by public number, without removed units and units of other networks."""
         network, restriction = self.problem.network, self.problem.restriction
         units = {unit for number in numbers if (unit := network.unit_of_number(number)) is not None}
         return {unit for unit in units if restriction is None or not restriction.removed(unit)}
 
     def with_only_achievers(self, units: Iterable[int], max_units: int) -> set[int]:
-        """Add the sole achievers of preconditions to units, transitively, up to about ``max_units`` units."""
+        """Add the only achievers of preconditions to units, transitively; stop at about ``max_units``."""
         graph, kitchen = self.graph, self.problem.kitchen
         closed, waiting = set(units), list(units)
         while waiting and len(closed) < max_units:
@@ -70,11 +70,11 @@ class Subproblem:
         return closed
 
     def total(self, units: Iterable[int]) -> int:
-        """Return the cost of a tree, with its items where these are counted."""
+        """Return the cost of a tree, with the kitchen items that it takes if an objective counts these."""
         return sum(map(self.costs, self.actions(units)))
 
     def actions(self, units: Iterable[int]) -> set[int]:
-        """Return the actions of a tree: its units, and its items where these are counted."""
+        """Return the actions of a tree: its units and, if an objective counts items, those that it takes."""
         tree = set(units)
         if self.graph.start:
             return tree
@@ -82,7 +82,7 @@ class Subproblem:
         return tree | {self.graph.units + o for o in needed & self.problem.kitchen}
 
     def nearest(self, min_units: int) -> frozenset[int]:
-        """Return at least ``min_units`` units, the nearest to the goals by reduced cost, or all."""
+        """Return the units nearest to the goals by reduced cost: at least ``min_units``, or all."""
         return self._units(
             neighbourhood(
                 self.graph,
@@ -102,16 +102,16 @@ class Subproblem:
         return self._units(relevant)
 
     def units_within(self, limit: int, expired: Callable[[], bool]) -> frozenset[int]:
-        """Return a superset of the units of trees that cost up to ``limit``, coarser where time is up."""
+        """Return a superset of the units of trees that cost up to ``limit``; a larger one if time is up."""
         return self._units(self.actions_within(limit, expired))
 
     def actions_within(self, limit: int, expired: Callable[[], bool]) -> Collection[int]:
-        """Return a superset of the actions of trees that cost up to ``limit``, coarser where time is up.
+        """Return a superset of the actions of trees that cost up to ``limit``; a larger one where time is up.
 
-        The reduced cost of a tree is at most its cost less the bound. It includes at least the derivation of
-        each action and, in an irredundant tree, the path from the action to a goal. All trees up to the limit
-        remain, so cuts are found anew among the remaining actions. Raises ``KeyboardInterrupt`` where the
-        search for cuts is interrupted.
+        The reduced cost of a tree is at most ``limit`` minus the bound of the cuts. It includes the
+        derivation of each action and, in an irredundant tree, the path from the action to a goal; an action
+        for which these cost more is excluded. New cuts are then found among the remaining actions, as long as
+        that excludes many. Raises ``KeyboardInterrupt`` where the search for cuts is interrupted.
         """
         graph, costs, cuts = self.graph, self.costs, self.cuts
         remaining: Collection[int] = self._all() if self.redundant else self.remaining
@@ -164,7 +164,7 @@ class Subproblem:
 
 
 def reduced_costs_of(costs: ExactCosts, cuts: Cuts) -> Callable[[int], int]:
-    """Return the function from actions to their reduced costs by a cost partition."""
+    """Return a function from an action to its reduced cost by a cost partition."""
     reduced_costs = cuts.reduced_costs
     return lambda action: reduced_costs[action] if action in reduced_costs else costs(action)
 
@@ -176,9 +176,10 @@ def reduced_cost_fixing(
     limit: int,
     expired: Callable[[], bool],
 ) -> set[int]:
-    """Return the allowed actions that stay: those of irredundant trees of reduced cost up to ``limit``.
+    """Return a superset of the allowed actions that irredundant trees of reduced cost up to ``limit`` have.
 
-    Alternates h_max from the start and distances to the goals up to a fixpoint, or until time is up.
+    Alternates h_max from the initial objects with distances to the goals, until nothing changes or time is
+    up.
     """
     remaining = neighbourhood(
         graph, allowed, reduced_cost, limit, reachable=within_reach(graph, allowed, reduced_cost)

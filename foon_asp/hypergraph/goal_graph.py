@@ -10,13 +10,13 @@ from foon_asp.problem import Left, Objective, Problem, backwards
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class GoalGraph(Hypergraph):
-    """A hypergraph with goals; nothing is copied where the network has it already.
+    """A hypergraph with goals; it shares the lists of the network where possible.
 
-    Action ``a`` below ``units`` is the unit of that id. Where the items taken from the kitchen are counted,
-    taking item ``o`` is the action ``units + o``, without preconditions and with the effect ``o``, and
-    ``start`` is empty; elsewhere ``start`` is the kitchen. Add effects may be initial objects. ``goals`` are
-    without initial objects. A required set of a restriction is an additional object, which is an add effect
-    of each of its units, and a goal; ``required`` are these objects.
+    An action ``a`` below ``units`` is the unit with that id. If an objective counts the items taken from the
+    kitchen, ``start`` is empty and action ``units + o`` takes item ``o``: it has no preconditions and the
+    effect ``o``. Otherwise ``start`` is the kitchen. Add effects may be initial objects, ``goals`` are not.
+    Each required set of a restriction is an additional object, one of ``required``: it is a goal, and each
+    unit of the set achieves it.
     """
 
     units: int
@@ -25,16 +25,16 @@ class GoalGraph(Hypergraph):
     required: range
 
     def cone(self, allowed: Container[int] | None = None) -> tuple[set[int], set[int]]:
-        """Return the relevant actions and objects, by going backwards from the goals through allowed actions.
+        """Return the relevant actions and objects, found backwards from the goals through allowed actions.
 
-        Stops at initial objects; ``None`` allows all actions.
+        Stops at initial objects. If ``allowed`` is ``None``, all actions are allowed.
         """
         return backwards(self.goals, self.makers, self.needs, self.start, allowed)
 
     def thin(self, max_achievers: int, cost: Callable[[int], int]) -> "GoalGraph":
         """Return a graph in which each required set has at most ``max_achievers`` units, for estimates.
 
-        The units with the fewest preconditions that are not initial stay, the cheapest first; the achievers
+        The units with the fewest non-initial preconditions stay; of equal ones, the cheapest. The achievers
         of other objects do not change.
         """
 

@@ -27,7 +27,10 @@ class Bounded(NamedTuple):
 
 
 def bound(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide | None) -> Bounded:
-    """Raise the lower bound by landmark cuts; the candidates always contain a tree."""
+    """Raise the lower bound by landmark cuts over the candidates, which have to contain a tree.
+
+    ``guide`` is as for :func:`landmark_cuts`.
+    """
     costs = task.costs
     assert costs is not None
     max_members = task.tuning.landmark_actions * max(task.tuning.easy_actions, len(gap.candidates))
@@ -43,7 +46,7 @@ def bound(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide | None
 
 
 def tighten(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide | None, thorough: bool) -> Stage:
-    """Raise the lower bound by cuts, look for better trees by them, and fix candidates by reduced costs."""
+    """Raise the lower bound by cuts, look for better trees, and fix candidates by reduced costs."""
     gap, cuts = bound(task, gap, h_values, guide)
     yield gap
     if cuts.interrupted:
@@ -63,12 +66,12 @@ def tighten(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide | No
 
 
 def guide_by(task: Task, gap: Gap) -> Guide:
-    """Return h_max over the candidates, by which cuts are chosen."""
+    """Return the guide for landmark cuts: a function from reduced costs to h_max over the candidates."""
     return lambda reduced_cost: derive(task.graph, gap.candidates, reduced_cost, h_add=False).cost
 
 
 def meets(task: Task, gap: Gap, cuts: Cuts) -> bool:
-    """Return whether cuts prove the incumbent optimal, and no tree below ``task.below`` is wanted."""
+    """Return whether cuts prove the incumbent optimal and only better trees are wanted."""
     assert task.costs is not None
     return task.only_better(gap) and task.costs.met(cuts, gap.incumbent)
 
@@ -87,7 +90,7 @@ def improve(task: Task, gap: Gap, cuts: Cuts, thorough: bool) -> Gap:
 
 
 def improve_repeatedly(task: Task, gap: Gap) -> Stage:
-    """Look thoroughly for better trees, again from each new incumbent, within the budget of branching."""
+    """Look thoroughly for better trees from each new incumbent, within the budget of branching."""
     budget, previous = task.tuning.branching_budget, frozenset[int]()
     while gap.incumbent != previous and not task.expired():
         previous = gap.incumbent
@@ -118,14 +121,17 @@ def fix(task: Task, gap: Gap, cuts: Cuts) -> Gap:
 
 
 def prune_dominated(task: Task, gap: Gap) -> Gap:
-    """Exclude the candidates that others dominate, where that is wanted and costs are exact."""
+    """Exclude the candidates that others dominate, if the task asks for that and has exact costs."""
     if task.costs is None or Reduction.DOMINATED not in task.reductions:
         return gap
     return gap.with_candidates(undominated(task.graph, gap.candidates, task.costs))
 
 
 def prune_beside_landmarks(task: Task, gap: Gap) -> Gap:
-    """Exclude the candidates that are of no use beside action landmarks, where that is wanted."""
+    """Exclude the candidates that action landmarks make irrelevant, if the task asks for that.
+
+    Does nothing if there are many candidates.
+    """
     large = len(gap.candidates) > task.tuning.neighbourhood_actions
     if large or Reduction.FORCED not in task.reductions:
         return gap
@@ -133,9 +139,9 @@ def prune_beside_landmarks(task: Task, gap: Gap) -> Gap:
 
 
 def relevant(task: Task, gap: Gap) -> tuple[Gap, dict[int, int]] | None:
-    """Return the gap over the relevant actions that can run, and their h-values; ``None`` without a tree.
+    """Return the gap over the relevant actions that can run, and the h-value of each object.
 
-    Where the gap has no incumbent, the tree that follows h_max becomes it.
+    A gap without an incumbent gets the tree that follows h_max. ``None`` if there is no tree.
     """
     graph = task.graph
     cone, _ = graph.cone(task.scope)

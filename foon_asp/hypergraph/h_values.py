@@ -11,8 +11,8 @@ from foon_asp.problem import follow
 class Derivations(NamedTuple):
     """The h-values and best achievers of the objects that some actions reach, cheapest first.
 
-    ``cost[o]`` is the h-value of object ``o`` and ``maker[o]`` its best achiever; following best achievers is
-    acyclic. ``h_actions[a]`` is the h-value of action ``a``: of its preconditions, plus its own cost. Actions
+    ``cost[o]`` is the h-value of object ``o``, and ``maker[o]`` its best achiever; following best achievers
+    is acyclic. ``h_actions[a]`` is the cost of action ``a`` plus the h-value of its preconditions. Actions
     that cannot run, objects that are not reached, and initial objects are missing.
     """
 
@@ -31,8 +31,8 @@ def derive(
     """Return the h-values of the objects that actions reach, for costs of zero or more.
 
     With ``h_add``, the h-values of an action's preconditions are added, which counts shared actions more than
-    once; else the greatest counts (h_max), which is a lower bound on every derivation (Bonet and Geffner
-    2001). The generalized Dijkstra algorithm, with a bucket for each h-value.
+    once. Otherwise their maximum counts (h_max), which is a lower bound on every derivation (Bonet and
+    Geffner 2001). The generalized Dijkstra algorithm, with a bucket for each h-value.
     """
     price = cost.__getitem__ if isinstance(cost, Mapping) else cost
     needs, gives, start = graph.needs, graph.gives, graph.start

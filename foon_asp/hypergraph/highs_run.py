@@ -53,8 +53,8 @@ def silent_highs() -> Any:
 def run(highs: Any, expired: Callable[[], bool], whole: bool = False) -> bool:
     """Run HiGHS on its model; return whether it ended before time was up.
 
-    ``whole`` says that the model has whole numbers. Where time was up, the current solution can be read.
-    Raises ``KeyboardInterrupt`` where HiGHS does not stop, after which the instance must not be used.
+    ``whole`` says that the model has integer variables. If time was up, the current solution can be read.
+    Raises ``KeyboardInterrupt`` if HiGHS does not stop; the instance must not be used after that.
     """
     if whole or highs.getNumCol() + highs.getNumRow() > RUN.small_size:
         return _Run(highs, expired).wait()

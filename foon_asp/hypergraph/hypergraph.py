@@ -22,7 +22,7 @@ class Hypergraph:
 
     @cached_property
     def at_start(self) -> bytearray:
-        """A 1 for every initial object."""
+        """For each object, 1 if it is initial, else 0."""
         flags = bytearray(self.size)
         for o in self.start:
             flags[o] = True
@@ -58,7 +58,10 @@ class Hypergraph:
         return owners
 
     def reach(self, forbidden: frozenset[int] = frozenset()) -> bytearray:
-        """Return a 1 for every object reachable without the forbidden actions, in linear time."""
+        """Return for each object 1 if it is reachable without the forbidden actions, else 0.
+
+        Takes linear time.
+        """
         missing = list(self.missing)
         reached = bytearray(self.at_start)
         gives, takers = self.gives, self.takers

@@ -1,4 +1,4 @@
-"""The gap of a question: an incumbent, a lower bound, and the actions that trees between them can have."""
+"""The gap of a question: an incumbent, a lower bound, and the actions of trees that cost between the two."""
 
 from collections.abc import Collection, Generator
 from dataclasses import dataclass, replace
@@ -21,10 +21,12 @@ class FirstCuts(NamedTuple):
 class Evidence(NamedTuple):
     """The cuts and the case split that prove the lower bound of a gap.
 
-    ``first`` are the cuts found before any reduction, ``cuts`` the greedy cost partition of the greatest sum,
-    ``shared`` the optimal cost partition that raised the bound. ``tight`` are the tight cuts of all LP
-    solutions so far, in order. ``starting`` are the tight cuts of the last solution, with which the next
-    relaxation begins. ``cases`` are the actions branched on.
+    ``first``: the cuts found before any reduction.
+    ``cuts``: the greedy cost partition with the greatest bound.
+    ``shared``: the last optimal cost partition that raised the bound.
+    ``tight``: the tight cuts of all LP solutions so far, in order.
+    ``starting``: the tight cuts of the last LP solution; the next relaxation begins with them.
+    ``cases``: the actions branched on.
     """
 
     first: FirstCuts | None = None
@@ -40,12 +42,13 @@ NO_EVIDENCE = Evidence()
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Gap:
-    """The state of a question between two stages; a stage makes new ones, each smaller than the one before.
+    """The state of a question between two stages; each stage makes a smaller gap of it.
 
-    ``incumbent`` are the actions of the best tree so far, ``lower_bound`` bounds the cost of every tree, in
-    the units of :class:`ExactCosts`. ``candidates`` are the actions that better trees can have, and trees
-    that are as good where these are wanted. ``proved`` is true where the incumbent is proved optimal.
-    ``budget`` are the actions that branch and bound may still look at.
+    ``incumbent``: the actions of the best tree so far.
+    ``lower_bound``: a lower bound on the cost of every tree, in the units of :class:`ExactCosts`.
+    ``candidates``: the actions that better trees can have, and equally good trees if these are wanted.
+    ``budget``: the number of actions that branch and bound may still look at.
+    ``proved``: whether the incumbent is proved optimal.
     """
 
     incumbent: frozenset[int]
@@ -64,11 +67,11 @@ class Gap:
         return replace(self, candidates=candidates)
 
     def raised(self, lower_bound: int, evidence: Evidence) -> "Gap":
-        """Return the gap with new evidence, and with a lower bound where that is greater."""
+        """Return the gap with new evidence, and with this lower bound if it is greater."""
         return replace(self, lower_bound=max(self.lower_bound, lower_bound), evidence=evidence)
 
     def closed(self) -> "Gap":
-        """Return the gap whose incumbent is proved optimal."""
+        """Return the gap with its incumbent marked as proved optimal."""
         return replace(self, proved=True)
 
 

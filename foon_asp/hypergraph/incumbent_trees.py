@@ -15,7 +15,8 @@ if TYPE_CHECKING:  # few questions need it
 def irredundant(graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int]) -> set[int]:
     """Return an irredundant subset of a tree, by removing redundant actions, expensive ones first.
 
-    All of the actions can run. Actions that the cheapest derivations (h_add) do not use are removed first.
+    All actions of the tree have to be able to run. Actions that the cheapest derivations by h_add do not use
+    are removed before any others.
     """
     support = Support(graph, tree, cost)
     waiting = [(-cost(action), action) for action in support.actions]
@@ -52,7 +53,7 @@ def guessed(
 
 
 def _scaled(cost: int, share: float) -> int:
-    """Return a share of a cost in thousandths, in whole numbers since costs may exceed floats."""
+    """Return ``1000 * cost * share``, rounded down; computed in integers, since costs may exceed floats."""
     return cost * int(share * 1_000_000) // 1000
 
 
@@ -87,10 +88,11 @@ def perturbation_search(
 ) -> set[int]:
     """Return a cheaper tree found by perturbation search, else ``tree``; ends at a cost of ``enough``.
 
-    Each cost is multiplied by a random factor from 0.5 to 1.5. Half of the time, a random part of the current
-    tree costs nothing, and perhaps only a random part of the other actions is allowed. Otherwise, costs are
-    also multiplied by one less the LP values ``shares``. A tree of equal cost becomes the current tree. Ends
-    when each action was looked at ``tries`` times after the last improvement.
+    Each round derives a tree at perturbed costs: each cost is multiplied by a random factor from 0.5 to 1.5.
+    In half of the rounds, a random part of the current tree also costs nothing, and sometimes only a random
+    part of the other actions is allowed. In the other rounds, costs are also multiplied by 1 minus the LP
+    values ``shares``. A tree of equal cost becomes the current tree. Ends when each action was looked at
+    ``tries`` times since the last improvement.
     """
     best = last = tree
     total = sum(map(cost, tree))
@@ -128,8 +130,9 @@ def improved(
 ) -> set[int]:
     """Return a cheaper tree among the actions by local search, else ``tree``.
 
-    First the trees that follow h_add and h_max, by costs and by reduced costs; then, if ``thorough``, for
-    each action of the incumbent a tree without it, in which the other actions of the incumbent cost nothing.
+    First tries the trees that follow h_add and h_max, by costs and by reduced costs. If ``thorough``, then
+    tries to do without each action of the best tree: derives a tree without this action, while the other
+    actions of the best tree cost nothing.
     """
     best = tree
     total = sum(map(cost, best))

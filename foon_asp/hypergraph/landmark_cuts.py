@@ -1,8 +1,7 @@
 """Lower bounds by LM-cut (Helmert and Domshlak 2009), looking only at actions that its cuts touch.
 
-Landmarks are as in :mod:`foon_asp.hypergraph.cut`: every derivation uses one of the actions that achieve an
-object of a set with a goal in it and need none of the set. Each landmark takes from all of its actions the
-least of their reduced costs.
+Landmarks are as in :mod:`foon_asp.hypergraph.cut`. The weight of each landmark is the least reduced cost of
+its actions; it is subtracted from the reduced costs of all of them.
 """
 
 import math
@@ -17,9 +16,8 @@ from foon_asp.hypergraph.hypergraph import Hypergraph
 class WeightedCut(NamedTuple):
     """A cut with its landmark ``members``, its weight, and the cheapest landmark action.
 
-    ``weight`` is the reduced cost of the ``cheapest`` action. Cuts form chains: every landmark action of
-    the cut ``after`` needs an object of this cut. So this cut includes the objects of ``after``; ``own``
-    are its other objects.
+    ``weight`` was the reduced cost of the ``cheapest`` action when the cut was found. Cuts form chains, to
+    save memory: the objects of this cut are ``own`` and all objects of the earlier cut ``after``.
     """
 
     own: frozenset[int]
@@ -30,7 +28,7 @@ class WeightedCut(NamedTuple):
 
     @property
     def objects(self) -> frozenset[int]:
-        """All objects, with a target among them; computed on demand, since the chain of cuts may be long."""
+        """All objects of the cut, among them a target; computed on demand, since the chain may be long."""
         objects, cut = [self.own], self.after
         while cut is not None:
             objects.append(cut.own)
@@ -42,8 +40,8 @@ class Cuts(NamedTuple):
     """A cost partition over cuts: the sum ``bound`` of its weights is a lower bound on every derivation.
 
     ``reduced_costs[a]`` is the reduced cost of action ``a``; actions that are missing have their full cost.
-    ``hopeless`` says that there is no derivation at all by the actions allowed, ``interrupted`` that ctrl-C
-    ended the search for more cuts: the bound holds, and ``reduced_costs`` are of no use.
+    ``hopeless`` says that the allowed actions have no derivation. ``interrupted`` says that ctrl-C ended the
+    search for cuts: the bound holds, but ``reduced_costs`` must not be used.
     """
 
     bound: int
@@ -54,11 +52,11 @@ class Cuts(NamedTuple):
 
 
 class _Level:
-    """Objects that every derivation makes, and the goal zone around the last of them.
+    """Objects that every derivation makes, and the goal zone of the last of them.
 
-    The goal zone is the set of objects from which its cuts are made. ``edge`` are actions that achieve an
-    object of the zone, need none of its objects and have a reduced cost above 0. ``cut`` is the latest cut of
-    this zone or, without one, the cut after the whole level.
+    ``zone``: the goal zone, a set of objects that grows from the last object; cuts are made of it.
+    ``edge``: the actions of reduced cost above 0 that achieve an object of the zone.
+    ``cut``: the latest cut of this zone; before the first, the latest cut ``after`` of the level below.
     """
 
     def __init__(self, objects: Sequence[int], after: WeightedCut | None) -> None:
@@ -74,7 +72,7 @@ class _Level:
 
 
 class _Target:
-    """A target with a stack of levels; the objects of each level are made before those of the level below.
+    """A target with a stack of levels; objects of a level are made before objects of the level below.
 
     ``outer_zones`` are the objects in the zones of all levels except the topmost.
     """
@@ -84,7 +82,10 @@ class _Target:
         self.outer_zones: set[int] = set()
 
     def level(self, free: Container[int]) -> _Level | None:
-        """Return the topmost level whose last object is not free; ``None`` where the target is free."""
+        """Return the topmost level whose last object is not free; ``None`` if the target itself is free.
+
+        Removes the free objects above it. An object is free if it can be made at reduced cost 0.
+        """
         while self.levels:
             level = self.levels[-1]
             if level.objects and level.objects[-1] not in free:
@@ -99,7 +100,7 @@ class _Target:
         return None
 
     def add(self, needed: Sequence[int]) -> None:
-        """Add a level with the common preconditions of the latest landmark; its last object comes first."""
+        """Add a level of ``needed``, the common preconditions of the latest landmark; the last is first."""
         if needed:
             self.outer_zones |= self.levels[-1].zone
             self.levels.append(_Level(needed, self.levels[-1].cut))
@@ -117,12 +118,15 @@ def landmark_cuts(
 ) -> Cuts:
     """Find landmark cuts and a cost partition by LM-cut, until the targets have reduced cost 0.
 
-    Ends early when the landmarks have about ``max_members`` actions together, and where time is up. Only
-    ``allowed`` actions count, and all costs are above zero. ``guide_costs`` are h-values of objects, infinite
-    where missing: a cut passes through the precondition of the greatest h-value, as in LM-cut. Targets take
-    turns, the greatest h-value first, so that the cuts of one do not take the costs that others need.
-    ``guide`` computes h-values from reduced costs, and is called now and then. The set of objects of reduced
-    cost 0 only grows, so the time is linear in what the cuts touch, not in the size of the graph.
+    ``allowed``: the only actions that count. All of them cost more than 0.
+    ``guide_costs``: h-values of objects, infinite where missing. As in LM-cut, a cut passes through the
+    precondition of the greatest h-value.
+    ``guide``: computes new h-values from reduced costs, and is called now and then.
+    ``max_members``: ends the search when the landmarks have about this many actions together.
+
+    Ends early where time is up, too. Targets take turns, the greatest h-value first, so that the cuts of one
+    target do not use up the costs that others need. The set of objects of reduced cost 0 only grows, so the
+    time is linear in the parts of the graph that cuts touch.
     """
     search = _Search(graph, allowed, cost, guide_costs)
     queue = deque(_Target(o) for o in sorted(targets, key=search.guide_key, reverse=True))
@@ -212,7 +216,7 @@ class _Search:
     def _grow_zone(self, level: _Level, outer_zones: set[int]) -> list[int] | None:
         """Grow a zone through actions of reduced cost 0, and return its new objects.
 
-        ``None`` where an action of the zone has become free, so that the zone has to start anew.
+        ``None`` if all preconditions of such an action are free: then the zone has to start anew.
         """
         needs, achievers, reduced_costs = self._graph.needs, self._graph.makers, self.reduced_costs
         zone, edge = level.zone, level.edge
@@ -245,7 +249,7 @@ class _Search:
 
 
 class _Free:
-    """The objects reachable by actions of reduced cost 0, updated incrementally."""
+    """The free objects: those reachable by actions of reduced cost 0, updated incrementally."""
 
     def __init__(self, graph: Hypergraph) -> None:
         self._graph = graph
@@ -259,7 +263,7 @@ class _Free:
         return [o for o in self._graph.needs[action] if o not in free and o not in start]
 
     def release(self, action: int) -> None:
-        """Add an action of reduced cost 0, which makes its add effects free once its preconditions are."""
+        """Add an action of reduced cost 0: once its preconditions are free, its add effects become free."""
         lacking = self.lacking(action)
         self._missing[action] = len(lacking)
         for o in lacking:

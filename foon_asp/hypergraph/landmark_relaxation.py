@@ -1,7 +1,7 @@
 """The linear relaxation of the hitting set problem over landmark cuts, which grows by the cuts it violates.
 
 Each action is a column, each cut a row: its landmark actions add up to at least 1. Cuts are looked for in the
-graph of first achievers, where fewer actions cross them, and stated in the whole graph.
+graph of first achievers, where fewer actions cross them, and returned as cuts of the whole graph.
 """
 
 import math
@@ -22,10 +22,12 @@ PARTS = 720720  # of 1: most weights are simple fractions
 class LandmarkRelaxation:
     """The relaxation over some actions, which all can run; objects and actions are numbered anew.
 
-    ``actions`` are the old numbers of the actions. ``graph`` has first achievers only, ``targets`` are its
-    targets, ``costs`` the costs of actions. The columns of ``covering`` cost ``relative``: the costs divided
-    by the greatest one, ``dearest``, as costs may be too great for floats. ``rows`` has the landmark of each
-    of the ``cuts``.
+    ``actions``: the old number of each action.
+    ``graph``, ``targets``: the subgraph of first achievers, and its targets.
+    ``costs``, ``dearest``: the cost of each action, and the greatest cost.
+    ``relative``: costs divided by the greatest one, since costs may be too great for floats.
+    ``covering``: the linear program, with ``relative`` as the costs of columns.
+    ``cuts``, ``rows``: the objects of each cut, and its landmark.
     """
 
     def __init__(
@@ -53,13 +55,13 @@ class LandmarkRelaxation:
         self._whole_cuts: dict[frozenset[int], frozenset[int]] = {}
 
     def add(self, cut: frozenset[int]) -> None:
-        """Add a row for a cut: all actions that cross it."""
+        """Add a row for a cut, given by objects: its columns are the landmark actions."""
         self.rows.append(self._np.array(self.members(cut), dtype=self._np.int32))
         self.cuts.append(cut)
         self.covering.add(self.rows[-1])
 
     def add_known(self, cuts: Iterable[Iterable[int]]) -> None:
-        """Add rows for cuts of the whole graph."""
+        """Add rows for cuts of the whole graph, each given by its objects."""
         position = {o: i for i, o in enumerate(self._objects)}
         for objects in cuts:
             self.add(frozenset(position[o] for o in objects if o in position))
@@ -69,7 +71,10 @@ class LandmarkRelaxation:
         return self._achievers.members(cut)
 
     def whole(self, cut: frozenset[int]) -> frozenset[int]:
-        """Return the objects of a cut by their numbers in the whole graph, where it has the same landmark."""
+        """Return the cut of the whole graph with the same landmark as a cut of this subgraph.
+
+        The result has object numbers of the whole graph.
+        """
         if cut not in self._whole_cuts:
             self._whole_cuts[cut] = frozenset(self._objects[o] for o in self._achievers.widened(cut))
         return self._whole_cuts[cut]
@@ -84,8 +89,8 @@ class LandmarkRelaxation:
     ) -> tuple[int, int]:
         """Add disjoint cuts that an LP solution violates, until ``budget`` actions were looked at.
 
-        ``shares`` is the array of the LP value of each action, which is changed in place. Cuts have no action
-        of ``used``. Returns the number of cuts added, and of actions looked at.
+        ``shares`` is the array of the LP value of each action, which is changed in place. No landmark has an
+        action of ``used``. Returns the number of cuts added and the number of actions looked at.
         """
         added = looks = 0
         for cutter in cutters:
@@ -107,9 +112,9 @@ class LandmarkRelaxation:
     def shared_out(self, dual_values: Iterable[tuple[int, float]], capacity: Any) -> dict[int, int]:
         """Return a feasible weight in parts for each row: its dual value rounded, limited by ``capacity``.
 
-        Capacity that rounding leaves over is used greedily. ``capacity`` has the cost of each action in
-        parts, and in the end its reduced cost. The weights add up to a lower bound, whatever the dual values
-        are.
+        ``dual_values`` are pairs of row and dual value. ``capacity`` is an array of the cost of each action
+        in parts; weights are subtracted from it, so that reduced costs remain. Afterwards, weights are raised
+        greedily while capacity is left. They add up to a lower bound, whatever the dual values are.
         """
         of_1 = self.dearest * PARTS
         wanted = {row: round(Fraction(w) * of_1) if 0 < w < math.inf else 0 for row, w in dual_values}

@@ -10,11 +10,11 @@ from foon_asp.hypergraph.goal_graph import GoalGraph
 def within_reach(
     graph: GoalGraph, allowed: Container[int], reduced_cost: Callable[[int], int]
 ) -> Callable[[int, float], bool]:
-    """Return a test whether allowed actions can make an object at a reduced cost (h_max) up to a limit.
+    """Return a function of an object and a limit: whether allowed actions make the object at such an h_max.
 
-    ``derive`` computes h_max of all objects at once. The test computes it backwards from the object asked
-    about, and prunes by the limit, which excludes most of a large network where the limit is low. The test
-    returns ``True`` where it would go too deep or take too long.
+    ``derive`` computes h_max of all objects at once. This function goes backwards from one object, and prunes
+    by the limit; with a low limit, it looks at a small part of a large network. It returns ``True`` where it
+    would go too deep or take too long.
     """
     needs, achievers, start = graph.needs, graph.makers, graph.start
     lower_bounds: dict[int, float] = {}  # on the h_max of objects

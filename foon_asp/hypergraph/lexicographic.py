@@ -20,7 +20,7 @@ _DIGITS = 60  # of a logarithm, at first
 
 
 class Lexicographic:
-    """An order on vectors; ``levels`` names for each level its rates, or ``None`` where it counts.
+    """An order on cost vectors; ``levels`` has for each level its rates, or ``None`` if the level counts.
 
     Rates lie strictly between 0 and 1. ``width`` is the number of coordinates of a vector.
     """
@@ -46,7 +46,7 @@ class Lexicographic:
     def sign(self, vector: Sequence[Fraction | int]) -> int:
         """Return -1, 0 or 1 for a cost below, equal to or above the cost of nothing, exactly.
 
-        A vector that is not zero can cost nothing, because 7/10 * 7/10 divided by 49/100 is 1.
+        A vector with coordinates other than 0 can cost nothing: 7/10 * 7/10 divided by 49/100 is 1.
         """
         for level, coordinates in self._parts(vector):
             rates = self.levels[level]
@@ -73,7 +73,7 @@ class Lexicographic:
         ]
 
     def _parts(self, vector: Sequence[Fraction | int]) -> Iterator[tuple[int, Sequence[Fraction | int]]]:
-        """Yield the coordinates of each level."""
+        """Yield each level, by index, and its coordinates."""
         begin = 0
         for level, measures in enumerate(self._measures):
             end = begin + len(measures)
@@ -86,7 +86,7 @@ class Lexicographic:
     def _sign_of_product(
         self, level: int, rates: Sequence[Fraction], exponents: Sequence[Fraction | int]
     ) -> int:
-        """Compare a product of powers of a level's rates with 1: -1 where it is above 1."""
+        """Return the sign of ``-log`` of a product of powers of a level's rates: -1 for a product above 1."""
         if not any(exponents):
             return 0
         large = 10**15  # with larger exponents, lost digits could matter
@@ -111,7 +111,7 @@ class Lexicographic:
 
     @cached_property
     def _factors(self) -> list[dict[int, dict[int, int]]]:
-        """For each level, the factors of a coprime base, each with its exponent in rates by their index."""
+        """For each level, a coprime base of its rates; each factor has its exponents by index of the rate."""
         factors_by_level: list[dict[int, dict[int, int]]] = []
         for rates in self.levels:
             base = coprime_base(n for rate in rates or () for n in rate.as_integer_ratio())

@@ -1,12 +1,12 @@
 """Proofs that no derivation costs less than the incumbent: cost partitions over landmarks, and branching.
 
-Weights on landmarks that overload no action (the weights of the landmarks of an action add up to at most its
-cost) are a cost partition: their sum is a lower bound on the cost of every derivation. The best weights solve
-the dual of the hitting set relaxation; landmarks are added as long as the LP solution violates one (Bonet and
-Helmert 2010; Haslum, Slaney and Thiébaux 2012 for the hitting sets).
+A cost partition gives each landmark a weight such that, for each action, the weights of its landmarks add up
+to at most its cost. Then the sum of all weights is a lower bound on the cost of every derivation. The best
+weights solve the dual of the hitting set relaxation; landmarks are added as long as the LP solution violates
+one (Bonet and Helmert 2010; Haslum, Slaney and Thiébaux 2012 for the hitting sets).
 
 A limit on a resource is one more row of the relaxation: an action that consumes the resource may carry more
-weight, and the weight of the limit times its amount is taken from the bound.
+weight, and the weight of the limit times its amount is subtracted from the bound.
 """
 
 import math
@@ -47,17 +47,17 @@ class Rules(Protocol):
     """Rules on derivations that neither targets nor limits express."""
 
     def bars(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
-        """Return by rule the actions that it bars.
+        """Return for each rule, by number, the actions that it bars.
 
-        A derivation with the used actions and no action of ``without`` breaks the rule if it has a barred
-        action.
+        A derivation with the used actions and no action of ``without`` breaks the rule if it also has a
+        barred action.
         """
 
     def breaking(self, derivation: frozenset[int]) -> Sequence[int]:
-        """Return actions of a derivation that together break a rule; empty where it keeps to all rules."""
+        """Return actions of a derivation that together break a rule; empty if it breaks none."""
 
     def exceeded(self, derivation: frozenset[int]) -> Limit | None:
-        """Return a limit that a derivation exceeds, each limit once; ``None`` without a further one."""
+        """Return a limit that a derivation exceeds and that was not returned before; ``None`` without one."""
 
 
 class CheaperError(Exception):
@@ -75,11 +75,14 @@ class _TimeUpError(Exception):
 class Prover:
     """Searches for optimality proofs over one hypergraph, its targets and the cost of each action.
 
-    Derivations with an action of ``forbidden`` do not count, nor do derivations that exceed one of the
-    ``limits`` or break one of the ``rules``. ``expired`` returns whether to give up; it is called between
-    steps that take milliseconds on thousands of actions. Costs are multiples of the positive ``multiples``,
-    coordinate by coordinate, so that bounds are rounded up. ``known_cuts`` are objects of cuts to begin
-    with.
+    ``costs``, ``order``: the cost of each action as a vector, and the order of these vectors.
+    ``forbidden``: actions; derivations with one of them do not count.
+    ``expired``: returns whether to give up. It is called between steps that take milliseconds on thousands of
+    actions.
+    ``known_cuts``: cuts to begin with, each by its objects.
+    ``limits``, ``rules``: derivations that exceed a limit or break a rule do not count.
+    ``multiples``: a number per coordinate; all costs are multiples of it, so bounds are rounded up to one. 0
+    or a missing number means no rounding.
     """
 
     def __init__(
@@ -117,8 +120,8 @@ class Prover:
     def prove(self, derivation: Iterable[int], cases: Cases = None) -> Proof | None:
         """Return a proof that no derivation costs less than this one; ``None`` where that takes too long.
 
-        The proof branches on ``cases`` first, where the known cuts do not suffice. Raises
-        :class:`CheaperError` when a cheaper derivation is found.
+        Known cuts are tried first; if they do not suffice, the proof branches on ``cases``. Raises
+        :class:`CheaperError` if a cheaper derivation is found.
         """
         try:
             goal, nothing = self._total(derivation), frozenset[int]()
@@ -127,7 +130,7 @@ class Prover:
             return None
 
     def prove_none(self) -> Proof | None:
-        """Return a proof that there is no derivation; ``None`` where that takes too long or one exists."""
+        """Return a proof that no derivation exists; ``None`` if one exists or the proof takes too long."""
         try:
             return self._prove(None, frozenset(), self._forbidden)
         except _TimeUpError:
@@ -136,8 +139,8 @@ class Prover:
     def relax(self, derivation: Iterable[int]) -> tuple[Packing, Vector] | None:
         """Return the optimal cost partition of the relaxation at the root and its sum, a lower bound.
 
-        To exceed a limit costs a solution much more than ``derivation``. ``None`` where time was up, and
-        where the targets cannot be reached.
+        The relaxation may exceed limits, at a cost far above that of ``derivation``. ``None`` where time was
+        up, and where the targets cannot be reached.
         """
         nothing: frozenset[int] = frozenset()
         barred = self._bars(nothing, self._forbidden).values()
@@ -160,10 +163,10 @@ class Prover:
         cases: Cases = None,
         at_root: bool = False,
     ) -> Proof:
-        """Return a proof that derivations with the used and no forbidden actions cost at least ``goal``.
+        """Return a proof that derivations with all used and no forbidden actions cost at least ``goal``.
 
-        With ``None`` as the goal, it proves that there is no such derivation. ``known_cuts`` are tried first.
-        ``at_root`` is true before any branching, but perhaps after reduced-cost fixing.
+        If the goal is ``None``, it proves that there is no such derivation. ``known_cuts`` are tried first.
+        ``at_root`` is true before any branching; there may have been reduced-cost fixing.
         """
         targets = [*self._targets, *(o for action in sorted(used) for o in self._graph.needs[action])]
         bars = self._bars(used, forbidden)
@@ -237,9 +240,9 @@ class Prover:
         )
 
     def rounded(self, bound: Vector) -> tuple[Vector, int | None]:
-        """Round up a bound at its first coordinate that is no multiple of the step of costs.
+        """Round up a bound at its first coordinate that is no multiple of its number in ``multiples``.
 
-        Returns the bound and the index of the coordinate, ``None`` where no coordinate was rounded.
+        Returns the bound and the index of the rounded coordinate, ``None`` if no coordinate was rounded.
         """
         for i, (coordinate, multiple) in enumerate(zip(bound, self._multiples, strict=False)):
             if multiple and coordinate % multiple:
@@ -274,11 +277,12 @@ class Prover:
         alone: bool,
         at_root: bool,
     ) -> tuple[Proof | None, Sequence[Cut]]:
-        """Return a proof of ``goal``, if one is found without exact arithmetic, and all cuts.
+        """Return a proof of ``goal`` found without exact linear programming, else ``None``; and all cuts.
 
-        A greedy cost partition over ``known_cuts`` is tried first, then reduced-cost fixing by it, which
-        needs a proof for the ``others``. Unless ``alone``, and where costs are multiples of ``step``, both
-        are tried again with the rounded dual solution of the LP, and at the root :func:`branched` comes last.
+        Tries a greedy cost partition over ``known_cuts``, then reduced-cost fixing by it; ``others`` proves
+        the goal for derivations without the fixed actions. Then both are tried with the rounded dual solution
+        of the LP, and at the root :func:`branched` comes last. With ``alone`` or a ``step`` of 0, the LP is
+        not used.
         """
         targets = set(cutter.targets)
         known_cuts = [cut for cut in known_cuts if not targets.isdisjoint(cut)]
@@ -314,7 +318,10 @@ class Prover:
     def _optimal_partition(
         self, cutter: Cutter, cost: Callable[[int], int], known_cuts: Iterable[frozenset[int]], enough: int
     ) -> SharedCosts | None:
-        """Return the optimal cost partition, or one by which enough actions are above the cutoff."""
+        """Return the optimal cost partition, or an earlier one that puts many actions above the cutoff.
+
+        ``enough`` is the bound that is needed. ``None`` where there is no partition.
+        """
         partitioning = CostPartitioning(
             self._graph, cutter.targets, cutter.actions, cost, self._expired, known_cuts
         )
@@ -328,7 +335,10 @@ class Prover:
                 return shared
 
     def _step(self) -> Fraction:
-        """Return the step that all costs are multiples of, where they are one number each; else 0."""
+        """Return a number that all costs are multiples of; 0 for costs of several coordinates.
+
+        Also 0 if there are limits or rules.
+        """
         constrained = self._limits or self._rules is not None
         one_number = len(self._multiples) == 1 == len(self._order.zero)
         return self._multiples[0] if one_number and not constrained else Fraction(0)
@@ -344,9 +354,10 @@ class Prover:
         known_cuts: Collection[frozenset[int]],
         step: Fraction,
     ) -> Proof | None:
-        """Return a proof by reduced-cost fixing; ``None`` where too few actions are above the cutoff.
+        """Return a proof by reduced-cost fixing; ``None`` if too few actions are above the cutoff.
 
-        A derivation with an action costs at least the sum of the weights and the reduced cost of the action.
+        A derivation with an action costs at least the sum of the weights plus the reduced cost of the action.
+        Also ``None`` if ``step`` is 0.
         """
         if not step:
             return None
@@ -360,12 +371,12 @@ class Prover:
         return CostFixing(tuple(sorted(needed)), packing._replace(rounded=0), proof) if needed else proof
 
     def _crossing(self, proof: Proof) -> Iterator[int]:
-        """Return the actions that cross cuts of a proof, including the fixed ones."""
+        """Yield the actions that cross cuts of a proof, including fixed actions."""
         for objects in {cut.objects for cut in cuts_of(proof)}:
             yield from self._members(frozenset(objects))
 
     def _widened(self, cutter: Cutter, objects: Iterable[int]) -> Cut:
-        """Return a cut, with more objects if an action that cannot run crosses it."""
+        """Return a cut; objects are added if an action that cannot run crosses it."""
         inside = frozenset(o for o in objects if not self._graph.at_start[o])
         members = cutter.among(self._members(inside))
         return cutter.widened(inside) if members is None else Cut(tuple(sorted(inside)), members)
@@ -373,7 +384,7 @@ class Prover:
     def _searched(
         self, cutter: Cutter, goal: Vector, known_cuts: Sequence[Cut], step: Fraction
     ) -> Proof | None:
-        """Return the proof by :func:`branched`, with cuts widened to all actions; ``None`` without one."""
+        """Return a proof by :func:`branched`, its cuts valid for all actions; ``None`` without a proof."""
         if not step:
             return None
         result = branched(
@@ -407,7 +418,7 @@ class Prover:
         """Partition costs greedily: each cut in turn gets the least reduced cost of its landmark actions.
 
         Each cut comes with the maximum of its weight, ``None`` for no maximum. Returns the cost partition,
-        and the reduced costs of the landmark actions.
+        and the reduced costs of all landmark actions.
         """
         reduced_costs: dict[int, Vector] = {}
         weights: list[tuple[Cut, Vector]] = []
@@ -424,7 +435,7 @@ class Prover:
         return Packing(tuple(weights), rounded=rounded), reduced_costs
 
     def _reaches(self, packing: Packing, goal: Vector) -> bool:
-        """Return whether the weights of a cost partition add up to a goal, rounded up."""
+        """Return whether the sum of the weights of a cost partition, rounded up, is at least ``goal``."""
         value, _ = self.rounded(self._order.total(weight for _, weight in packing.weights))
         return self._order.compare(value, goal) >= 0
 
@@ -433,9 +444,9 @@ class Prover:
 
 
 class _Node:
-    """The relaxation at one node of the branching, a column for each action and a row for each cut.
+    """The relaxation at one node of the branching: a column for each action, a row for each limit and cut.
 
-    ``shares`` are the LP values of the columns in the last solution, ``cuts`` the cuts of the rows.
+    ``shares`` are the LP values of the columns in the last solution, ``cuts`` the cuts in order of rows.
     """
 
     def __init__(self, prover: Prover, cutter: Cutter, used: frozenset[int], goal: Vector | None) -> None:
@@ -460,7 +471,10 @@ class _Node:
         self.shares: Sequence[float]
 
     def _limited(self, row: int, limit: Limit) -> Limit:
-        """Return a limit over the columns without the used actions; its last column is the excess."""
+        """Return limit number ``row`` over columns, reduced by the amounts of the used actions.
+
+        An additional column is the excess over the limit.
+        """
         amounts, max_amount = limit
         columns = {self._columns[a]: amount for a, amount in amounts.items() if a in self._columns}
         remaining = max_amount - sum(amounts[a] for a in self._used if a in amounts)
@@ -475,14 +489,14 @@ class _Node:
         )
 
     def suffices(self, value: Vector, enough: Vector | None) -> bool:
-        """Return whether a bound is at least ``enough``; ``None`` asks for a bound above 0."""
+        """Return whether a bound is at least ``enough`` or, if that is ``None``, whether it is above 0."""
         order = self._prover._order
         if enough is None:
             return order.sign(value) > 0
         return order.compare(self._prover.rounded(value)[0], enough) >= 0
 
     def relax(self, enough: Vector | None) -> ExactOptimum | None:
-        """Add cuts until the LP solution violates none that is found, or the bound is enough.
+        """Add cuts until the bound is ``enough``, or no cut is found that the LP solution violates.
 
         Returns the exact optimum of the rows; ``None`` where exact arithmetic fails.
         """
@@ -510,7 +524,7 @@ class _Node:
             raise _TimeUpError
 
     def _share(self, x: Sequence[float]) -> None:
-        """Record an LP solution, with unconstrained actions of cost 0 at 1."""
+        """Record an LP solution; actions that cost 0 get the value 1 if there are no limits and rules."""
         self.shares = [*x]
         for column in self._free:
             self.shares[column] = 1.0
@@ -526,7 +540,7 @@ class _Node:
         )
 
     def undecided(self) -> int | None:
-        """Return the most fractional action, the most expensive of several; ``None`` where all are whole."""
+        """Return the most fractional action, of equal ones the most expensive; ``None`` without one."""
         halves = [
             (abs(x - 0.5), -self._floats[column], self._actions[column])
             for column, x in enumerate(self.shares[: len(self._actions)])
@@ -540,7 +554,7 @@ class _Node:
         return sorted({action for action, x in shares if round(x)} | self._used)
 
     def _separate(self) -> bool:
-        """Add violated cuts with disjoint landmarks; return whether there are any."""
+        """Add violated cuts with disjoint landmarks; return whether any was added."""
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
         count = len(self._actions)
@@ -553,7 +567,7 @@ class _Node:
         return bool(violated)
 
     def admit(self, cuts: Iterable[Cut]) -> None:
-        """Add cuts whose landmark actions are all columns."""
+        """Add cuts as rows, except cuts with a landmark action that has no column."""
         for cut in cuts:
             if self._columns.keys() >= set(cut.members):
                 row = [self._columns[a] for a in cut.members]

@@ -18,8 +18,8 @@ Units = frozenset[int]
 class Limited(NamedTuple):
     """The result of a search for trees within a limit.
 
-    ``tree`` is within the limit; ``None`` where no tree is. Better trees within the limit have only units of
-    ``units``, which are ``None`` where no price excludes any.
+    ``tree`` is within the limit; ``None`` if there is no such tree. ``units`` are all units that better trees
+    within the limit can have; ``None`` if no price excludes a unit.
     """
 
     tree: Units | None
@@ -33,13 +33,13 @@ def limited(
     row: LinearRow,
     expired: Callable[[], bool],
 ) -> Limited | None:
-    """Search for the best tree that keeps to an upper limit on a sum, which ``tree`` exceeds.
+    """Search for the best tree within an upper limit on a sum over units; ``tree`` exceeds the limit.
 
-    A first tree within the limit is found by :func:`any_within_limit`. Then the price is the Lagrange
-    multiplier at which that tree and the one beyond the limit cost the same. It raises the cost of a tree
-    within the limit by at most the price times the bound of the ``row``, so lower bounds carry over. Where
-    many units remain at this price, lower prices that rise up to it are tried. ``None`` where nothing is
-    found out.
+    ``row`` has the amounts of units and the bound on their sum. A first tree within the limit is found by
+    :func:`any_within_limit`. Then the price of an amount of 1 is the Lagrange multiplier at which this tree
+    and ``tree`` cost the same. It raises the cost of a tree within the limit by at most the price times the
+    bound, so lower bounds carry over. If many units remain at this price, lower prices that rise up to it are
+    tried. Returns ``None`` if neither a tree is found nor its absence proved.
     """
     first = any_within_limit(subproblem, row, expired)
     if first is None or first.tree is None:
@@ -90,11 +90,12 @@ def _by_rising_prices(
     row: LinearRow,
     expired: Callable[[], bool],
 ) -> Limited:
-    """Search for better trees within the limit than ``incumbent``; ``over`` is a tree beyond the limit.
+    """Search for trees within the limit that are better than ``incumbent``; ``over`` exceeds the limit.
 
-    A question at a low price is about as quick as one without a price. Prices rise, from about the cost of a
-    unit, to the one at which ``incumbent`` and ``over`` cost the same; the optimal tree at a price replaces
-    one of the two. The price of the greatest bound determines the units of trees better than ``incumbent``.
+    A question at a low price is about as quick as one without a price. Prices rise from about the cost of a
+    unit to the price at which ``incumbent`` and ``over`` cost the same. The optimal tree at a price replaces
+    one of these two. The price with the greatest bound determines the units of trees better than
+    ``incumbent``.
     """
     next_price = Fraction(subproblem.total(over), len(over))
     greatest: tuple[Fraction, Fraction] | None = None  # bound, and its price
@@ -147,8 +148,8 @@ def _restricted_to_cost(subproblem: Subproblem, tree: Units, expired: Callable[[
 def any_within_limit(subproblem: Subproblem, row: LinearRow, expired: Callable[[], bool]) -> Limited | None:
     """Search for any tree that keeps to an upper limit on a sum, by minimizing the sum.
 
-    Returns ``Limited(None)`` where a bound proves that no tree is within the limit, ``None`` where nothing is
-    found out.
+    Returns ``Limited(None)`` if a bound proves that no tree is within the limit, ``None`` if nothing is
+    known.
     """
     units_cost = ExactCosts(subproblem.problem, (Objective.UNITS,), subproblem.remaining)
     limit = units_cost.beyond * (row.bound + 1)
@@ -171,7 +172,7 @@ def _reduced_at(
     below: int = 0,
     max_actions: float = math.inf,
 ) -> Reduced:
-    """Return :func:`at_costs`; raises ``KeyboardInterrupt`` where the reduction is interrupted."""
+    """Reduce the subproblem by :func:`at_costs`; raise ``KeyboardInterrupt`` where that is interrupted."""
     reduced = at_costs(subproblem, objectives, costs, expired, known_tree, below, max_actions)
     if reduced.interrupted:
         raise KeyboardInterrupt

@@ -10,8 +10,9 @@ from foon_asp.hypergraph.lexicographic import Vector
 class Packing(NamedTuple):
     """A cost partition over cuts; its weights and the costs of the used actions add up to a lower bound.
 
-    ``limits`` are the weights of limits, by their index; the unused amount of a limit, times its weight, is
-    taken from the bound. The bound is rounded up at the coordinate ``rounded``, if not ``None``.
+    ``limits`` are the weights of limits, by index: the amount of a limit that used actions leave, times its
+    weight, is subtracted from the bound. ``rounded`` is the index of the coordinate at which the bound is
+    rounded up, ``None`` without rounding.
     """
 
     weights: tuple[tuple[Cut, Vector], ...]
@@ -26,7 +27,7 @@ class Hopeless(NamedTuple):
 
 
 class Broken(NamedTuple):
-    """The end of a branch: every derivation with the used actions breaks a rule."""
+    """The end of a branch: every derivation with the used actions breaks the rule of this number."""
 
     rule: int
 
@@ -40,9 +41,10 @@ class Branch(NamedTuple):
 
 
 class CostFixing(NamedTuple):
-    """Reduced-cost fixing.
+    """Reduced-cost fixing: a proof for derivations with one of the ``actions``, and for the others.
 
-    ``packing`` shows ``actions`` above the cutoff, and ``others`` is the proof without them.
+    ``packing`` shows that these actions are above the cutoff. ``others`` is the proof for derivations without
+    them.
     """
 
     actions: tuple[int, ...]
@@ -56,7 +58,7 @@ Cases = tuple[int, "Cases", "Cases"] | None
 
 
 def cuts_of(proof: Proof) -> Iterator[Cut]:
-    """Return the cuts of a proof."""
+    """Yield the cuts of a proof."""
     waiting = [proof]
     while waiting:
         step = waiting.pop()

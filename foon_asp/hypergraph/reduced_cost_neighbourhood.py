@@ -16,14 +16,18 @@ def neighbourhood(
     min_reduced_cost: int = 0,
     reachable: Callable[[int, float], bool] | None = None,
 ) -> set[int]:
-    """Return the allowed actions that stay: those of irredundant derivations of reduced cost up to ``limit``.
+    """Return a superset of the allowed actions of irredundant derivations of reduced cost up to ``limit``.
 
-    In such a derivation there is a path from each action to a goal, each action a consumer of the one before,
-    so the reduced costs along the path count. Where ``h_actions`` are given, the h-value of an action counts
-    instead of its own reduced cost, as no action of its derivation is on the path. Dijkstra's algorithm from
-    the goals, up to the limit (``math.inf`` is none) and until it has ``enough`` actions, if given. No
-    reduced cost is below ``min_reduced_cost``. ``reachable`` tests whether an object can be made at a reduced
-    cost, where there are no ``h_actions``.
+    In such a derivation, a path leads from each action to a goal: each action makes a precondition of the
+    next. So the reduced costs along the path add up to at most ``limit``. Computed by Dijkstra's algorithm
+    from the goals.
+
+    ``limit``: the greatest reduced cost; ``math.inf`` for no limit.
+    ``h_actions``: h-values of actions. An action counts with its h-value, since no action of its derivation
+    is on the path; without them, with its reduced cost.
+    ``enough``: ends the search when this many actions are found; then the result is no superset.
+    ``min_reduced_cost``: no reduced cost is below it.
+    ``reachable``: tests whether an object can be made at a reduced cost, if there are no ``h_actions``.
     """
     needs, achievers, start = graph.needs, graph.makers, graph.start
     buckets: dict[int, list[int]] = {0: list(graph.goals)}

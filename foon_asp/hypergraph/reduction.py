@@ -1,7 +1,7 @@
 """Presolve of a question: an incumbent, a lower bound, and the units that a better tree can have.
 
-Stages (:mod:`greedy_stages`, :mod:`relaxation_stages`) pass on a :class:`Gap`, which each stage makes
-smaller.
+A :class:`Gap` is passed from stage to stage (:mod:`greedy_stages`, :mod:`relaxation_stages`); each stage
+makes it smaller.
 """
 
 import math
@@ -40,7 +40,7 @@ Stages = Callable[[Task, Gap, HValues], Stage]
 
 
 class Course(NamedTuple):
-    """The stages after a first tree: ``near_goals`` of a large network, or over the ``whole`` network."""
+    """The stages after a first tree: ``near_goals`` in a large network, otherwise ``whole``."""
 
     near_goals: Stages
     whole: Stages
@@ -49,15 +49,18 @@ class Course(NamedTuple):
 class Reduced(NamedTuple):
     """A presolved question.
 
-    ``tree`` are the units of the incumbent, or ``None`` where there is no tree. ``units`` are those of the
-    incumbent and those that a better tree can have, ascending. ``settled`` is true where the incumbent is
-    proved optimal. ``costs`` compares trees exactly, and ``bound`` is a lower bound on the cost of every
-    tree; where rates are too fine, they are ``None`` and 0. ``cuts`` is the greedy cost partition of the
-    greatest sum, over the units remaining at the time. ``interrupted`` is true where ctrl-C ended the
-    reduction, or time was up before any reduction: ``units`` means nothing then. ``subproblem`` is the
-    gap-bounded subproblem, which holds whatever rules trees have to keep to. ``shared`` is the optimal cost
-    partition, if one was computed. ``cases`` are the actions branched on. ``tight`` are the tight cuts of the
-    LP solutions by which units were left out, over the units remaining at the time.
+    ``tree``: the units of the incumbent, ``None`` if there is no tree.
+    ``units``: the units of the incumbent and those that a better tree can have, ascending.
+    ``settled``: whether the incumbent is proved optimal.
+    ``costs``: compares trees exactly; ``None`` if rates are too fine.
+    ``bound``: a lower bound on the cost of every tree; 0 if rates are too fine.
+    ``cuts``: the greedy cost partition of the greatest bound, over the units remaining at the time.
+    ``interrupted``: whether ctrl-C ended the reduction, or time was up before any reduction. Then ``units``
+    must not be used.
+    ``subproblem``: the gap-bounded subproblem, which is valid under any rules on trees.
+    ``shared``: the optimal cost partition, if one was computed.
+    ``cases``: the actions branched on.
+    ``tight``: the tight cuts of the LP solutions by which units were excluded, over the units remaining then.
     """
 
     tree: frozenset[int] | None
@@ -84,7 +87,7 @@ class Listener:
 
 
 class Bounds(Listener):
-    """Observer that passes on bounds only: trees found on the way may not keep to all rules."""
+    """Observer that passes on bounds but no trees, since these may break rules."""
 
     def __init__(self, listener: Listener) -> None:
         self._listener = listener
@@ -105,10 +108,12 @@ def reduce(
 ) -> Reduced:
     """Reduce a problem to the units that a search for the best tree still has to look at.
 
-    ``objectives`` is the list as it is optimized, with ``units`` in it, so that every unit costs something.
-    Without reductions, the relevant units that can be executed remain. ``expired`` returns whether time is
-    up; longer computations are interrupted, as by ctrl-C, by the ``guard``. ``solved`` are other goals of the
-    same question, which help with this one; the answer to this one is added to them.
+    ``objectives``: the list as it is optimized, with ``units`` in it, so that every unit costs something.
+    ``reductions``: if empty, the relevant units that can be executed remain.
+    ``expired``: returns whether time is up.
+    ``listener``: receives trees and bounds.
+    ``guard``: returns a context in which time being up interrupts computations, as ctrl-C does.
+    ``solved``: solved goals of the same question, which speed up this one; its answer is added to them.
     """
     with uncollected():
         with guard():
@@ -132,9 +137,9 @@ def reduce_under_rules(
 ) -> Reduced:
     """Reduce a problem whose trees have to keep to user rules, without knowing the rules.
 
-    In the result, ``subproblem`` and ``bound`` hold for the trees under any rules. With ``redundant``, trees
-    may have units that lead to no goal. ``course`` is :data:`BOUND` where any tree will do, else
-    :data:`ROUNDS`. Other arguments are those of :func:`reduce`.
+    ``subproblem`` and ``bound`` of the result are valid under any rules. With ``redundant``, trees may have
+    units that lead to no goal. ``course`` is :data:`BOUND` if the caller needs no particular tree, else
+    :data:`ROUNDS` (the default). Other arguments are those of :func:`reduce`.
     """
     presolve_tuning = tuning.PRESOLVE._replace(branching_budget=0, landmark_actions=math.inf)
     with uncollected():
@@ -146,10 +151,10 @@ def reduce_under_rules(
 
 
 def h_add_tree(problem: Problem, objectives: Sequence[Objective]) -> frozenset[int] | None:
-    """Return the units of a tree that follows h_add: near to the optimum, and found without any proof.
+    """Return the units of a tree that follows h_add, without proof; its cost is near the optimum.
 
-    ``objectives`` are those of :func:`reduce`. ``None`` where there is no tree. Raises
-    ``KeyboardInterrupt`` where it is interrupted.
+    ``objectives`` are those of :func:`reduce`. ``None`` if there is no tree. Raises ``KeyboardInterrupt`` if
+    it is interrupted.
     """
     reduced = reduce_under_rules(problem, objectives, course=Course(_follow_h_add, _follow_h_add))
     if reduced.interrupted:
@@ -168,9 +173,9 @@ def at_costs(
 ) -> Reduced:
     """Reduce a gap-bounded subproblem under other costs, with ``known_tree`` as a first incumbent, if any.
 
-    With ``below``, a unit is left out only if all its trees cost at least ``below`` and at least as much as
-    the incumbent. The reduction ends early if more than ``max_actions`` remain and the first cuts exclude
-    hardly any.
+    With ``below``, all units of trees that cost less than ``below`` remain, and those of trees better than
+    the incumbent. Then the reduction also ends early if the first cuts exclude hardly any action and more
+    than ``max_actions`` remain.
     """
     presolve_tuning = tuning.PRESOLVE._replace(branching_budget=0, landmark_actions=math.inf)
     if below:  # clingo gets the remaining actions with an incumbent
@@ -181,7 +186,7 @@ def at_costs(
         task = replace(task, costs=costs, coarse=costs, below=below, scope=subproblem.remaining)
 
         def fixed_first(task: Task, gap: Gap, h_values: HValues) -> Stage:
-            """Fix by the cutoff first, and run all rounds only if few enough actions remain."""
+            """Fix candidates by the cutoff first, and run all rounds only if few enough remain."""
             if below and len(gap.candidates) > max_actions:
                 before = len(gap.candidates)
                 gap, cuts = greedy.bound(task, gap, h_values, greedy.guide_by(task, gap))
@@ -204,6 +209,7 @@ def _task(
     expired: Expired,
     presolve_tuning: PresolveTuning | None = None,
 ) -> Task:
+    """Return the task of reducing a problem: with its graph and rough costs, before exact costs."""
     presolve_tuning = presolve_tuning or tuning.PRESOLVE
     graph, coarse = graph_of(problem, objectives), CoarseCosts(problem, objectives[0])
     return Task(
@@ -220,7 +226,7 @@ def _task(
 
 
 def _with_costs(task: Task, actions: Collection[int]) -> Task:
-    """Return the task with exact costs of actions, unless it has them or rates are too fine for them."""
+    """Return the task with exact costs of these actions; unchanged if it has costs or rates are too fine."""
     if task.costs is None:
         with suppress(TooFineError):
             return replace(task, costs=ExactCosts(task.problem, task.objectives, actions))
@@ -228,7 +234,7 @@ def _with_costs(task: Task, actions: Collection[int]) -> Task:
 
 
 def rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
-    """Repeat bounds, better trees and reductions, until nothing changes or the incumbent is optimal."""
+    """Repeat landmark cuts, search for trees and pruning, until nothing changes or a tree is optimal."""
     costs, limits = task.costs, task.tuning
     if costs is not None and len(gap.candidates) > limits.easy_actions:
         gap = greedy.follow_h_add(task, gap)
@@ -265,7 +271,7 @@ def rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
 
 
 def _differs(gap: Gap, before: Gap) -> bool:
-    """Return whether there are fewer candidates, or another incumbent."""
+    """Return whether a gap has fewer candidates or another incumbent than before."""
     return (len(gap.candidates), gap.incumbent) != (len(before.candidates), before.incumbent)
 
 
@@ -314,7 +320,7 @@ def _follow_h_add(task: Task, gap: Gap, h_values: HValues) -> Stage:
 
 
 def _bound_once(task: Task, gap: Gap, h_values: HValues) -> Stage:
-    """Bound trees by landmark cuts."""
+    """Raise the lower bound once by landmark cuts."""
     if task.costs is not None:
         gap = greedy.bound(task, gap, h_values, greedy.guide_by(task, gap)).gap
         yield gap
@@ -322,7 +328,7 @@ def _bound_once(task: Task, gap: Gap, h_values: HValues) -> Stage:
 
 
 def _bound_lazily(task: Task, gap: Gap, h_values: HValues) -> Stage:
-    """Bound trees by landmark cuts without a guide, since a guide looks at all actions."""
+    """Raise the lower bound by landmark cuts without a guide, since a guide looks at all actions."""
     if task.costs is not None:
         gap = greedy.bound(task, gap, h_values, None).gap
         yield gap
@@ -336,7 +342,7 @@ def _near_goals(task: Task) -> tuple[Gap, HValues] | None:
     """Find a first tree among the actions nearest to the goals, so that large networks are read lazily.
 
     Most of a large network is too far from the goals for a good tree, and is never looked at. Returns the gap
-    over all actions and h-values of objects, ``None`` where the network is small or no tree is found.
+    over all actions, and the h-value of each object; ``None`` if the network is small or no tree is found.
     """
     size, limits = len(task.graph.needs), task.tuning
     if not task.reductions & {Reduction.BOUNDS, Reduction.DEAR} or size <= limits.lazy_actions:
@@ -353,10 +359,10 @@ def _near_goals(task: Task) -> tuple[Gap, HValues] | None:
 
 
 class _Presolve:
-    """A run of the stages of a task: its last gap, ``None`` before there is a tree.
+    """A run of the stages of a task; ``gap`` is its last gap, ``None`` before there is a tree.
 
-    ``ended`` is true where nothing interrupted the run. If trees may be ``redundant``, they may have any
-    action, so that the costs of all actions are needed.
+    ``ended`` is true if nothing interrupted the run. If trees may be ``redundant``, they may have any action,
+    so the costs of all actions are needed.
     """
 
     def __init__(self, task: Task, listener: Listener | None, guard: Guard, redundant: bool = False) -> None:
@@ -366,11 +372,11 @@ class _Presolve:
 
     @property
     def bounds_listener(self) -> Listener:
-        """The listener for trees of another task, whose bounds hold here too."""
+        """A listener for another task whose bounds hold here, too, but whose trees do not."""
         return Bounds(self._listener)
 
     def guarded(self, step: Callable[[], None]) -> None:
-        """Take a step; an interrupt raises ``KeyboardInterrupt`` only where there is no tree yet."""
+        """Run a step under the guard; ``KeyboardInterrupt`` is raised only if there is no tree yet."""
         self.ended = False
         try:
             with self.guard():
@@ -381,7 +387,7 @@ class _Presolve:
                 raise
 
     def run(self, course: Course, known_tree: Collection[int] = ()) -> None:
-        """Find a first tree, and take a course from there."""
+        """Find a first tree, and run the stages of a course from it."""
         self.guarded(lambda: self._run(course, known_tree))
 
     def _run(self, course: Course, known_tree: Collection[int]) -> None:
@@ -399,7 +405,7 @@ class _Presolve:
             self.take(stages, h_values)
 
     def run_beside(self, solved: SolvedGoals) -> None:
-        """Run all rounds, from the gap that ``solved`` gives if any, and add the answer to ``solved``."""
+        """Run all rounds, if possible from the gap that ``solved`` has, and add the answer to ``solved``."""
 
         def begin() -> None:
             costs = solved.costs
@@ -419,7 +425,7 @@ class _Presolve:
         self.guarded(begin)
 
     def extend_or_run(self) -> None:
-        """Run all rounds. Where sets of units are required, first try to extend trees of the goals alone."""
+        """Run all rounds; if sets of units are required, first try to extend trees for the goals alone."""
         restriction = self.task.problem.restriction
         if restriction is not None and restriction.required and Reduction.DEAR in self.task.reductions:
             _extend(self)
@@ -427,7 +433,7 @@ class _Presolve:
             self.run(ROUNDS)
 
     def take(self, stages: Stages, h_values: HValues) -> None:
-        """Take stages from the gap; report trees and bounds on the way."""
+        """Run stages from the current gap; report trees and bounds on the way."""
         assert self.gap is not None
         actions = range(len(self.task.graph.needs)) if self._redundant else self.gap.candidates
         self.task = task = _with_costs(self.task, actions)
@@ -435,7 +441,7 @@ class _Presolve:
             self.report(gap)
 
     def report(self, gap: Gap) -> None:
-        """Go on to another gap; report its tree and its bound where these are new."""
+        """Make another gap the current one; report its tree and its bound if they are new."""
         before, self.gap = self.gap, gap
         if before is None or gap.incumbent is not before.incumbent:
             self._listener.tree(self._units(gap.incumbent))
@@ -463,10 +469,11 @@ class _Presolve:
 
 
 def _extend(presolve: _Presolve) -> None:
-    """Keep the units of cheap trees for the goals alone, and of cheap extensions to the required sets.
+    """Presolve a question with required sets by its relaxation: the same question without these sets.
 
-    Every tree contains one for the goals alone, which costs no more; the other units cost at most the
-    difference. A tree as cheap as the best one for the goals alone is optimal. Leaves no gap where this
+    Every tree contains a tree for the goals alone, and its other units, the extension, cost the difference.
+    So the candidates are the units of cheap trees for the goals and of cheap extensions. If a tree costs no
+    more than the best tree for the goals alone, it is optimal. ``presolve.gap`` stays ``None`` if the
     relaxation does not help.
     """
     task = presolve.task
@@ -483,7 +490,7 @@ def _extend(presolve: _Presolve) -> None:
     subproblem, h_values = reduced.subproblem, dict[int, int]()
 
     def extend() -> None:
-        """Extend the best tree of the goals alone, and keep the candidates of cheap extensions."""
+        """Extend the best tree for the goals alone; the candidates are the actions of cheap extensions."""
         tree = extended(task.thin, gap.incumbent, costs, len(graph.needs) // 4)
         if tree is None:
             return

@@ -20,9 +20,9 @@ from foon_asp.hypergraph.task import Task
 
 
 def partition_costs(task: Task, gap: Gap) -> Stage:
-    """Raise the bound by optimal cost partitioning, follow its solutions to trees, and fix by it.
+    """Raise the bound by optimal cost partitions, derive trees from LP solutions, and fix candidates.
 
-    The relaxation begins anew over the candidates that remain, as long as that is worthwhile.
+    The relaxation begins anew over the remaining candidates, as long as many are excluded.
     """
     costs, graph, limits = task.costs, task.graph, task.tuning
     assert costs is not None
@@ -64,7 +64,10 @@ def _starting_cuts(gap: Gap) -> tuple[frozenset[int], ...]:
 
 
 def follow_solution(task: Task, gap: Gap, shared: SharedCosts, looks: int) -> Stage:
-    """Look for better trees by an LP solution, and fix by it; ``looks`` is the budget of each candidate."""
+    """Look for better trees that follow an LP solution, then apply its cost partition.
+
+    ``looks`` is the budget: how often each candidate may be looked at.
+    """
     costs, graph = task.costs, task.graph
     assert costs is not None
     used = {action for action, share in shared.shares.items() if share > ROUGH_TOLERANCE} | gap.incumbent
@@ -89,7 +92,10 @@ def follow_solution(task: Task, gap: Gap, shared: SharedCosts, looks: int) -> St
 
 
 def apply(task: Task, gap: Gap, shared: SharedCosts) -> Gap:
-    """Raise the bound by a cost partition, and fix and prune by it; costs are whole, so it is rounded up."""
+    """Raise the bound by a cost partition, fix candidates by reduced costs, and prune dominated ones.
+
+    The bound is rounded up, since costs are whole numbers.
+    """
     costs, total, evidence = task.costs, task.total(gap), gap.evidence
     assert costs is not None
     bound = min(-(-shared.bound // PARTS), total)
@@ -109,7 +115,10 @@ def apply(task: Task, gap: Gap, shared: SharedCosts) -> Gap:
 def search_among(
     task: Task, gap: Gap, actions: Collection[int], cuts: Sequence[frozenset[int]], effort: int
 ) -> Stage:
-    """Look for a better tree among a few actions, by branching up to an effort (sub-MIP heuristic)."""
+    """Look for a better tree among a few actions by branch and bound (sub-MIP heuristic).
+
+    ``effort`` is the budget, in actions looked at.
+    """
     graph, costs = task.graph, task.costs
     assert costs is not None
     runnable = derive(graph, actions, costs, h_add=False).h_actions
@@ -126,13 +135,13 @@ def search_among(
 
 
 def may_branch(task: Task, gap: Gap) -> bool:
-    """Return whether branching may prove a tree optimal: not where rounding may decide."""
+    """Return whether branching may prove a tree optimal; ``False`` if rounding could decide."""
     assert task.costs is not None
     return task.only_better(gap) and not (task.costs.doubt or task.costs.limited) and gap.budget > 0
 
 
 def branch(task: Task, gap: Gap) -> Stage:
-    """Branch and bound over the candidates, within the budget, where the bound is close enough for it."""
+    """Branch and bound over the candidates, within the budget, if the lower bound is close enough."""
     costs, graph, limits = task.costs, task.graph, task.tuning
     assert costs is not None
     close = gap.lower_bound >= task.total(gap) * limits.branching_bound

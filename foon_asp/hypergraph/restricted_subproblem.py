@@ -9,11 +9,11 @@ from foon_asp.hypergraph.h_values import Derivations, derive
 def restricted_subproblem(
     graph: GoalGraph, actions: set[int], cost: Callable[[int], int], max_actions: int
 ) -> tuple[Derivations, set[int]] | None:
-    """Add actions until they contain a tree: in each round an achiever of each unreached relevant object.
+    """Add actions until they contain a tree; return their derivations, and the tree.
 
-    Achievers with the fewest non-initial preconditions are added first. Returns the derivations by the
-    actions and the tree; ``None`` where it takes more than ``max_actions`` actions, or where there is no
-    tree.
+    Each round adds an achiever of each relevant object that is not reached; achievers with the fewest
+    non-initial preconditions come first. ``None`` if more than ``max_actions`` actions would be needed, or if
+    there is no tree.
     """
     needs, achievers, start = graph.needs, graph.makers, graph.start
     chosen = set(actions)

@@ -23,8 +23,9 @@ from foon_asp.hypergraph.task import Task
 class _LpTolerance(NamedTuple):
     """Tolerances of LP values, which are floats; bounds do not rely on them.
 
-    ``used``: an action of a greater LP value counts as used. ``violated``: a landmark with a smaller sum of
-    LP values is violated. ``tight``: a landmark with a greater sum is not tight.
+    ``used``: an action of a greater LP value counts as used.
+    ``violated``: a landmark with a smaller sum of LP values is violated.
+    ``tight``: a landmark with a smaller sum is tight.
     """
 
     used: float = 1e-6
@@ -45,10 +46,10 @@ class _Relaxed(NamedTuple):
 
 
 class SharedLandmarks:
-    """Landmarks of all objects that some network makes from a kitchen, for costs without rounding.
+    """Landmarks of all objects that a network can make from a kitchen, for costs without rounding.
 
-    The linear relaxation for a question takes the landmarks of its goals, and adds those that it separates
-    for the questions after it. A question may exclude actions.
+    The linear relaxation for a question begins with known landmarks of its goals. Landmarks that it adds are
+    kept for later questions. A question may exclude actions.
     """
 
     def __init__(self, task: Task, costs: ExactCosts, actions: Iterable[int], objects: Sequence[int]) -> None:
@@ -62,9 +63,9 @@ class SharedLandmarks:
         self._reached_without: list[bytearray] = []  # for each landmark, what is reached without its actions
 
     def tighten(self, task: Task, excluded: frozenset[int], tree: frozenset[int]) -> Gap:
-        """Return the gap of a question: a tree at least as good, its bound, and the candidates between them.
+        """Return the gap of a question: a tree as good as ``tree`` or better, a bound, and the candidates.
 
-        Cuts are kept as evidence only where the gap stays open, since they are many and large.
+        Cuts are kept as evidence only if the gap stays open, since they are many and large.
         """
         relaxed = self._relax(task, excluded, tree)
         candidates = self._actions - excluded
@@ -97,9 +98,9 @@ class SharedLandmarks:
         return [self._number[goal] for goal in task.graph.goals]
 
     def _relax(self, task: Task, excluded: frozenset[int], tree: frozenset[int]) -> _Relaxed | None:
-        """Solve the relaxation for a question until its value meets the tree or no violated cut is found.
+        """Solve the relaxation for a question, until its value reaches the cost of the best tree found.
 
-        ``None`` where HiGHS fails.
+        Also ends when no violated cut is found or time is up. ``None`` where HiGHS fails.
         """
         np, relaxation, targets = self._np, self._relaxation, self._targets(task)
         landmarks = [
@@ -167,13 +168,16 @@ class SharedLandmarks:
         return self._np.add.reduceat(values[self._np.concatenate(arrays)], starts).tolist()  # type: ignore[no-any-return]
 
     def _learn(self, rows: Iterable[int]) -> None:
-        """Compute which objects are reachable without new landmarks; they are landmarks of all others."""
+        """Record for new landmarks which objects can be reached without their actions.
+
+        A landmark of one object is a landmark of all objects that cannot be reached so.
+        """
         for row in rows:
             landmark = frozenset(self._relaxation.rows[row].tolist())
             self._reached_without.append(self._relaxation.graph.reach(landmark))
 
     def _following(self, task: Task, tree: frozenset[int], x: Any) -> frozenset[int]:
-        """Return the best of a tree and of trees that combine its actions with those of an LP solution."""
+        """Return the best of ``tree`` and trees that combine its actions with those of an LP solution."""
         actions, costs = self._relaxation.actions, self.costs
         used = self._np.flatnonzero(x > _LP.used).tolist()
         shares = dict.fromkeys(tree, 0.0) | {actions[i]: float(x[i]) for i in used}
@@ -183,7 +187,10 @@ class SharedLandmarks:
         return min(tree, *map(frozenset, trees), key=lambda tree: sum(map(costs, tree)))
 
     def _cut(self, row: int, targets: Iterable[int]) -> frozenset[int]:
-        """Return the objects of a cut with one of the targets; its landmark actions are all in a row."""
+        """Return a cut with one of the targets; its landmark is within the actions of a row.
+
+        The result has object numbers of the whole graph.
+        """
         relaxation, reached = self._relaxation, self._reached_without[row]
         graph, landmark = relaxation.graph, frozenset(relaxation.rows[row].tolist())
         target = next(o for o in targets if not reached[o])

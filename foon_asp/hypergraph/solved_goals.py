@@ -16,10 +16,10 @@ if TYPE_CHECKING:  # few questions need it
 
 
 class SolvedGoals:
-    """Trees of questions that differ in goals and removed units alone, and landmarks that they share.
+    """Trees of solved questions that differ only in goals and removed units, and landmarks that they share.
 
-    Landmarks are shared once greedy cuts did not suffice for a question: easier questions are answered faster
-    one by one.
+    Questions share landmarks from the first one on that greedy cuts do not solve: easier questions are solved
+    faster one by one.
     """
 
     def __init__(self) -> None:
@@ -34,11 +34,14 @@ class SolvedGoals:
         return self._landmarks is not None
 
     def h_add(self, goal: int) -> int:
-        """Return the h_add value of a goal, 0 where landmarks are not shared and where there is no tree."""
+        """Return the h_add value of a goal; 0 if landmarks are not shared yet or there is no tree."""
         return 0 if self._derivations is None else self._derivations.cost.get(goal, 0)
 
     def gap(self, task: Task) -> Gap | None:
-        """Return the gap of a question with shared costs; ``None`` without these, or without a tree."""
+        """Return the gap of a question from shared landmarks; ``None`` before they are shared.
+
+        Also ``None`` if there is no tree.
+        """
         if self._landmarks is None or self._derivations is None:
             return None
         if not self._derivations.cost.keys() >= set(task.graph.goals):
@@ -54,11 +57,14 @@ class SolvedGoals:
 
     @property
     def costs(self) -> ExactCosts | None:
-        """The costs of all actions that can run, by which shared gaps are measured."""
+        """The costs of shared gaps, for all actions that can run; ``None`` before landmarks are shared."""
         return None if self._landmarks is None else self._landmarks.costs
 
     def _tree(self, task: Task) -> frozenset[int]:
-        """Return the best tree of an achiever and trees of its preconditions, solved or by h_add."""
+        """Return the best union of an achiever of the goal and trees of its preconditions.
+
+        These trees are known from solved questions, or follow h_add.
+        """
         graph, costs, derivations, trees = task.graph, task.costs, self._derivations, list[set[int]]()
         assert costs is not None
         assert derivations is not None
@@ -75,7 +81,10 @@ class SolvedGoals:
         return frozenset(min(smallest, key=lambda tree: sum(map(costs, tree))))
 
     def _tree_without(self, task: Task, removed: frozenset[int]) -> frozenset[int] | None:
-        """Return a tree without some actions, by h_add and the tree of the same goals, if any."""
+        """Return a tree without the removed actions, from h_add and from the solved tree of the same goals.
+
+        ``None`` if there is no tree.
+        """
         graph, costs, derivations = task.graph, task.costs, self._derivations
         assert costs is not None
         assert derivations is not None
@@ -88,7 +97,7 @@ class SolvedGoals:
         return frozenset(min(trees, key=lambda tree: sum(map(costs, tree))))
 
     def learn(self, task: Task, gap: Gap | None) -> None:
-        """Keep the tree of a proved gap; share landmarks from now on if greedy cuts did not prove it."""
+        """Store the tree of a proved gap; share landmarks from then on if greedy cuts did not prove it."""
         if gap is None or not gap.proved:
             return
         self._trees[task.graph.goals] = gap.incumbent
@@ -110,7 +119,10 @@ class SolvedGoals:
 
 
 def is_open_to(task: Task) -> bool:
-    """Return whether a question has goals to make, no sets to require, and a network looked at as a whole."""
+    """Return whether solved goals can help with a question: it has goals, and no required sets.
+
+    Its network must not be so large that only a part of it is looked at.
+    """
     restriction = task.problem.restriction
     return (
         len(task.graph.goals) > 0

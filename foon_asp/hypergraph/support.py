@@ -10,9 +10,10 @@ from foon_asp.hypergraph.h_values import derive
 class Support:
     """A tree with the h_add values and best achievers of its objects, updated incrementally.
 
-    ``actions`` are those of the tree that follow best achievers from the goals; others are removed at once.
-    ``figure[o]`` is the h_add value of an object in use. When an action is removed, only objects derived by
-    it are derived anew, from the others, so that actions of a cycle do not support each other.
+    ``actions`` are the actions of the tree that are found by following best achievers from the goals; others
+    are removed at once. ``figure[o]`` is the h_add value of an object in use. When an action is removed, only
+    objects derived by it are derived anew, from the others, so that actions of a cycle do not support each
+    other.
     """
 
     def __init__(self, graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int]) -> None:
@@ -40,16 +41,16 @@ class Support:
     def replaceable(self, action: int) -> bool:
         """Return whether every add effect in use of an action has another achiever.
 
-        A redundant tree always has a redundant action of which this is true: the last, in an executable
-        order, of the actions that would be removed together.
+        In a tree with redundant actions, this is true of at least one of them: of actions that can be removed
+        together, the last in an executable order.
         """
         return all(len(self._achievers[o]) > 1 for o in self._graph.gives[action] if self._in_use(o))
 
     def leave_out(self, action: int) -> set[int] | None:
-        """Remove an action and the actions that are of no use without it.
+        """Remove an action, and the actions that are of no use without it.
 
-        Returns the remaining achievers of objects that are no longer in use. ``None``, and nothing changes,
-        where the other actions do not reach the goals.
+        Returns the remaining achievers of objects that are no longer in use. If the other actions do not
+        reach the goals, nothing changes, and ``None`` is returned.
         """
         missing = {action: 0}  # number of lost preconditions of each action derived by it
         lost: set[int] = set()
@@ -75,9 +76,10 @@ class Support:
     def _rederive(
         self, lost: Collection[int], missing: dict[int, int]
     ) -> tuple[dict[int, tuple[int, int]], dict[int, int]]:
-        """Derive lost objects anew; return their h_add values and achievers, and the h_add values of actions.
+        """Derive lost objects anew.
 
-        ``missing`` counts the lost preconditions of the actions.
+        Returns the h_add value and achiever of each object, and the h_add values of actions. ``missing``
+        counts the lost preconditions of each action, and is changed in place.
         """
         made: dict[int, tuple[int, int]] = {}
         h_actions: dict[int, int] = {}
@@ -102,7 +104,10 @@ class Support:
         return made, h_actions
 
     def _drop(self, idle: list[int]) -> set[int]:
-        """Remove idle actions, and actions only used by them; return achievers of objects not in use now."""
+        """Remove idle actions, and actions that only they use.
+
+        Returns the remaining achievers of objects that are no longer in use.
+        """
         graph, actions = self._graph, self.actions
         freed: set[int] = set()
         while idle:

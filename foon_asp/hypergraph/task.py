@@ -16,10 +16,12 @@ from foon_asp.problem import Objective, Problem
 class Task:
     """A question as a graph with costs, and the settings of its reduction.
 
-    ``coarse`` are rough costs, for estimates. ``costs`` compare trees exactly; ``None`` where rates are too
-    fine, and before the first tree. In ``thin``, required sets have few achievers. Trees that cost less than
-    ``below`` count, even if they are no better than the incumbent. ``scope`` are the actions that trees may
-    have. ``expired`` returns whether time is up.
+    ``expired``: returns whether time is up.
+    ``thin``: the graph with few achievers of each required set.
+    ``coarse``: rough costs, for estimates.
+    ``scope``: the actions that trees may have.
+    ``costs``: exact costs; ``None`` if rates are too fine, and before the first tree.
+    ``below``: trees that cost less are wanted, even if they are no better than the incumbent.
     """
 
     problem: Problem
@@ -46,7 +48,7 @@ class Task:
         return sum(map(self.costs, tree)) < self.total(gap)
 
     def only_better(self, gap: Gap) -> bool:
-        """Return whether trees as good as the incumbent are not needed."""
+        """Return whether only trees better than the incumbent are wanted, and not equally good ones."""
         return Reduction.BOUNDS in self.reductions and self.total(gap) >= self.below
 
     def cutoff(self, gap: Gap) -> int:

@@ -46,10 +46,11 @@ class CutTuning(NamedTuple):
     """How landmark cuts and h-values are looked for.
 
     ``guided_cuts``: cuts, or one for each target, after which the h-values that guide cuts are computed anew.
-    ``guides``: times at most that h-values are computed for as many cuts as there are objects. Each time
-    looks at all objects, so that without a maximum cuts would take quadratic time (``benchmarks/shapes.py``,
-    grid by kitchen).
-    ``lazy_depth``: depth of the recursion of lazy h_max. ``lazy_looks``: actions that it looks at in all.
+    ``guides``: how often h-values are computed, at most, while as many cuts are found as there are objects.
+    Each time looks at all objects, so without a maximum cuts would take quadratic time
+    (``benchmarks/shapes.py``, grid by kitchen).
+    ``lazy_depth``: depth of the recursion of lazy h_max.
+    ``lazy_looks``: actions that lazy h_max looks at in all.
     """
 
     guided_cuts: int = 64
@@ -104,9 +105,10 @@ class ProofTuning(NamedTuple):
 class PriceTuning(NamedTuple):
     """How a limit on a sum over units is priced, by :mod:`foon_asp.hypergraph.priced_limit`.
 
-    ``prices``: prices that are tried. ``easy_units``: units; with fewer, clingo is faster than another price.
-    ``rising_units``: units; with more, rising prices are tried. ``rising_prices``: rising prices that are
-    tried, at most.
+    ``prices``: prices that are tried.
+    ``easy_units``: units; with fewer, clingo is faster than another price.
+    ``rising_units``: units; with more, rising prices are tried.
+    ``rising_prices``: rising prices that are tried, at most.
     """
 
     prices: int = 2
@@ -118,8 +120,8 @@ class PriceTuning(NamedTuple):
 class SharedTuning(NamedTuple):
     """What the goals of a network share, in :mod:`foon_asp.hypergraph.shared_landmarks`.
 
-    ``violated_landmarks``: known landmarks that are added for one LP solution, at most. ``unions``: trees of
-    preconditions, taken together, that are made irredundant to find a first tree.
+    ``violated_landmarks``: known landmarks that are added for one LP solution, at most.
+    ``unions``: unions of trees that are made irredundant to find a first tree.
     """
 
     violated_landmarks: int = 40

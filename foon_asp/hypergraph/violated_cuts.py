@@ -15,12 +15,14 @@ def disjoint_violated_cuts(
     random_number: Callable[[], float],
     tolerance: float = ROUGH_TOLERANCE,
 ) -> Iterator[Cut]:
-    """Yield violated cuts with disjoint landmarks and no action of ``used``, until a grown cut is satisfied.
+    """Yield cuts that an LP solution violates, with disjoint landmarks and no action of ``used``.
 
-    ``shares`` is an array of the LP value of each action; the values of a cut's landmark actions become 1.
-    Actions of great values are kept out of landmarks first, then cheap ones, by the array ``costs`` times a
-    factor from 0.5 to 1.5 by ``random_number``. A landmark whose values lack no more than ``tolerance`` is
-    satisfied.
+    ``shares``: an array of the LP value of each action. Values of the landmark of a yielded cut become 1.
+    ``costs``, ``random_number``: landmarks avoid actions of great value first, then actions of low cost,
+    where each cost is multiplied by a random factor from 0.5 to 1.5.
+    ``tolerance``: a landmark whose values add up to at least 1 minus this is satisfied.
+
+    Ends when the next cut is satisfied or none is left.
     """
     import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
