@@ -4,7 +4,8 @@ An execution of a unit succeeds with its rate, whatever happened before, and ava
 failed execution changes nothing, but a run may have only a limited number of failures. A policy chooses the
 next unit by the available nodes and by the failures left. The greatest chance of all policies over the units
 of some trees is found by dynamic programming over the available nodes. A unit that is necessary for the goals
-is executed first: every successful run includes its failures, and it is never worse to know them earlier.
+is executed first: every successful run executes it until it succeeds, and it is never worse to know its
+failures earlier.
 """
 
 import heapq
@@ -206,7 +207,7 @@ class _Optimum:
 
 
 def _bound(problem: Problem, units: Sequence[int], retries: int) -> Fraction:
-    """Return an upper bound: the chance that all necessary units together fail at most ``retries`` times."""
+    """Return an upper bound: the chance that necessary units fail at most ``retries`` times in total."""
     world = _World(problem)
     chances = [Fraction(1)] + [Fraction(0)] * retries  # by the number of failures so far
     for unit in units:

@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 class Execution(NamedTuple):
     """The ports of an action: one execution of a functional unit.
 
-    ``step`` is the number of the step, ``unit`` the id of the functional unit, ``motion`` its motion. The
-    other ports have object nodes, by their names in PDDL such as ``o46-ice-cubed-in-drinking-glass``.
-    ``needs``: nodes that have to be there. ``makes``: nodes that are there afterwards. ``acted_on``: nodes
-    that the motion is done to.
-    ``tools``: nodes that it is done with. ``origins``: places that inputs are in, on or at. ``destinations``:
-    places that outputs are in, on or at. ``rate`` and ``duration``, in seconds, are ``None`` if they are not
-    known.
+    Object nodes have their names in PDDL, such as ``o46-ice-cubed-in-drinking-glass``.
+
+    ``step``: the number of the step. ``unit``: the id of the functional unit. ``motion``: its motion.
+    ``needs``: nodes that have to be there. ``makes``: nodes that are there afterwards.
+    ``acted_on``: nodes that the motion is done to. ``tools``: nodes that it is done with.
+    ``origins``, ``destinations``: places that the inputs, and the outputs, are in, on or at.
+    ``rate``: the success rate. ``duration``: in seconds. Both are ``None`` if they are not known.
 
     Example:
         >>> foon_asp.Execution(1, 26, "twist", ("o43-ice",), ("o46-ice",)).motion

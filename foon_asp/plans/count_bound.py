@@ -474,9 +474,9 @@ class CountBound:
     def _separate(self, x: Sequence[float], model: CountModel, at_root: bool) -> bool:
         """Add landmarks of the targets that an LP solution violates; return whether there are any.
 
-        Actions with large LP values are kept out of the landmarks first. At the root, there is also a
-        landmark without the derivation except one action, for each action. Without a derivation, no landmarks
-        are sought.
+        Actions with large LP values are kept out of the landmarks first. At the root, further landmarks keep
+        out all actions of the derivation but one, for each of these actions in turn. Without a derivation, no
+        landmarks are sought.
         """
         derivation, size = self.derivation, self._size
         if not derivation:

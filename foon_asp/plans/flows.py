@@ -63,7 +63,7 @@ class Flows:
 
     @property
     def remainders(self) -> Iterator[Remainder]:
-        """The remainders, for the objects of which every action that asks for one leaves some copies."""
+        """The remainders of the objects for which every asking action leaves more copies than the target."""
         kept_by_object: dict[int, dict[int, int]] = {}
         for action, preconditions in enumerate(self.asks):
             for o, n in preconditions.items():

@@ -115,7 +115,7 @@ def _plain_plan(question: PlanQuestion, counting: Counting, measures: Sequence[M
 
 
 def _below_cutoff(question: PlanQuestion, counting: Counting, plan: Plan) -> Counting:
-    """Return a counting without units that alone cost more than a plan, if costs are rounded."""
+    """Return a counting without units that alone cost more than a plan; if costs are exact, the same."""
     objective = question.levels[0]
     if multiplies(objective) or counting.measure(objective).exact is None:
         return counting

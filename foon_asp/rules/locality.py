@@ -2,10 +2,10 @@
 
 A rule is local if its truth for a tree stays the same without the facts of units outside the tree and of
 object nodes that only such units have. So each fact that a local rule reads is about a subject that is known
-to be in the tree. ``use(U)`` says that the unit U is in the tree. Then ``input(U,O)`` says so of the object
-node O, and ``label(O,L)`` of the label L. Goals are always in the tree, so ``goal(O)`` says so of O. The
-arguments of an auxiliary predicate may be subjects: ``tainted(O) :- label(O,"nut").`` reads facts about O
-only.
+to be in the tree. In ``use(U)``, the unit U is in the tree. If U is in the tree, so is the object node O in
+``input(U,O)``. If O is in the tree, so is the label L in ``label(O,L)``. The node O in ``goal(O)`` always is
+in the tree. The arguments of an auxiliary predicate may be subjects: ``tainted(O) :- label(O,"nut").`` reads
+facts about O only.
 """
 
 from collections import defaultdict
@@ -153,7 +153,7 @@ class Locality:
         return tree_terms
 
     def _led_arguments(self, literal: Literal, tree_terms: _TreeTerms) -> list[tuple[int, Subject]]:
-        """Return the arguments of a literal that must be in the tree, as positions with subjects.
+        """Return the arguments that are in the tree if a literal holds, as positions with subjects.
 
         ``tree_terms`` has the terms that are known to be in the tree.
         """

@@ -35,8 +35,8 @@ _DECIMAL = re.compile(r"[0-9]{1,1000}(\.[0-9]{1,1000})?", re.ASCII)
 class Measure:
     """User rules that define an objective by the cost of each unit.
 
-    ``name`` is the name of the objective. ``place`` says where the rules are from: the path of a file, or
-    such as ``measure 1`` for rules passed as text. A file may define several measures.
+    ``name`` is the name of the objective. ``place`` says where the rules are from: the path of a file, or a
+    name such as ``measure 1`` for rules passed as text. A file may define several measures.
     """
 
     name: str

@@ -77,8 +77,8 @@ class MeasureRules(NamedTuple):
     ``names``: the names of the measures, each with the place of its first occurrence.
     ``reads``: the predicates of facts that the rules read.
     ``nameless``: units whose facts differ only in numbers of units and object nodes cost the same.
-    ``plain``: the grounding cannot be large, since no rule has an interval, a division, two tables or many
-    atoms.
+    ``plain``: no rule has an interval, a division, two tables or many atoms, so the grounding cannot be
+    large.
     """
 
     names: dict[str, Source]

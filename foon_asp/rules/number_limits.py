@@ -114,7 +114,7 @@ def _postfix(term: AST, leaves: dict[str, AST]) -> Iterator[str]:
 
 
 def _safe_magnitude(term: AST) -> int:
-    """Return the magnitude of values up to which a term cannot overflow; -1 if it always may."""
+    """Return the magnitude up to which values in a term cannot make the term overflow; -1 without one."""
     return next((limit for limit in (LARGEST >> n for n in range(32)) if _size(term, limit) <= LARGEST), -1)
 
 
@@ -149,7 +149,7 @@ def _has_interval(term: AST) -> bool:
 
 
 def _sums(rule: AST) -> Iterator[tuple[AST, list[str]]]:
-    """Return the sums of a rule, each with elements (as text) that have the magnitudes of its weights."""
+    """Return the sums of a rule, each with its elements as text, in which weights become magnitudes."""
     for body_part in rule.body if rule.ast_type == ASTType.Minimize else [rule.head, *rule.body]:
         aggregate = body_part.atom if body_part.ast_type == ASTType.Literal else body_part
         if aggregate.ast_type not in _AGGREGATES:
