@@ -11,7 +11,7 @@ _FRESH_STATES = frozenset({"empty", "clean"})
 
 
 class Offer(StrEnum):
-    """A set of nodes that a shopping list may contain.
+    """The set of nodes that shopping lists may contain.
 
     With a price list, the set is ``priced``: the nodes on the price list. Without a price list, it is the
     first of the following sets from which the goals can be made. ``for sale``: the nodes that :class:`Shop`
