@@ -432,8 +432,9 @@ class CountBound:
         """Return a landmark that the executed actions ``used`` violate; ``None`` if there is none.
 
         The executed actions are applied to the initial objects in the delete relaxation. If a target or an
-        executed action is not reached, the landmark has the actions that would reach it. If initial copies
-        have a price, ``stock`` has their columns, and ``initial`` the objects of which copies are taken.
+        executed action is not reached, the landmark consists of the achievers at the border of what is
+        reached. If initial copies have a price, ``stock`` has their columns, and ``initial`` the objects of
+        which copies are taken.
         """
         flows = self._flows
         asks, targets = flows.lacking(bool(stock))

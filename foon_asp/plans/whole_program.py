@@ -61,7 +61,7 @@ class WholeProgram:
     """
 
     def __init__(self, columns: int, expired: Callable[[], bool] = lambda: False) -> None:
-        """Make a program with columns from 0, without rows; imports HiGHS."""
+        """Import HiGHS, and make a program without rows, whose columns are at least 0."""
         self._library, self._np = libraries()
         self._highs: Any = None
         self._expired = expired
