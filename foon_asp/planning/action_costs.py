@@ -26,7 +26,7 @@ class Scale(NamedTuple):
 
 
 class ActionCosts(NamedTuple):
-    """The cost of each unit, by id, of taking an ``item`` from the kitchen, and the scales of objectives."""
+    """The costs of ``units`` by id, the cost of taking an ``item`` from the kitchen, and the scales."""
 
     units: dict[int, int]
     item: int
@@ -48,9 +48,9 @@ def action_costs(
 ) -> ActionCosts:
     """Scalarize a lexicographic list of objectives: return one cost for each action.
 
-    A tree executes each of the ``units`` at most once, and takes each of the ``items`` at most once. So the
-    weight of an objective is more than all less important ones can add up to. ``tree`` is a feasible tree,
-    and plans are assumed to cost at most ``repeats`` times as much. Fractions that planners cannot add up
+    A tree executes each of the ``units`` at most once, and takes at most ``items`` kitchen items. So an
+    objective has a weight above the greatest sum of all less important objectives. ``tree`` is a feasible
+    tree; plans are assumed to cost at most ``repeats`` times as much. Fractions that planners cannot add up
     exactly are rounded.
 
     Raises :class:`UserError` where rounded costs are too large as well, and for a success rate of 0.

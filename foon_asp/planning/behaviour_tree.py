@@ -1,10 +1,10 @@
 """A plan as a behaviour tree: XML of BehaviorTree.CPP 4, which Groot2 reads.
 
-Where items last, the tree is a reactive sequence with a fallback for each step: first the condition that the
-outputs of the step are there, then its action. So a step starts only after its inputs were made, a step that
-failed is tried again at the next tick, and nothing is copied: the tree has three nodes for each step. Where
-items are used up, an output may be gone later. So the tree is a sequence in which each action is repeated
-until it succeeds, behind the condition that its inputs are there.
+If items last, the tree is a reactive sequence with a fallback for each step: first the condition that the
+outputs of the step are there, then its action. So a step starts only after its inputs were made, and a step
+that failed is tried again at the next tick. The tree has three nodes for each step. If items are used up, an
+output may be gone later. So the tree is a sequence with two nodes for each step: the condition that its
+inputs are there, then the action, which is repeated until it succeeds.
 """
 
 from collections.abc import Iterable, Sequence

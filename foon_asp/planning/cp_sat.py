@@ -33,6 +33,7 @@ class _Model:
     """
 
     def __init__(self, cp_model: Any, task: ScheduleTask, incumbent: Sequence[int]) -> None:
+        """Add the variables of steps, the precedences and the limit on agents."""
         self._library, self._task = cp_model, task
         self._model = model = cp_model.CpModel()
         ends = (start + length for start, length in zip(incumbent, task.lengths, strict=True))

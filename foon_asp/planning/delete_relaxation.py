@@ -30,6 +30,7 @@ class _Relaxation:
     """Compiles conditional effects and negated derived facts of a task away (Nebel 2000)."""
 
     def __init__(self, task: SasTask) -> None:
+        """Find the default values of derived variables, and the axioms that change each of these values."""
         self._task = task
         self._facts = list(task.facts)
         self._values = {fact: facts for facts in task.variables for fact in facts}
@@ -99,9 +100,9 @@ class _Relaxation:
     def _variants(
         self, operator: SasOperator, useful: set[int], max_variants: int = 1000
     ) -> Iterator[StripsAction]:
-        """Yield an operator as actions without conditional effects: one for each set that can occur.
+        """Yield an operator as actions without conditional effects: one for each union of their conditions.
 
-        Raises :class:`UserError` for more than ``max_variants`` sets, whose number may be exponential.
+        Raises :class:`UserError` for more than ``max_variants`` unions; their number may be exponential.
         """
         holding = self._start.union(operator.preconditions)
         always: dict[int, None] = {}
@@ -129,9 +130,10 @@ class _Relaxation:
             yield StripsAction(operator.name, preconditions, list(effects), cost, operator.source)
 
     def _negations(self, defaults: set[int]) -> Iterator[StripsAction]:
-        """Yield actions that derive a default value if each axiom for it has a condition that fails (Clark).
+        """Yield actions that derive the default values of derived variables (Clark's completion).
 
-        Raises :class:`UserError` where such a derivation is cyclic.
+        A variable has its default value if each axiom that sets it has a condition that fails. Raises
+        :class:`UserError` if such a derivation is cyclic.
         """
         graph: dict[int, set[int]] = {}
         pending = sorted(defaults)

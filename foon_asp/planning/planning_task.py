@@ -54,7 +54,7 @@ class PlanningTask:
         return {o: stock.get(o, 0) for o in self.names if o not in problem.endless}
 
     def flow(self, action: Action) -> Flow:
-        """Return the copies that an action asks for, consumes and adds; of what is not counted, one."""
+        """Return the copies that an action asks for, consumes and adds; one copy if these are not counted."""
         if action.unit is None or not self.counted:
             sides = (action.preconditions, action.consumption, action.add_effects)
             return Flow(*(dict.fromkeys(side, 1) for side in sides))
@@ -84,7 +84,7 @@ def planning_task(
 ) -> PlanningTask:
     """Return a planning task of a problem, over the units relevant to its goals or the ``whole`` network.
 
-    Where kitchen items cost something, an action takes each of them.
+    If kitchen items have a cost, the task has an action for each of them, which takes the item.
 
     Raises :class:`UserError` where an objective has no costs that planners can add up.
     """

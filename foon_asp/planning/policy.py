@@ -1,11 +1,11 @@
 """Policies with retries: follow a tree, and after a number of failed executions another one.
 
-An execution of a unit succeeds with its rate, whatever happened before, and available nodes stay available.
-A failed execution changes nothing, but a run may have only a limited number of failures. A policy chooses
-the next unit by the available nodes and by the failures left. Of all policies over the units of some trees,
-the greatest chance is found by dynamic programming over the available nodes, in which a unit that all
-remaining trees need is executed first: a successful run has to bear its failures anyway, so to know them
-earlier is never worse.
+An execution of a unit succeeds with its rate, whatever happened before, and available nodes stay available. A
+failed execution changes nothing, but a run may have only a limited number of failures. A policy chooses the
+next unit by the available nodes and by the failures left. The greatest chance of all policies over the units
+of some trees is found by dynamic programming over the available nodes. A unit that is necessary for the goals
+is executed first: every successful run executes it until it succeeds, and it is never worse to know its
+failures earlier.
 """
 
 import heapq
@@ -21,9 +21,11 @@ from foon_asp.problem import Problem
 class PolicyLimits(NamedTuple):
     """Limits of the search for the best policy.
 
-    ``states`` of the dynamic program: so many take some seconds; thirteen bundled goals need fewer than
-    3,000. ``units``: each call of the dynamic program adds one, and Python limits the depth of calls.
-    ``policies`` that are compared; each is evaluated exactly.
+    ``states``: states of the dynamic program; so many take some seconds, and thirteen bundled goals need
+    fewer than 3,000.
+    ``units``: units of the trees; the dynamic program recurses once for each, and Python limits the
+    recursion.
+    ``policies``: policies that are compared; each is evaluated exactly.
     """
 
     states: int = 10_000
@@ -47,8 +49,8 @@ class PolicyBranch(NamedTuple):
 class Policy(NamedTuple):
     """Trees to follow one after the other, and the ``chance`` that the goals are made.
 
-    No policy over the units of the trees has a chance above ``bound``. It ``is_exact`` if one has that
-    chance.
+    No policy over the units of the trees has a chance above ``bound``. If ``is_exact``, some policy has
+    exactly this chance.
     """
 
     branches: tuple[PolicyBranch, ...]
@@ -64,7 +66,7 @@ class _TooManyStates(Exception):  # noqa: N818 (is caught here)
 def best_policy(problem: Problem, trees: Sequence[tuple[int, ...]], retries: int) -> Policy:
     """Return the policy with the greatest chance among policies that follow some trees one after another.
 
-    Among equal chances, one with fewer branches is returned. Of more than
+    Among policies of equal chance, one with the fewest branches is returned. If there are more policies than
     :attr:`PolicyLimits.policies`, only those with the fewest branches are compared.
 
     Parameters:
@@ -89,7 +91,10 @@ def best_policy(problem: Problem, trees: Sequence[tuple[int, ...]], retries: int
 
 
 def _candidates(trees: Sequence[tuple[int, ...]], failures: int) -> Iterator[tuple[PolicyBranch, ...]]:
-    """Yield the ways to share failures among ordered selections of trees, those of few trees first."""
+    """Yield the policies with this number of failures, shared among some trees in some order.
+
+    Policies with few trees come first.
+    """
     for number in range(1, min(len(trees), failures) + 1):
         for order in itertools.permutations(trees, number):
             for cuts in itertools.combinations(range(1, failures), number - 1):
@@ -166,6 +171,7 @@ class _Optimum:
     """The greatest chance of all policies over some units, by dynamic programming over states."""
 
     def __init__(self, problem: Problem, units: Sequence[int], retries: int) -> None:
+        """Compute the greatest chance; raises :class:`_TooManyStates` beyond the limits."""
         self._world, self._units, self._retries = _World(problem), units, retries
         self._values: dict[State, tuple[Fraction, ...]] = {}
         if len(units) > POLICY_LIMITS.units:
@@ -201,7 +207,7 @@ class _Optimum:
 
 
 def _bound(problem: Problem, units: Sequence[int], retries: int) -> Fraction:
-    """Return an upper bound on the chance: that necessary units fail at most ``retries`` times."""
+    """Return an upper bound: the chance that necessary units fail at most ``retries`` times in total."""
     world = _World(problem)
     chances = [Fraction(1)] + [Fraction(0)] * retries  # by the number of failures so far
     for unit in units:

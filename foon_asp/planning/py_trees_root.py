@@ -17,11 +17,13 @@ if TYPE_CHECKING:
 class Execution(NamedTuple):
     """The ports of an action: one execution of a functional unit.
 
-    ``step`` is the number of the step, ``unit`` the id of the functional unit, ``motion`` its motion. Object
-    nodes have their names in PDDL, such as ``o46-ice-cubed-in-drinking-glass``: those that have to be there
-    (``needs``), those that are there afterwards (``makes``), and by role what the motion is done to
-    (``acted_on``) and with (``tools``), and what inputs and outputs are in, on or at (``origins``,
-    ``destinations``). ``rate`` and ``duration``, in seconds, are ``None`` where they are not known.
+    Object nodes have their names in PDDL, such as ``o46-ice-cubed-in-drinking-glass``.
+
+    ``step``: the number of the step. ``unit``: the id of the functional unit. ``motion``: its motion.
+    ``needs``: nodes that have to be there. ``makes``: nodes that are there afterwards.
+    ``acted_on``: nodes that the motion is done to. ``tools``: nodes that it is done with.
+    ``origins``, ``destinations``: places that the inputs, and the outputs, are in, on or at.
+    ``rate``: the success rate. ``duration``: in seconds. Both are ``None`` if they are not known.
 
     Example:
         >>> foon_asp.Execution(1, 26, "twist", ("o43-ice",), ("o46-ice",)).motion

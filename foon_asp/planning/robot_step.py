@@ -131,7 +131,7 @@ def _is_tool(problem: Problem, unit: FunctionalUnit, node: ObjectNode) -> bool:
 
 
 def _places(network: Network, nodes: Sequence[ObjectNode], others: Iterable[ObjectNode]) -> tuple[Node, ...]:
-    """Return the places that nodes on one side of a unit are in, on or at, as nodes of either side."""
+    """Return the places that ``nodes``, one side of a unit, are in, on or at; ``others``: the other side."""
     by_label: dict[str, ObjectNode] = {}
     for node in (*nodes, *others):
         by_label.setdefault(node.label, node)
@@ -140,7 +140,7 @@ def _places(network: Network, nodes: Sequence[ObjectNode], others: Iterable[Obje
 
 
 def _changes(network: Network, unit: FunctionalUnit) -> Iterator[Change]:
-    """Yield the objects of a unit; an input is paired with the same output, or else the next of its label."""
+    """Yield the objects of a unit; an input is paired with the same output, else with one of its label."""
     pairs: list[tuple[ObjectNode | None, ObjectNode | None]] = []
     remaining = list(unit.outputs)
     unchanged = [node for node in unit.inputs if node in remaining]

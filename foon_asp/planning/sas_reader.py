@@ -42,9 +42,9 @@ class SasAxiom(NamedTuple):
 class SasTask:
     """A planning task in finite-domain variables (Helmert 2009); a fact is a value of a variable, by number.
 
-    ``variables`` are the facts of each variable, ``derived`` the variables that axioms set, and ``start``
-    the initial state, as the fact of each variable: of a derived variable, its default value. ``costed``
-    says whether the metric counts the costs of operators; otherwise each costs 1.
+    ``variables``: the facts of each variable. ``derived``: the variables that axioms set.
+    ``start``: the fact of each variable in the initial state; for a derived variable, its default value.
+    ``costed``: whether the metric counts the costs of operators; otherwise each operator costs 1.
     """
 
     file: str
@@ -112,7 +112,7 @@ class _Reader:
         return values
 
     def _operator(self) -> SasOperator:
-        """Read an operator; an effect's value before it counts as a precondition."""
+        """Read an operator; the value that a variable must have before an effect becomes a precondition."""
         self._expect("begin_operator")
         name, source = self._next().rstrip(), Source(self._file, self._line)
         preconditions, effects = [*self._values()], list[SasEffect]()

@@ -15,8 +15,8 @@ from foon_asp.proof.timetable import Means, ToolName, tools_asked
 class Use(NamedTuple):
     """One use of a tool from the kitchen by ``steps``, which do not overlap.
 
-    The tool is occupied from the start of the first step to the end of the last one, as it is in a state
-    that a later step needs.
+    The tool is occupied from the start of the first step to the end of the last step, since each later step
+    needs the tool in the state in which an earlier step left it.
     """
 
     name: ToolName
@@ -26,10 +26,11 @@ class Use(NamedTuple):
 class ScheduleTask(NamedTuple):
     """A resource-constrained scheduling problem over the steps of a plan, by position.
 
-    ``lengths`` are durations in ticks of ``tick`` seconds; a ``passive`` step occupies no agent. ``after``
-    are the steps that each step waits for. ``uses`` are all uses of tools, and ``counts`` the number of
-    copies of each tool. ``sharing`` are sets of steps that need the same copy of an item, and so must not
-    overlap.
+    ``tick``: the length of a tick in seconds. ``lengths``: the durations of the steps in ticks.
+    ``passive``: whether each step occupies no agent. ``after``: the steps that each step waits for.
+    ``uses``: all uses of tools. ``counts``: the number of copies of each tool. ``agents``: the number of
+    agents.
+    ``sharing``: sets of steps that need the same copy of an item, so that they must not overlap.
     """
 
     tick: Fraction
@@ -86,13 +87,13 @@ def schedule_task(
 
 
 def _uses(problem: Problem, replay: Replay, means: Means) -> tuple[Use, ...]:
-    """Return the uses of tools; a use goes on with each step that takes a copy made in it."""
+    """Return the uses of tools; a step that takes a copy made during a use belongs to the same use."""
     names: list[ToolName] = []
     steps: list[list[int]] = []
     use_of: dict[tuple[Copy, str], int] = {}  # the use of a tool with this label that a made copy belongs to
 
     def assign(number: int, label: str, node: ObjectNode | None, copy: Copy | None) -> int:
-        """Assign a step to a use of a tool that goes on, or to a new one; return the number of the use."""
+        """Assign a step to the use of a tool that ``copy`` belongs to, or to a new use; return the use."""
         use = None if copy is None else use_of.get((copy, label))
         if use is None or number in steps[use]:
             names.append(label if node is None or not problem.at_hand(node) else means.name(node, label))

@@ -19,10 +19,13 @@ _WORKER_KEY = "foon_asp.planning.cp_sat"
 
 
 class BestSchedule(NamedTuple):
-    """The best schedule: ``starts`` of steps in ticks, or ``None``, and a lower ``bound`` on the makespan.
+    """The best schedule, or the result that there is none.
 
-    ``proved`` says that no schedule is shorter; without ``starts``, that none exists. ``lacking`` then maps
-    tools to numbers of copies that suffice: the fewest additional ones, unless a limit stopped this search.
+    ``starts``: the starts of the steps in ticks; ``None`` without a schedule.
+    ``bound``: a lower bound on the makespan, in ticks.
+    ``proved``: it is proved that no schedule is shorter, or, without ``starts``, that none exists.
+    ``lacking``: without ``starts``, numbers of copies by tool with which a schedule exists; these need the
+    fewest additional copies, unless a limit stopped this search.
     """
 
     starts: tuple[int, ...] | None
@@ -151,7 +154,7 @@ def _followers(
     agents: dict[int, int],
     tools: dict[int, Tool],
 ) -> Iterator[tuple[int, int]]:
-    """Return pairs of steps of which the second follows the first: they share an agent, a tool or a copy."""
+    """Return pairs of steps that share an agent, a tool or a copy; the second step follows the first."""
     uses = task.uses
     steps_of_agent: dict[int, list[int]] = {}
     for step, agent in agents.items():

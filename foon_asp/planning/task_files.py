@@ -33,7 +33,7 @@ def read_task(files: Sequence[Path], deadline: Deadline) -> StripsTask:
 
 
 def read_pddl(domain: PddlOutline, problem: PddlOutline, deadline: Deadline) -> StripsTask:
-    """Return the delete relaxation of a task in PDDL; raises as :func:`read_task`."""
+    """Return the delete relaxation of a task in PDDL; raises the errors of :func:`read_task`."""
     require_translator(f"{problem.file}: reading PDDL")
     with deadline.watched("reading the task"):
         require_task(domain, problem)
@@ -43,7 +43,7 @@ def read_pddl(domain: PddlOutline, problem: PddlOutline, deadline: Deadline) -> 
 
 
 def _domain_and_problem(outlines: list[PddlOutline]) -> tuple[PddlOutline, PddlOutline]:
-    """Return the domain and the problem, whatever the order of files; a missing domain is looked up.
+    """Return the domain and the problem from files in any order; a missing domain is looked up.
 
     Raises :class:`UserError` where the files are not one problem and at most one domain.
     """

@@ -1,7 +1,7 @@
-"""Order of the uses of tools, such that the steps can be done one after the other with the available tools.
+"""Order of the uses of tools, with which the steps can be done one after the other with the available tools.
 
-A schedule exists if and only if such an order exists. In a schedule, the order of starts is one, since a tool
-that is in use between the starts of two steps is in use when the second one starts.
+A schedule exists if and only if such an order exists. The order of the starts of steps in a schedule is such
+an order, since a tool that is in use between the starts of two steps is in use when the second step starts.
 """
 
 from graphlib import TopologicalSorter
@@ -20,10 +20,10 @@ _CLINGO_OPTIONS = ("--opt-strategy=usc,oll,4", "--opt-usc-shrink=min")
 
 
 class ToolOrder(NamedTuple):
-    """The ``steps`` in a feasible order, or ``None`` where it is ``proved`` that none exists.
+    """The ``steps`` in a feasible order; ``None`` if it is ``proved`` that none exists.
 
-    ``lacking`` then maps tools to the numbers of copies that make one feasible, with the fewest additional
-    copies in all; it is empty where that is not known.
+    Without an order, ``lacking`` has the numbers of copies by tool that make an order feasible, with the
+    fewest additional copies in total. ``lacking`` is empty if these numbers are not known.
     """
 
     steps: tuple[int, ...] | None
@@ -32,9 +32,9 @@ class ToolOrder(NamedTuple):
 
 
 def tool_order(task: ScheduleTask, deadline: Deadline) -> ToolOrder:
-    """Search for a feasible order of the steps, and where none exists, for the fewest lacking tools.
+    """Search for a feasible order of the steps; if none exists, search for the fewest lacking tools.
 
-    Raises ``KeyboardInterrupt`` at ctrl-C, and at a limit before it is known whether an order exists.
+    Raises ``KeyboardInterrupt`` at ctrl-C, and at a limit if it is not known yet whether an order exists.
     """
     feasible = _run(task, deadline, may_lack=False)
     if feasible.units is not None:
@@ -67,7 +67,7 @@ def _run(task: ScheduleTask, deadline: Deadline, may_lack: bool) -> Run:
 
 
 def _steps(task: ScheduleTask, answer: Run) -> tuple[int, ...]:
-    """Return the steps in topological order, the first in the plan where there is a choice."""
+    """Return the steps in topological order; of several possible steps, the first in the plan is next."""
     sorter = TopologicalSorter[tuple[str, int]]()
     for step, after in enumerate(task.after):
         sorter.add(("step", step), *(("step", earlier) for earlier in after))
@@ -93,7 +93,8 @@ def _steps(task: ScheduleTask, answer: Run) -> tuple[int, ...]:
 def first_schedule(task: ScheduleTask, order: tuple[int, ...]) -> tuple[int, ...]:
     """Return the starts of steps, in ticks, by list scheduling.
 
-    The steps start in this order, each as early as agents, tools and the steps that it waits for allow.
+    The steps start in the order given, each as early as possible: when an agent and its tools are free, and
+    the steps that it waits for have ended.
     """
     starts, ends = [0] * len(order), [0] * len(order)
     agent_free = [0] * task.agents

@@ -31,7 +31,7 @@ def installed() -> bool:
 
 
 def require_translator(purpose: str) -> None:
-    """Raise :class:`UserError` where the translator, which ``purpose`` needs, is not installed."""
+    """Raise :class:`UserError` if the translator is not installed; ``purpose`` says what it is needed for."""
     if not installed():
         raise UserError(f"{purpose} takes Fast Downward's translator, which is not installed: {_ADVICE}")
 
@@ -86,7 +86,7 @@ def _run(folder: Path, deadline: Deadline) -> tuple[int, str]:
 
 
 def _failure(domain: PddlOutline, problem: PddlOutline, code: int, output: str) -> UserError:
-    """Return an error with the translator's message on its input, or on its own failure."""
+    """Return an error with the translator's message: an error in its input, or its own failure."""
     lines = [line.strip() for line in output.splitlines() if line.strip()]
     if code == _INPUT_ERROR:
         return UserError(_input_error(domain, problem, lines))

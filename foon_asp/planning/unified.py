@@ -28,7 +28,7 @@ def unified_problem(
 ) -> Any:
     """Return a problem of unified-planning: the same task as in PDDL, with the same names.
 
-    Raises :class:`UserError` as :func:`foon_asp.planning.planning_task.planning_task`, and where
+    Raises the errors of :func:`foon_asp.planning.planning_task.planning_task`, and :class:`UserError` if
     unified-planning is not installed.
     """
     up = require_unified_planning()

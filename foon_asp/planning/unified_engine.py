@@ -1,4 +1,4 @@
-"""An engine of unified-planning: cheapest plans of delete relaxations, where they are plans of the problem.
+"""An engine of unified-planning: cheapest plans of delete relaxations that are also plans of the problem.
 
 unified-planning imports this module once ``foon_asp.register_engine`` has registered it.
 """

@@ -1,4 +1,4 @@
-"""Order of many executions at once: a founded order of counts, in runs of one action each.
+"""Orders for given counts of executions, as a sequence of runs that repeat one action each.
 
 Whether each action can be executed as often as counted is a question about the firing sequences of a Petri
 net. A run executes an action as often as possible. The search tries no alternative to a run if there are
@@ -22,7 +22,7 @@ def bulk_order(
 ) -> list[Run] | None:
     """Return runs that execute each action as often as counted, from ``start``; ``None`` if there are none.
 
-    Raises :class:`Stopped` where the search finds no runs and does not prove that there are none.
+    Raises :class:`Stopped` if the search neither finds runs nor proves that there are none.
     """
     if not _is_founded(flows, counts, start):
         return None
@@ -53,7 +53,10 @@ def least_copies(flows: Flows, counts: Counts) -> dict[int, int]:
 
 
 def _is_founded(flows: Flows, counts: Counts, start: Mapping[int, int]) -> bool:
-    """Whether each action is reached if nothing is consumed, and enough copies remain in the end."""
+    """Whether counts satisfy two conditions that are necessary for an order.
+
+    Each action can be reached if nothing is consumed, and enough copies remain in the end.
+    """
     copies, waiting = Counter(start), set(counts)
     grown = True
     while grown:
@@ -123,7 +126,10 @@ class _Search:
         return tuple(sorted(self._waiting.items()))
 
     def _choices(self, dead: set[tuple[tuple[int, int], ...]]) -> Iterator[Run]:
-        """Yield the runs that can be next: only one if a free action is ready, which hinders no other."""
+        """Yield the runs to try next; only one if it leaves enough copies for all waiting executions.
+
+        ``dead`` has the waiting executions for which there is no order.
+        """
         if self._state in dead:
             return
         ready = [(action, self._max_times(action)) for action in sorted(self._waiting)]

@@ -11,10 +11,11 @@ Counts = dict[int, int]
 class Measure(NamedTuple):
     """The cost of executions by one objective, to be minimized.
 
-    ``costs`` has the cost of each action, a whole number from 0, and ``item`` is the cost of each distinct
-    item and of each initial copy that is consumed. Where ``exact`` is not ``None``, ``costs`` are rounded
-    down and ``exact`` returns the exact cost of counts, which depends on the number of executions in each of
-    the ``classes`` of actions; actions of class -1 do not change it.
+    ``costs``: the cost of each action, a whole number from 0.
+    ``item``: the cost of each distinct item, and of each initial copy that is consumed.
+    ``exact``: returns the exact cost of counts, if ``costs`` are rounded down; else ``None``.
+    ``classes``: the class of each action. The exact cost depends only on the number of executions in each
+    class; actions of class -1 do not change it.
     """
 
     costs: Sequence[int]
@@ -26,8 +27,8 @@ class Measure(NamedTuple):
 class Landmark(NamedTuple):
     """The condition that one of the ``members`` is executed, or an initial copy of ``stock`` is consumed.
 
-    With an ``action``, the condition applies only if the action is executed. ``objects`` are the cut of the
-    landmark.
+    With an ``action``, the condition applies only if the action is executed. ``objects`` are the objects of
+    the cut from which the landmark follows.
     """
 
     members: tuple[int, ...]
@@ -43,10 +44,9 @@ class Balance(NamedTuple):
 
 
 class Supply(NamedTuple):
-    """The condition that an action that is executed has the copies of an object that it asks for.
+    """The condition that ``copies`` of an object are supplied for ``action``, if this is executed.
 
-    The copies are initial or added by other actions, as the action itself adds none before its first
-    execution.
+    The copies are initial or added by other actions, since the action adds none before its first execution.
     """
 
     object: int
@@ -55,9 +55,10 @@ class Supply(NamedTuple):
 
 
 class Remainder(NamedTuple):
-    """The condition that copies of an object remain where an action that asks for it is executed.
+    """The condition that ``copies`` of an object remain in the end if ``action`` is executed.
 
-    The last execution that asks for the object leaves at least ``copies``, and no later one consumes any.
+    The action asks for the object. The last execution that asks for it leaves at least ``copies``, and later
+    executions consume none.
     """
 
     object: int
@@ -66,7 +67,7 @@ class Remainder(NamedTuple):
 
 
 class Sum(NamedTuple):
-    """The condition that a sum keeps to a limit, by the index of the limit."""
+    """The condition that a weighted sum of executions keeps to the limit with the index ``limit``."""
 
     limit: int
 
@@ -88,8 +89,8 @@ SumLimit = tuple[Mapping[int, int], int, bool, bool]
 class Level(NamedTuple):
     """An objective with the cost of the incumbent.
 
-    ``max_cost`` is the greatest sum of the (rounded) costs of a plan that is as good as the incumbent. If
-    ``strict``, a plan of equal cost does not count as good.
+    A plan is as good as the incumbent if its (rounded) costs add up to at most ``max_cost``, and its exact
+    cost is at most ``cost``. If ``strict``, the exact cost has to be below ``cost``.
     """
 
     measure: Measure

@@ -35,11 +35,12 @@ class BetterError(Exception):
 class CountBound:
     """Branch and bound over the counts of executions in plans for one question.
 
-    ``expired`` returns whether to give up: methods then raise :class:`Stopped`. ``required`` are disjunctive
-    action landmarks. ``limits`` bound weighted sums, with weights from 0, over executions or over the actions
-    used. ``derivation`` are actions that reach the targets in the delete relaxation: landmarks are grown
-    around it. Only plans count that are as good as the incumbent by each of ``levels``. Plans that execute
-    all actions at least as often as one of ``excluded_counts`` do not count.
+    ``required``: disjunctive action landmarks.
+    ``limits``: bounds on weighted sums, with weights from 0, over executions or over the actions used.
+    ``derivation``: actions that reach the targets in the delete relaxation; landmarks are grown around them.
+    ``levels``: plans that are worse than the incumbent by one of these are excluded.
+    ``excluded_counts``: plans that execute each action at least as often as one of these are excluded.
+    ``expired``: returns whether time is up; the methods then raise :class:`Stopped`.
     """
 
     def __init__(
@@ -66,9 +67,9 @@ class CountBound:
     def plain_counts(self, measures: Sequence[Measure]) -> Counts | None:
         """Return counts of least cost in floats, the first measure most important.
 
-        Like counts of :meth:`counts`, they belong to a plan of the delete relaxation. They are found much
-        faster, as few actions have an indicator. ``None`` if no counts are found. Where items have costs, or
-        counts are excluded, it does not search.
+        As in :meth:`counts`, the counts are of a plan of the delete relaxation. This search is much faster,
+        as few actions have an indicator. Returns ``None`` if no counts are found, or if items have costs or
+        counts are excluded; it does not search then.
         """
         if self._excluded_counts or any(measure.item for measure in measures):
             return None
@@ -131,7 +132,7 @@ class CountBound:
     def counts(self, measures: Sequence[Measure], rounds: int = 30) -> Counts | None:
         """Return counts of least cost in floats, the first measure most important; ``None`` if infeasible.
 
-        The counts belong to a plan of the delete relaxation; they need not belong to a plan, and their
+        The counts are of a plan of the delete relaxation. There may be no plan with these counts, and their
         optimality is not proved.
         """
         counts = None
@@ -195,7 +196,7 @@ class CountBound:
         return None if abs(bound) == math.inf else math.floor(-bound)
 
     def caps(self, level: Level) -> list[int | None]:
-        """Return for each action a bound on its count in plans as good by a level; ``None`` if unbounded."""
+        """Return the greatest count of each action in plans as good as a level; ``None``: unbounded."""
         model = self._model((level.measure,))
         model.limit(level)
         caps: list[int | None] = []
@@ -210,8 +211,9 @@ class CountBound:
     def prove(self, levels: Sequence[Level], is_better: Callable[[Counts], bool]) -> None:
         """Prove that no plan is better than the incumbent, the first level most important.
 
-        ``is_better`` is called with better counts, and returns whether some order of them is a plan. Raises
-        :class:`BetterError` with such counts, and :class:`Stopped` where time is up.
+        ``is_better`` is called with counts of lower cost, and returns whether some order of them is a better
+        plan. Raises :class:`BetterError` with the counts of a better plan, and :class:`Stopped` if time is
+        up.
         """
         for i, level in enumerate(levels):
             before, rounded = levels[:i], level.measure.exact is not None
@@ -220,9 +222,9 @@ class CountBound:
             self._prove(level.measure, max_cost, is_better, before, [*before, level._replace(strict=True)])
 
     def every(self, levels: Sequence[Level], ask: Callable[[Counts], None]) -> None:
-        """Call ``ask`` with all counts that may be those of a plan as good as the incumbent by each level.
+        """Call ``ask`` with all counts that a plan as good as the incumbent by each level can have.
 
-        Costs of the last level are whole numbers. Raises :class:`Stopped` where time is up.
+        Costs of the last level are whole numbers. Raises :class:`Stopped` if time is up.
         """
         *before, last = levels
         self._prove(last.measure, last.max_cost, ask, before, before)
@@ -230,8 +232,8 @@ class CountBound:
     def none_is_left(self, measure: Measure, is_better: Callable[[Counts], bool]) -> None:
         """Prove that there is no plan at all, looking at counts of low cost by ``measure`` first.
 
-        ``is_better`` returns whether some order of counts is a plan: then raises :class:`BetterError`. Raises
-        :class:`Stopped` where nothing is proved.
+        ``is_better`` is called with counts, and returns whether some order of them is a plan. Raises
+        :class:`BetterError` if there is a plan, and :class:`Stopped` if nothing is proved.
         """
         proved = self.proved
         try:
@@ -249,8 +251,8 @@ class CountBound:
     ) -> None:
         """Call ``is_better`` with all counts of cost up to ``max_cost`` (``None``: any), by branch and bound.
 
-        The counts are as good by each level ``before``, by their rounded costs, and by the exact costs of
-        ``levels``.
+        Only counts as good as the incumbent are considered: by rounded costs for each level in ``before``,
+        and by exact costs for each of ``levels``.
         """
         if max_cost is not None and not measure.item and self._equation_exceeds(measure, max_cost, before):
             return
@@ -379,7 +381,7 @@ class CountBound:
         levels: Sequence[Level],
         is_better: Callable[[Counts], bool | None],
     ) -> Iterator[Bounds]:
-        """Yield the bounds of the child nodes; whole counts of the node are checked first."""
+        """Yield the bounds of the child nodes; if the node has whole counts, call ``is_better`` first."""
         program = model.program
         column = most_fractional(x)
         if column is not None:
@@ -427,12 +429,12 @@ class CountBound:
     def _unreached_landmark(
         self, used: set[int], initial: set[int], stock: Mapping[int, int]
     ) -> Landmark | None:
-        """Return a landmark that executed actions violate; ``None`` where all of them are reached.
+        """Return a landmark that the executed actions ``used`` violate; ``None`` if there is none.
 
-        The initial objects are closed under the executed actions in the delete relaxation. For a target or an
-        executed action that is not reached, the landmark consists of the achievers on the border. Where
-        initial copies have a price, ``stock`` has their columns, and ``initial`` are the objects of which
-        copies are taken.
+        The executed actions are applied to the initial objects in the delete relaxation. If a target or an
+        executed action is not reached, the landmark consists of the achievers at the border of what is
+        reached. If initial copies have a price, ``stock`` has their columns, and ``initial`` the objects of
+        which copies are taken.
         """
         flows = self._flows
         asks, targets = flows.lacking(bool(stock))
@@ -473,8 +475,9 @@ class CountBound:
     def _separate(self, x: Sequence[float], model: CountModel, at_root: bool) -> bool:
         """Add landmarks of the targets that an LP solution violates; return whether there are any.
 
-        Actions of great LP values are kept out of landmarks first, and at the root the derivation less one
-        action. Without a derivation no landmarks are looked for.
+        Actions with large LP values are kept out of the landmarks first. At the root, further landmarks keep
+        out all actions of the derivation but one, for each of these actions in turn. Without a derivation, no
+        landmarks are sought.
         """
         derivation, size = self.derivation, self._size
         if not derivation:
@@ -505,7 +508,7 @@ class CountBound:
         used: set[int],
         stock: Mapping[int, int],
     ) -> Landmark:
-        """Return a landmark by a small cut grown backwards from an object that is not reached."""
+        """Return the landmark of a small cut, which is grown backwards from an object that is not reached."""
         zone, stack, edge = {o}, [o], dict[int, None]()
         while stack:
             for achiever in self._achievers.get(stack.pop(), ()):

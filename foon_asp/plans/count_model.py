@@ -19,8 +19,8 @@ from foon_asp.plans.whole_program import WholeProgram
 class CountModel:
     """The conditions as rows over columns: the count of each action, its indicator, auxiliary columns.
 
-    ``assumed_cap`` is the count that unbounded actions are assumed to keep to; where it is ``None``, nothing
-    is assumed, and costs that are not whole have columns for their classes.
+    ``assumed_cap`` is an upper bound that is assumed for the counts of unbounded actions. If it is ``None``,
+    nothing is assumed, and each measure with exact costs has a column for each of its classes.
     """
 
     def __init__(
@@ -33,6 +33,7 @@ class CountModel:
         assumed_cap: int | None,
         expired: Callable[[], bool],
     ) -> None:
+        """Build the program with the rows of all conditions."""
         size, achievers_of = len(flows.asks), flows.achievers
         self._flows = flows
         self.program = program = WholeProgram(size, expired)
@@ -93,9 +94,9 @@ class CountModel:
         return self._count_indicators[action, count][0]
 
     def unforced_count(self, counts: Counts, x: Sequence[float]) -> tuple[int, int, int] | None:
-        """Return an action that is executed at least ``count`` times while the indicator of this count is 0.
+        """Find an indicator of a count that is 0, although its action is executed as often.
 
-        The result is the action, the count and the indicator; ``None`` where every indicator is right.
+        Returns the action, the count and the column of the indicator; ``None`` if every indicator is right.
         """
         for (action, count), (column, _) in self._count_indicators.items():
             if action in counts and counts[action] >= count and not round(x[column]):
@@ -135,7 +136,7 @@ class CountModel:
         self.conditions[number] = landmark
 
     def tighten(self) -> None:
-        """Tie each indicator to its action by the greatest count that it can have."""
+        """Update the rows of indicators to the greatest count that each action can have."""
         program = self.program
         for action, row in enumerate(self._loose):
             max_count = self._max_count(action)
@@ -149,28 +150,28 @@ class CountModel:
         return self._assumed_cap if upper is None else upper
 
     def cap(self, measure: Measure, max_cost: int) -> None:
-        """Bound the counts of actions by the greatest total cost."""
+        """Bound the count of each action: its executions alone cost at most ``max_cost``."""
         for action, cost in enumerate(measure.costs):
             if cost:
                 self.program.cap(action, max(max_cost, 0) // cost)
         self.tighten()
 
     def objective(self, measure: Measure) -> dict[int, int]:
-        """Return the cost of each column."""
+        """Return the costs of columns that are not 0, by column."""
         costs = {a: cost for a, cost in enumerate(measure.costs) if cost}
         if measure.item:
             costs |= dict.fromkeys((*self.items.values(), *self.stock.values()), measure.item)
         return costs
 
     def limit(self, level: Level) -> None:
-        """Add the row that counts are as good by a level as the incumbent."""
+        """Add the row of a level: counts as good as the incumbent cost at most ``max_cost``."""
         costs = self.objective(level.measure)
         row = self.program.row({column: -cost for column, cost in costs.items()}, -level.max_cost)
         self.conditions[row] = level
         self.cap(level.measure, level.max_cost)
 
     def keep(self, measure: Measure, solution: Sequence[float]) -> None:
-        """Add the row that counts cost no more than a solution."""
+        """Add the row that counts cost, by a measure, at most as much as a solution."""
         costs = self.objective(measure)
         max_cost = sum(cost * round(solution[column]) for column, cost in costs.items())
         self.program.row({column: -cost for column, cost in costs.items()}, -max_cost)

@@ -1,9 +1,9 @@
 """Proofs that no plan costs less: Farkas combinations of conditions on counts, and branching over counts.
 
-The relaxation of whole counts (:mod:`foon_asp.plans.count_bound`) has dual values of its rows in floats.
-Whatever they are, rounded or solved for exactly, they prove the bound of a Lagrangian relaxation: the
-right-hand sides of the weighted rows, plus for each action the least of its reduced cost over the counts that
-it may have.
+The relaxation of whole counts (:mod:`foon_asp.plans.count_bound`) has dual values of its rows in floats. Any
+such values, rounded or solved for exactly, prove the bound of a Lagrangian relaxation. This bound is the sum
+of the weighted right-hand sides and, for each action, the least reduced cost of a count that it
+may have.
 """
 
 import math
@@ -43,10 +43,10 @@ CountProof = Weighted | Split
 class Claim(NamedTuple):
     """The claim that all plans cost at least ``least``.
 
-    ``costs`` has the cost of each action, ``item`` is the cost of each item and of each initial copy
-    consumed. ``least`` is ``None`` for the claim that there is no plan at all, with all costs 0. Costs of
-    plans are multiples of ``1 / parts``, if it is not ``None``. ``caps`` bound the counts of each action in
-    plans that cost less.
+    ``costs``: the cost of each action. ``item``: the cost of each item, and of each initial copy consumed.
+    ``least``: ``None`` for the claim that there is no plan at all; then all costs are 0.
+    ``parts``: if not ``None``, the costs of plans are multiples of ``1 / parts``.
+    ``caps``: upper bounds on the count of each action in plans that cost less.
     """
 
     order: Lexicographic
@@ -63,10 +63,11 @@ class PlanProver(CountBound):
     def prove_claim(
         self, claim: Claim, measure: Measure, kept: Sequence[Level]
     ) -> tuple[CountProof, Vector | None, Mapping[int, int]] | None:
-        """Return a proof of a claim or of a weaker one, the bound proved, and the items by column.
+        """Return a proof of a claim or of a weaker claim, the bound proved, and the items by column.
 
-        The bound is ``claim.least`` where the whole claim is proved. Returns ``None`` where nothing is
-        proved. ``measure`` is the objective of the claim, which counts items or not.
+        The bound is ``claim.least`` unless the claim proved is weaker. Returns ``None`` if nothing is proved.
+        ``measure`` is the objective of the claim. Plans that are worse than the incumbent by a level in
+        ``kept`` are excluded from the claim.
         """
         self._claim, self._least, self._leaves = claim, claim.least, 0
         floats = [claim.order.approximate(cost)[0] for cost in claim.costs]
@@ -96,7 +97,7 @@ class PlanProver(CountBound):
     def _prove_part(self, model: CountModel, depth: int) -> CountProof:
         """Return the proof of a node of the branching.
 
-        The claim is lowered to its bound where that is smaller.
+        If the node proves less than the claim, the claim is lowered to the bound of the node.
         """
         program = model.program
         model.tighten()
@@ -210,11 +211,12 @@ class PlanProver(CountBound):
     def _rounded_weights(
         self, model: CountModel, floats: Sequence[float], parts: int, one: Vector
     ) -> dict[int, Vector]:
+        """Return the weights above 0 by row, rounded to multiples of ``one`` divided by ``parts``."""
         rounded = {row: round(floats[row] * parts) for row in model.conditions if abs(floats[row]) < 1e15}
         return {row: times(one, Fraction(n, parts)) for row, n in rounded.items() if n > 0}
 
     def _exact_weights(self, model: CountModel, relaxed: Relaxation) -> "list[dict[int, Vector]]":
-        """Return the exact duals of a basis, by which its columns have reduced cost 0; none if singular."""
+        """Return the exact duals of a basis, which make its reduced costs 0; no duals if it is singular."""
         columns, tight = set(relaxed.columns), relaxed.rows
         matrix: dict[int, dict[int, Fraction]] = {column: {} for column in sorted(columns)}
         for row in tight:
@@ -237,7 +239,7 @@ class PlanProver(CountBound):
         return claim.item if column in self._columns else claim.order.zero
 
     def _bound(self, model: CountModel, weights: Mapping[int, Vector], free: bool = False) -> Vector | None:
-        """Return the bound that weights prove of the current node; ``None`` where they prove none.
+        """Return the bound that weights of rows prove for the current node; ``None`` if they prove none.
 
         With ``free``, all costs are 0.
         """

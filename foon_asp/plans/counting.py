@@ -33,6 +33,7 @@ class Counting:
     """Counts of executions of the units of a question, by index, and the search for their order."""
 
     def __init__(self, question: PlanQuestion, units: list[int]) -> None:
+        """Build the flows of units, given by id, and the bound on their counts under the question's rules."""
         self._question, self._problem, self.units = question, question.problem, units
         self._measures: dict[Objective, Measure] = {}
         self._known_figures: dict[Objective, list[Fraction]] = {}
@@ -118,7 +119,7 @@ class Counting:
         return self._level(objective, Fraction(costs.measure(objective)))
 
     def _below(self, objective: Objective, cost: int | Fraction) -> Level:
-        """Return the level of plans that cost less."""
+        """Return the level that a plan satisfies if it costs less than ``cost``."""
         level = self._level(objective, Fraction(cost))
         if level.measure.exact is not None:
             return level._replace(strict=True)
@@ -183,9 +184,10 @@ class Counting:
         return Fraction(step, common), levels
 
     def none_is_left(self) -> bool:
-        """Prove that no counts belong to a plan, where there are not too many; return whether it is proved.
+        """Try all counts to prove that there is no plan; return whether it is proved.
 
-        A plan found on the way becomes the incumbent. Raises :class:`Stopped` where nothing is proved.
+        If a plan is found, it becomes the incumbent, and the result is ``False``. Raises :class:`Stopped` if
+        neither is decided.
         """
         try:
             self.bound.none_is_left(self.measure(Objective.UNITS), self._is_better)
@@ -205,7 +207,7 @@ class Counting:
         return {objective: int(least) if objective.row.whole else least}
 
     def _best_within_caps(self, level: Level) -> bool:
-        """Prove with clingo that no plan is better, where the counts of all better plans are bounded by caps.
+        """Try to prove with clingo that no plan is better, if the counts of all better plans are bounded.
 
         Returns whether it is proved. Raises :class:`BetterError` if a plan is better.
         """
@@ -304,7 +306,11 @@ class Counting:
         return ended.units is not None
 
     def _plan(self, times: Mapping[int, tuple[int, int]], best: bool = False) -> Plan | None:
-        """Return a plan with counts between bounds (the best one, if so), found by clingo, or ``None``."""
+        """Return a plan with counts within ``times``, found by clingo; ``None`` if there is none.
+
+        ``times`` has the least and greatest count of each action. With ``best``, the plan is the best such
+        plan.
+        """
         ended = self._ended(times, best)
         if ended.units is None:
             if not ended.exhausted:

@@ -7,7 +7,11 @@ from foon_asp.problem import Problem
 
 
 def sequence(problem: Problem, times: frozenset[tuple[int, ...]], after: frozenset[tuple[int, ...]]) -> Plan:
-    """Return executions in topological order, the smallest units first among those that are ready."""
+    """Return executions in topological order, as unit ids; the smallest ready unit comes first.
+
+    ``times`` has pairs of a unit number and its count. ``after`` has rows of two executions, the second of
+    which has to come first; each execution is a unit number and its turn, from 1.
+    """
     before: dict[tuple[int, int], set[tuple[int, int]]] = {
         (unit, turn): set() for unit, count in times for turn in range(1, count + 1)
     }

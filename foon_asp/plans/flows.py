@@ -13,10 +13,11 @@ from foon_asp.problem import Problem
 class Flows:
     """Actions with preconditions and effects on copies of objects, all by number.
 
-    The lists map, for each action, objects to numbers of copies. An action can be executed while the copies
-    that it ``asks`` for are there; it consumes the copies in ``uses``, and produces the copies in ``adds``.
-    ``start`` has the initial numbers of copies, and ``targets`` the numbers that have to remain. Objects that
-    are not consumable are in none of these; ``items`` are the preconditions of each action among them.
+    ``asks``, ``uses`` and ``adds`` map, for each action, objects to numbers of copies. An action can be
+    executed if there are the copies in ``asks``; it consumes the copies in ``uses``, and produces the copies
+    in ``adds``. ``start`` has the initial numbers of copies, ``targets`` the numbers that have to remain.
+    Objects that are not consumable are in none of these; ``items`` has those that each action has as
+    preconditions.
     """
 
     asks: Sequence[Mapping[int, int]]
@@ -29,8 +30,9 @@ class Flows:
     def lacking(self, priced: bool) -> tuple[list[list[int]], list[int]]:
         """Return the preconditions of each action, and the targets, that initial copies do not satisfy.
 
-        An action that is executed can be executed again in the delete relaxation, so an object that is added
-        is there as often as wanted. If ``priced``, initial copies are taken one by one, and satisfy nothing.
+        In the delete relaxation an executed action can be executed again, so there are enough copies of any
+        object that is added. If ``priced``, initial copies have a cost, and satisfy no precondition or
+        target.
         """
 
         def lacks(copies: Mapping[int, int]) -> list[int]:
@@ -39,7 +41,7 @@ class Flows:
         return list(map(lacks, self.asks)), lacks(self.targets)
 
     def balances(self) -> Iterator[tuple[int, dict[int, int], int]]:
-        """Yield the rows of the state equation: an object, its change by each action, the copies wanted."""
+        """Yield the rows of the state equation: object, change by each action, copies that must remain."""
         changes: dict[int, dict[int, int]] = {o: {} for o in (*self.achievers, *self.targets)}
         for action, (uses, adds) in enumerate(zip(self.uses, self.adds, strict=True)):
             for o, n in adds.items():
@@ -61,7 +63,7 @@ class Flows:
 
     @property
     def remainders(self) -> Iterator[Remainder]:
-        """The remainders of objects of which every action that asks for them leaves copies."""
+        """The remainders of the objects for which every asking action leaves more copies than the target."""
         kept_by_object: dict[int, dict[int, int]] = {}
         for action, preconditions in enumerate(self.asks):
             for o, n in preconditions.items():

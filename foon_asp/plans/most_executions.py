@@ -17,7 +17,7 @@ def most_executions(
 ) -> dict[int, tuple[int, int]]:
     """Return the least and greatest number of executions in any best plan, by unit that can matter.
 
-    Where no plan exists, every unit has at most one execution. Raises :class:`UserError` where neither a best
+    If there is no plan, every unit has at most one execution. Raises :class:`UserError` if neither a best
     plan nor the absence of plans is proved.
     """
     question = PlanQuestion(problem, objectives, settings, Reporter())

@@ -79,8 +79,8 @@ class PlanQuestion:
     def apply_rules(self) -> bool:
         """Apply rules that remove units, require sets or limit sums; return whether they allow a plan.
 
-        Other rules about executions are left to the search, since their analysis assumes items that last,
-        where every unit is executed once.
+        Other rules about executions are left to the search: their analysis assumes that items last, so that
+        every unit is executed once.
         """
         rules = self.program.understood
         if rules is None:
@@ -98,9 +98,9 @@ class PlanQuestion:
         return rules is not None and not (rules.shrinking and rules.only_limits)
 
     def cut(self) -> list[int] | None:
-        """Return the units that can matter, ascending; ``None`` if a goal is unreachable even if items last.
+        """Return the units that can matter, by id; ``None`` if a goal is unreachable even if items last.
 
-        These are the achievers of goals and, recursively, of their preconditions. With rules that may require
+        The units are the achievers of goals and, recursively, of their preconditions. If rules may require
         redundant units, they are all units that can execute.
         """
         problem = self.problem
@@ -150,7 +150,7 @@ class PlanQuestion:
         return better and not any(counts >= Counter(other) for other in self.incomparable)
 
     def outcome(self, status: Status, proof: Proof | None) -> Outcome:
-        """Return the outcome with the incumbent, which is replayed first; raises :class:`BugError`."""
+        """Replay the incumbent, and return the outcome; raises :class:`BugError` if the replay fails."""
         plan, costs = self.best or (None, None)
         if plan is not None and costs is not None:
             self._require_runs(plan, costs)

@@ -105,7 +105,7 @@ def _positions(units: Sequence[int], plan: Plan) -> list[int]:
 
 
 def _plain_plan(question: PlanQuestion, counting: Counting, measures: Sequence[Measure]) -> Plan | None:
-    """Return an order of the best counts under the state equation alone, if they have one."""
+    """Return a plan with the best counts under the state equation alone; ``None`` if these have no order."""
     counts = counting.bound.plain_counts(measures)
     try:
         plan = None if counts is None else counting.order(counts)
@@ -115,7 +115,7 @@ def _plain_plan(question: PlanQuestion, counting: Counting, measures: Sequence[M
 
 
 def _below_cutoff(question: PlanQuestion, counting: Counting, plan: Plan) -> Counting:
-    """Exclude units that alone cost more than a plan, where costs are too large to count unrounded."""
+    """Return a counting without units that alone cost more than a plan; if costs are exact, the same."""
     objective = question.levels[0]
     if multiplies(objective) or counting.measure(objective).exact is None:
         return counting

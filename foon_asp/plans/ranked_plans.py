@@ -1,4 +1,4 @@
-"""Plans in which items are used up in order of their costs, one by one; none holds another."""
+"""Ranking of plans in which items are used up, by costs; no plan includes another."""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -72,7 +72,7 @@ def best_plans(
     plans_by_counts = {frozenset(Counter(outcome.units).items()): outcome.units}
 
     def ask(counts: Counts) -> None:
-        """Keep an order of counts, if it is a plan as good as the best one."""
+        """Add a plan with these counts to the result, if there is one as good as the best plan."""
         plan = counting.order(counts)
         if plan is not None and problem.costs(plan).key(question.levels) == best.key(question.levels):
             plans_by_counts.setdefault(frozenset(Counter(plan).items()), plan)

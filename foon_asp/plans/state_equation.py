@@ -1,10 +1,10 @@
 """The state equation alone, strengthened by mixed-integer rounding: bounds, and counts of least cost.
 
-The rows are about counts only, without indicators. Each row of the inverse basis of the relaxation weights
-rows; their weighted sum, rounded, is a row that a fractional solution violates (Gomory 1958; Nemhauser &
-Wolsey 1990): where ``sum a[j] x[j] >= b`` holds of counts from 0, and ``f`` is the fractional part of ``b``,
-so does ``sum (floor(a[j]) + min(1, fraction(a[j]) / f)) x[j] >= ceil(b)``. Weights may be any numbers from 0,
-so floats only suggest them.
+The rows are about counts only, without indicators. A row of the inverse basis of the relaxation has weights
+for the rows. The weighted sum of the rows, rounded, is a row that a fractional solution violates (Gomory
+1958; Nemhauser & Wolsey 1990): if ``sum a[j] x[j] >= b`` holds for counts from 0, and ``f`` is the fractional
+part of ``b``, then ``sum (floor(a[j]) + min(1, fraction(a[j]) / f)) x[j] >= ceil(b)`` holds, too. The
+rounding is valid for any weights from 0, so it is enough to find weights in floats.
 """
 
 import math
@@ -53,7 +53,7 @@ class RoundedProgram:
     def strengthen(self, costs: Mapping[int, int], cutoff: float | None = None) -> Solved:
         """Add rounded rows while they raise the bound; return the last solution of the relaxation.
 
-        A bound above ``cutoff`` is enough; without a cutoff, no bound is proved.
+        It ends at a bound above ``cutoff``. Without a cutoff, no bound is proved.
         """
         program, value, stalled = self.program, -math.inf, 0
         while True:
@@ -138,6 +138,7 @@ class StateEquation(RoundedProgram):
         caps: Sequence[int | None],
         expired: Callable[[], bool],
     ) -> None:
+        """Build the program; ``caps`` are upper bounds on the counts of actions, none if empty."""
         super().__init__(len(flows.asks), expired)
         self._flows, self._expired = flows, expired
         for action, cap in enumerate(caps):
@@ -153,7 +154,7 @@ class StateEquation(RoundedProgram):
                 self.add((Sum(number),), {a: sign * weight for a, weight in weights.items()}, sign * limit)
 
     def keep(self, level: Level) -> None:
-        """Add the row that counts are as good by a level as the incumbent."""
+        """Add the row of a level: counts as good as the incumbent cost at most ``max_cost``."""
         # without the costs of items, which have no columns, the row is weaker
         costs = level.measure.costs
         self.add((level,), {a: -cost for a, cost in enumerate(costs) if cost}, -level.max_cost)
@@ -197,11 +198,11 @@ class StateEquation(RoundedProgram):
         return (costs is not None and self._round_alternatives(costs)) or super()._round(x)
 
     def _round_alternatives(self, costs: Mapping[int, int]) -> bool:
-        """Add rounded rows of a smaller program, in which objects of one role are one; return whether any.
+        """Add rounded rows of a smaller program that merges objects of one role; return whether any is added.
 
-        Its rows are the sums of the balances of such objects, for example of planks of any wood. Actions that
-        are alike in all rows and in cost share a column. A row about one of many alternatives says little:
-        the solution uses another alternative then.
+        A row of this program is the sum of the balances of these objects, for example of planks of any wood.
+        Actions that are alike in all rows and in cost share a column. A row about a single object of many
+        alternatives is weak, since the solution can use another alternative.
         """
         roles = self._flows.roles
         sums: dict[object, tuple[list[Condition], dict[int, int], int]] = {}

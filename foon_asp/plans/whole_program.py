@@ -19,14 +19,14 @@ Bounds = tuple[list[int], list[int | None]]
 
 
 class Stopped(Exception):  # noqa: N818 (no error: there is no time left)
-    """Time is up, or floats led nowhere."""
+    """Raised if a search ends without a result: time is up, or solutions in floats decide nothing."""
 
 
 class Solved(NamedTuple):
-    """A relaxed solution ``x``, ``None`` without one, and a proved lower ``bound``.
+    """The solution ``x`` of a relaxation (``None`` if none is found), and a proved lower ``bound``.
 
-    The bound is infinite where it is proved that there is no solution, and -infinite where nothing is proved.
-    A solution with a bound of -infinity may violate rows a little.
+    The bound is infinity if it is proved that there is no solution, and -infinity if nothing is proved. A
+    solution with a bound of -infinity may violate rows a little.
     """
 
     x: list[float] | None
@@ -34,10 +34,10 @@ class Solved(NamedTuple):
 
 
 class Relaxation(NamedTuple):
-    """A relaxed solution ``x`` in floats, ``None`` without one, and the ``weights`` of the rows.
+    """The solution ``x`` of a relaxation in floats (``None`` without one), and ``weights`` of its rows.
 
-    The weights are the duals or, without a solution, a Farkas combination of the rows. ``columns`` and
-    ``rows`` are those of the basis: between them is the square system that the weights solve.
+    The weights are the duals or, without a solution, a Farkas combination of the rows. ``columns`` are the
+    basic columns and ``rows`` the tight rows: these are the square system that the weights solve.
     """
 
     x: list[float] | None
@@ -61,6 +61,7 @@ class WholeProgram:
     """
 
     def __init__(self, columns: int, expired: Callable[[], bool] = lambda: False) -> None:
+        """Import HiGHS, and make a program without rows, whose columns are at least 0."""
         self._library, self._np = libraries()
         self._highs: Any = None
         self._expired = expired
@@ -119,7 +120,7 @@ class WholeProgram:
         return lowers, uppers
 
     def restrict(self, bounds: Bounds) -> None:
-        """Set the bounds of columns; columns that were added since keep theirs."""
+        """Set the bounds of columns; columns that were added after ``bounds`` were made do not change."""
         lower, upper = bounds
         self.lower[: len(lower)], self.upper[: len(upper)] = lower, upper
 
@@ -129,7 +130,7 @@ class WholeProgram:
         return self.with_bounds(column, None, below), self.with_bounds(column, below + 1, None)
 
     def solve(self, objective: Mapping[int, int], cutoff: float = math.inf) -> Solved:
-        """Return the solution and bound of the relaxation; a bound above ``cutoff`` is enough."""
+        """Return the solution and bound of the relaxation; a bound above ``cutoff`` is not improved."""
         if self.is_empty:
             return Solved(None, math.inf)
         highs = self._run(objective)
@@ -273,7 +274,7 @@ class WholeProgram:
     def _bound(
         self, objective: Mapping[int, int], weights: Sequence[float], cutoff: float
     ) -> float | Fraction:
-        """Return the Lagrangian bound that weights of rows prove, whatever they are, in whole numbers."""
+        """Return the Lagrangian bound of any weights of rows, computed in whole numbers."""
         best: float | Fraction = -math.inf
         for parts in PARTS:
             scaled = [max(0, round(weight * parts)) if abs(weight) < 1e15 else 0 for weight in weights]

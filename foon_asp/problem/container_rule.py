@@ -56,8 +56,8 @@ def needed_inputs(
 ) -> tuple[ObjectNode, ...]:
     """Return the inputs that a unit needs under the rule (its preconditions), in the unit's order.
 
-    Below level 3 a node does not include its contents. There, a unit of a ``network`` stands for several
-    level-3 units, and needs the inputs that all of them need.
+    Below level 3, nodes do not include their contents. A unit of a ``network`` of such a level stands for
+    several level-3 units, and needs the inputs that all of these units need.
     """
     return _sides(unit, rule, utensils, network)[0]
 
@@ -67,8 +67,8 @@ def given_outputs(
 ) -> tuple[ObjectNode, ...]:
     """Return the outputs that a unit makes under the rule (its add effects), in the unit's order.
 
-    These are all outputs except skipped inputs. Below level 3, a unit of a ``network`` stands for several
-    level-3 units, and makes the outputs that any of them makes.
+    These are all outputs except inputs that the rule skips. Below level 3, a unit of a ``network`` stands for
+    several level-3 units, and makes the outputs that at least one of these units makes.
     """
     return _sides(unit, rule, utensils, network)[1]
 

@@ -100,10 +100,12 @@ def tree_costs(
     available: Collection[Known],
     user_objectives: Iterable[Objective] = (),
 ) -> Costs:
-    """Return the costs of units, each with its number of executions, that need distinct kitchen ``items``.
+    """Return the costs of a tree or plan.
 
-    Objectives that need data which are not ``available`` for all units are left out, and ``attempts`` where a
-    rate is 0. ``user_objectives`` are measured besides the built-in ones.
+    ``units``: its units, each with its number of executions. ``items``: the number of kitchen items that they
+    need.
+    ``available``: the kinds of data that all units have; objectives that need other data are left out, as is
+    ``attempts`` if a rate is 0. ``user_objectives``: objectives to measure in addition to the built-in ones.
     """
     measures: dict[Objective, int | Fraction] = {}
     for objective in (*_MEASURED, *user_objectives):
@@ -130,7 +132,7 @@ def _product(figures: Collection[int | Fraction]) -> Fraction:
 
 
 def _sum(figures: Iterable[int | Fraction]) -> Fraction:
-    """Return the sum of figures, of which most have one of few denominators."""
+    """Return the sum of figures; it is fast if the figures have few distinct denominators."""
     numerators: dict[int, int] = {}
     for figure in figures:
         denominator = figure.denominator

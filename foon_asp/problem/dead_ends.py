@@ -14,9 +14,8 @@ from foon_asp.problem.relevance import reach
 class Cause(StrEnum):
     """The cause of a dead end.
 
-    ``missing``: an object node is not in the kitchen, and no unit makes it (a unit that needs it as well only
-    passes it on). ``cycle``: every achiever of the node needs one of a set of nodes that can only be made
-    from each other.
+    ``missing``: an object node is not in the kitchen, and no unit makes it, except units that also need it.
+    ``cycle``: every achiever of the node needs one of a set of nodes that can only be made from each other.
     """
 
     MISSING = "missing"
@@ -26,9 +25,9 @@ class Cause(StrEnum):
 class Root(NamedTuple):
     """An object node that causes a dead end.
 
-    ``stops`` are the units that lack it on a path to a goal. ``on_the_way`` says whether it is on the path
-    that lacks the fewest nodes. ``cycle`` is the set of nodes that can only be made from each other, ``None``
-    for the cause ``missing``.
+    ``stops``: the units on paths to goals that lack the node.
+    ``on_the_way``: the node is on the path to the goals that lacks the fewest nodes.
+    ``cycle``: the set of nodes that can only be made from each other; ``None`` for the cause ``missing``.
     """
 
     object: int
@@ -48,9 +47,11 @@ class Blocked(NamedTuple):
 class DeadEnds(NamedTuple):
     """The unreachable part of a network, for some goals.
 
-    ``goals`` are the unreachable goals. ``makers`` maps every unreachable object node on any path to these
-    goals to its achievers; achievers that lack the fewest nodes come first. ``roots`` are the causes; causes
-    on the cheapest path come first. ``available`` has a 1 for every reachable node, by id.
+    ``goals``: the unreachable goals.
+    ``makers``: the achievers of each unreachable object node on a path to these goals; the achiever that
+    lacks the fewest nodes comes first.
+    ``roots``: the causes; causes on the cheapest path come first.
+    ``available``: a 1 for every reachable node, by id.
     """
 
     goals: tuple[int, ...]
@@ -120,7 +121,7 @@ def _consumers(achievers: Mapping[int, Sequence[Blocked]]) -> dict[int, list[int
 def _ordered(
     units: tuple[Blocked, ...], h_values: dict[int, int], cheapest: int | None
 ) -> tuple[Blocked, ...]:
-    """Return the achievers of a node, the cheapest first, then by the h-values of what they lack."""
+    """Return the achievers of a node: the cheapest, then the others by the h-values of lacking nodes."""
 
     def key(blocked: Blocked) -> tuple[bool, int, int]:
         return blocked.unit != cheapest, sum(h_values[lack] for lack in blocked.lacks), blocked.unit
@@ -129,7 +130,7 @@ def _ordered(
 
 
 def _cycles(problem: Problem, unreachable: Collection[int]) -> list[DeadCycle]:
-    """Return sets of unreachable nodes that can only be made from each other; all others are available."""
+    """Return the sets of unreachable nodes that can only be made from each other, given all other nodes."""
     others = [o for o in range(len(problem.network.objects)) if o not in unreachable]
     return dead_cycles(replace(problem.network, inputs=problem.needs, outputs=problem.gives), others)
 
@@ -139,10 +140,10 @@ def h_add(
 ) -> tuple[dict[int, int], dict[int, int]]:
     """Return the h_add value of each unreachable node (Bonet & Geffner 2001), and its cheapest achiever.
 
-    ``sources`` are nodes with their costs, above 0; any other node costs the sum of the preconditions of its
-    cheapest achiever, computed by Knuth's generalization of Dijkstra's algorithm (1977). A node that the
-    sources do not lead to has no value. An achiever is in the second dictionary only where it is cheaper than
-    the node as a source; these achievers have no cycle.
+    ``sources`` are nodes with their costs, above 0. Any other node costs as much as the preconditions of its
+    cheapest achiever together. The costs are computed by Knuth's generalization of Dijkstra's algorithm
+    (1977). A node that cannot be made from the sources has no value. A source has a cheapest achiever only if
+    this costs less than the source. The cheapest achievers have no cycle.
     """
     lacking = {blocked.unit: len(blocked.lacks) for units in achievers.values() for blocked in units}
     made_by: dict[int, list[int]] = {}

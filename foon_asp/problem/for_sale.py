@@ -13,11 +13,10 @@ _FRESH_STATES = frozenset({"empty", "clean"})
 class Offer(StrEnum):
     """The set of nodes that shopping lists may contain.
 
-    Without a price list, the first of these sets that suffices for the goals is used. ``for sale``: the nodes
-    that :class:`Shop` sells, without the dish. ``cycle``: also nodes that can only be made from each other.
-    ``processed``: every node but the dish. ``dish``: every node but the goals. ``goal``: every node.
-
-    With a price list, it is ``priced``: the nodes on the list.
+    With a price list, the set is ``priced``: the nodes on the price list. Without a price list, it is the
+    first of the following sets from which the goals can be made. ``for sale``: the nodes that :class:`Shop`
+    sells, except the dish. ``cycle``: in addition, nodes that can only be made from each other.
+    ``processed``: every node except the dish. ``dish``: every node except the goals. ``goal``: every node.
     """
 
     FOR_SALE = "for sale"
@@ -31,16 +30,15 @@ class Offer(StrEnum):
 class Shop:
     """A model of which object nodes of a problem can be bought.
 
-    A node is for sale if no unit makes it (a unit that needs it, or may skip it by the container rule, only
-    passes it on), or if it is in the starting kitchen. Also for sale is a node without any state that
-    contains at most one ingredient and is not on anything, if its label or ingredient is not a product. A
-    *product* is a name that some unit makes out of nodes without this name: whipped cream, dough, lemon
-    juice. States are how a FOON says that something was done, so that a node without states is assumed to be
-    unprocessed. A node that is only empty or clean is a vessel or a tool as shops have it, and for sale
-    although washing up makes it too.
+    A node is for sale if no unit makes it out of other nodes, or if it is a vessel or tool of the starting
+    kitchen. A node is also for sale if it has no state, contains at most one ingredient, is not on anything,
+    and its label or ingredient is not a product. A *product* is a name that some unit makes out of nodes
+    without this name: whipped cream, dough, lemon juice. In a FOON, states say that something was done to a
+    node, so a node without states is assumed to be unprocessed. A node whose states are only empty or clean
+    is a vessel or tool. It is for sale, although washing up makes it, too.
 
-    A goal is not for sale, nor is any node that has or contains the name of the *dish*: the label of a goal
-    (or, where that is a utensil, its one ingredient), if it is a product.
+    A goal is not for sale, and neither is a node that has or contains the name of the *dish*. This name is
+    the label of a goal or, for a utensil, its one ingredient, if the name is a product.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -85,8 +83,8 @@ class Shop:
         """Return a few object nodes that make all goals reachable once they are in the kitchen, by id.
 
         The list has the nodes that the relaxed plan of ``h_add`` takes from the first sufficient offer,
-        without nodes that units of the plan make. Second choices are avoided. A shorter list may exist. The
-        list is empty where all goals are reachable.
+        without nodes that units of this plan make. Nodes that are second choices are avoided. A shorter list
+        may exist. If all goals are reachable, the list is empty.
         """
         for _, offer in self.offers(ends.roots):
             # an item costs more than all second choices of a list
@@ -126,7 +124,7 @@ class Shop:
         return not self._is_plain(o) or len(self._problem.network.objects[o].ingredients) > 1
 
     def _is_plain(self, o: int) -> bool:
-        """Return whether a node is raw, an empty vessel or tool, or one that units need and give back."""
+        """Return whether a node is raw, or a vessel or tool: empty, clean, or from the starting kitchen."""
         node = self._problem.network.objects[o]
         given_back = o in self._starting and not node.contents and node.label not in self._ingredients
         return self.is_raw(o) or _is_fresh(node) or given_back

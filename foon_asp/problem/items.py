@@ -21,7 +21,7 @@ class Fate(StrEnum):
     """The reason why an input of a unit stays, or that it is ``USED_UP``.
 
     ``OUTPUT``: the same node is also an output. ``TOOL``: a utensil with no contents. ``VESSEL``: a utensil
-    that some output is in, on or at. ``INSIDE``: the ingredient of an item that is, by its label, both an
+    that some output is in, on or at. ``INSIDE``: an ingredient of an item whose label is the label of both an
     input and an output. ``TOLD_STAYS`` and ``TOLD_GOES``: a file of the user says so.
 
     Example:
@@ -52,9 +52,9 @@ def fate(
 ) -> Fate:
     """Return whether an input of a unit stays or is used up, and why.
 
-    ``inputs`` and ``outputs`` are all of the unit, also the ones that a container rule skips. ``declared``
-    maps labels and nodes to whether they stay. It overrides all other reasons, and an entry for a node
-    overrides one for its label.
+    ``inputs`` and ``outputs`` are all inputs and outputs of the unit, including any that a container rule
+    skips. ``declared`` maps labels and nodes to whether they stay. It overrides all other reasons, and an
+    entry for a node overrides the entry for its label.
     """
     stays = declared.get(node, declared.get(node.label))
     if stays is not None:
@@ -88,7 +88,7 @@ class Flow(NamedTuple):
 class UnitFlows(Sequence[Flow]):
     """The flows of all units of a network, each computed once, when it is first looked at.
 
-    A question about a few units of a large network looks at few of them.
+    So a question about few units of a large network computes few flows.
     """
 
     def __init__(self, units: int, flow: Callable[[int], Flow]) -> None:
@@ -118,9 +118,9 @@ class UnitFlows(Sequence[Flow]):
 class UsedUp:
     """The model in which items are used up: declarations of the user, and the stock.
 
-    ``told`` maps labels and object nodes to whether they stay, in place of the rule (:func:`fate`). ``stock``
-    has the number of copies of kitchen nodes; nodes that are not in it never run out. ``wanted`` has the
-    number of copies of goals, where that is not one.
+    ``told`` maps labels and object nodes to whether they stay, which overrides the rule (:func:`fate`).
+    ``stock`` has the number of copies of kitchen nodes; nodes that are not in ``stock`` never run out.
+    ``wanted`` has the number of copies of each goal that is wanted more than once.
 
     Example:
         >>> foon_asp.UsedUp(stock={foon_asp.parse_node("egg"): 2}).told
@@ -156,8 +156,8 @@ class UsedUp:
     ) -> Flow:
         """Return the preconditions and effects of a unit on copies of items.
 
-        Of an input that is also an output, only the difference is used up or made, unless it is said to be
-        used up.
+        If an input is also an output, only the difference of the two amounts is used up or made, unless the
+        input is declared as used up.
 
         Parameters:
             network: The network of the unit.
@@ -187,7 +187,7 @@ class UsedUp:
 def plain_flows(
     network: Network, rule: ContainerRule, utensils: frozenset[str], told: frozenset[tuple[Named, bool]]
 ) -> UnitFlows:
-    """Return the flows of the units of a network without amounts, with what the user told of items."""
+    """Return the flows of the units of a network without amounts; ``told`` has the user's declarations."""
     needs, gives = network_sides(network, rule, utensils)
     items, none = UsedUp(told=dict(told)), UnitAmounts()
     return UnitFlows(

@@ -5,9 +5,10 @@ from typing import NamedTuple
 
 
 class LinearRow(NamedTuple):
-    """A linear constraint on executions: their weights sum up to ``bound`` at most, or ``at_least``.
+    """A linear constraint on executions: the sum of their weights is at most ``bound``.
 
-    ``weights`` are by unit. Each execution of a unit counts; with ``used``, a unit counts once.
+    With ``at_least``, the sum is at least ``bound``. ``weights`` has the weight of a unit by id. A unit
+    counts for each of its executions; with ``used``, only once.
     """
 
     weights: Mapping[int, int]
@@ -20,7 +21,7 @@ class LinearRow(NamedTuple):
         return self.weights.get(unit, 0)
 
     def total(self, units: Iterable[int]) -> int:
-        """Return the sum over executed units, of which each occurrence is an execution."""
+        """Return the sum of the weights of executed units; each occurrence of a unit is one execution."""
         return sum(map(self.weight, frozenset(units) if self.used else units))
 
     def holds(self, units: Iterable[int]) -> bool:

@@ -17,7 +17,7 @@ _EXPONENT = re.compile(r"e([+-]?[\d_]+)\s*", re.IGNORECASE)
 
 
 def exact(number: Number, quantity: str) -> Fraction:
-    """Return a number as an exact fraction; raises :class:`UserError` about the ``quantity``."""
+    """Return a number as an exact fraction; else raises :class:`UserError`, which names the ``quantity``."""
     try:
         power = _EXPONENT.search(str(number)) if isinstance(number, str | Decimal) else None
         if power and abs(int(power[1])) > _MAX_DIGITS:
@@ -30,7 +30,7 @@ def exact(number: Number, quantity: str) -> Fraction:
 
 
 def unit_price(number: Number, quantity: str) -> Fraction:
-    """Return an exact price, from 0; raises :class:`UserError` about the ``quantity`` for others."""
+    """Return an exact price, from 0; else raises :class:`UserError`, which names the ``quantity``."""
     price = exact(number, quantity)
     if price < 0 or max(price.numerator, price.denominator) >= 10**_MAX_DIGITS:
         raise UserError(

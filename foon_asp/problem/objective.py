@@ -45,12 +45,15 @@ class Measured(Protocol):
 class Row(NamedTuple):
     """The definition of an objective: a linear row over units and kitchen items, or a product.
 
-    ``unit`` is the function that returns the cost of a unit, an exact number, and ``item`` the cost of each
-    distinct kitchen item that the units need. Costs are added up, and less is better; where the objective
-    ``multiplies``, the values of units are factors, and more is better. ``term`` is the objective's name in
-    the encodings, ``words`` are the label of an axis. ``is_fact`` says that the encodings read the costs of
-    units from ``cost/3``, since they have no other predicate for them. ``whole`` says that all costs are
-    whole numbers, and ``needs`` is the optional data that the objective needs.
+    ``term``: the name of the objective in the encodings. ``words``: its name on the axis of a chart.
+    ``unit``: returns the cost of a unit, an exact number.
+    ``item``: the cost of each distinct kitchen item that the units need.
+    ``multiplies``: the values of units are factors, and more is better; else they are added up, and less is
+    better.
+    ``needs``: the optional data that the objective needs.
+    ``is_fact``: the encodings read the costs of units from ``cost/3``, since no other fact states these
+    costs.
+    ``whole``: all costs are whole numbers.
     """
 
     term: str

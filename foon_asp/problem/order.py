@@ -6,10 +6,10 @@ from foon_asp.problem.problem import Problem
 
 
 def executable_order(problem: Problem, units: Iterable[int]) -> tuple[int, ...] | None:
-    """Return units in a topological order, in which preconditions are made before; ``None`` without one.
+    """Return units in a topological order, in which each can be executed; ``None`` if there is none.
 
-    The preconditions of a step are made directly before it (depth-first from the goals), as in a recipe. The
-    time is linear in the size of the units.
+    The preconditions of a step are made directly before the step (depth-first from the goals), as in a
+    recipe. The time is linear in the number of units and their inputs and outputs.
     """
     needs, gives, kitchen = problem.needs, problem.gives, problem.kitchen
     chosen = sorted(set(units))

@@ -122,21 +122,25 @@ class Origin(Protocol):
 class Problem:
     """A planning problem: goals, a kitchen and a container rule, over a network.
 
-    :meth:`foon_asp.Foon.problem` makes one from names. ``kitchen`` and ``goals`` are object node ids,
-    positions in ``network.objects``; one tree has to make all goals. For a store, ``network`` is the part
-    that is relevant to the goals. ``rates`` has the success rate of every motion, or is ``None`` if none are
-    known; ``own_rates`` has, by id, the rates of units that differ from that of their motion, and
-    :meth:`rate` returns the rate of any unit. ``utensils`` are the labels of utensils, for the rule
-    ``implied`` of ``containers``. ``unit_prices`` are the prices of units, or ``None``; :meth:`price` returns
-    the price of any unit. ``measures`` are the user measures by name; :meth:`measure` returns the cost of a
-    unit by one. ``origin`` is the data from which the problem was made, or ``None`` for a problem made by
-    hand. ``as_seen`` is the problem whose rates and kitchen the user's rules see, where this one has other
-    rates or a larger kitchen. ``restriction`` is the effect of rules on the network, for this question only:
-    each variation needs its own. ``items`` is the model in which items are used up; ``None`` if they last.
-    ``starting`` says that no kitchen is named, so that all nodes are available that no unit makes out of
-    others. Rates that lack a motion of the network are ignored, and ``unrated`` is the error that lists the
-    missing ones. ``stand_ins`` is the source of the stand-ins of the network, ``None`` where it has none.
-    ``amounts`` are how many of a node units take and make; they count where items are used up.
+    :meth:`foon_asp.Foon.problem` makes one from names.
+
+    ``network``: the network; for a store, the part that is relevant to the goals.
+    ``kitchen``, ``goals``: object node ids, positions in ``network.objects``. One tree has to make all goals.
+    ``rates``: the success rate of every motion; ``None`` if rates are not known for all motions of the
+    network.
+    ``own_rates``: the rates of units, by id, that differ from the rate of their motion; see :meth:`rate`.
+    ``unrated``: the error that lists the motions without a rate, if ``rates`` were ignored for this reason.
+    ``utensils``: the labels of utensils, for the rule ``implied`` of ``containers``.
+    ``unit_prices``: the prices of units, or ``None``; see :meth:`price`.
+    ``measures``: the user measures by name; see :meth:`measure`.
+    ``origin``: the data from which the problem was made; ``None`` for a problem made by hand.
+    ``as_seen``: the problem whose rates and kitchen the user's rules see, if this problem has other rates or
+    a larger kitchen.
+    ``restriction``: the effect of rules on the network, for this question only; each variation needs its own.
+    ``items``: the model in which items are used up; ``None`` if items last.
+    ``starting``: no kitchen is named, so that all nodes are available that no unit makes out of other nodes.
+    ``stand_ins``: the source of the stand-ins of the network; ``None`` if it has none.
+    ``amounts``: how many copies of a node units take and make; these count if items are used up.
 
     Example:
         >>> problem = foon_asp.load().problem("ice")
@@ -199,7 +203,7 @@ class Problem:
 
     @cached_property
     def whole(self) -> "Problem":
-        """The same problem over the whole network: of a store, all of it is read."""
+        """The same problem over the whole network; if this is a store, all of it is read."""
         nearest = self.stand_ins is not None and self.stand_ins.nearest
         is_part = self.network.object_numbers or nearest
         return self.origin.posed_whole(self) if self.origin is not None and is_part else self
@@ -212,9 +216,9 @@ class Problem:
         return replace(self, origin=None, rates=rates, own_rates=own_rates, measures=measures)
 
     def about(self, units: Iterable[FunctionalUnit]) -> "Problem":
-        """Return this problem over a network that has some units, as far as the data have them.
+        """Return this problem over a network that includes some units, as far as the data have these units.
 
-        For a store, these units are read.
+        If the network is part of a store, the units are read from there.
 
         Parameters:
             units: The units.
@@ -296,9 +300,9 @@ class Problem:
 
     @cached_property
     def flows(self) -> Sequence[Flow]:
-        """The effects of each unit on copies of items, worked out when they are first looked at.
+        """The effects of each unit on copies of items, computed at the first access to the unit.
 
-        Where items last, no unit uses up any.
+        If items last, no unit uses up any copies.
         """
         items, network = self.items, self.network
         if items is None:
@@ -387,7 +391,7 @@ class Problem:
         return (*self.goals, *range(size, size + (len(restriction.required) if restriction else 0)))
 
     def __eq__(self, other: object) -> bool:
-        """Return whether two problems are equal; networks are, whatever the order of their files."""
+        """Return whether two problems are equal; networks are compared without the order of their files."""
         if not isinstance(other, Problem):
             return NotImplemented
         return self is other or (
@@ -551,7 +555,7 @@ class Problem:
 
     @cached_property
     def unpriced(self) -> Sequence[Unpriced]:
-        """The units that have no price, by motion: of a store, of its whole network."""
+        """The units that have no price, by motion; for a store, those of its whole network."""
         network = self.network
         lacking = (unit for unit, price in enumerate(self.prices) if price is None)
         in_network = count_unpriced((network.motions[unit], network.sources[unit]) for unit in lacking)
@@ -670,7 +674,7 @@ class _MeasuredUnit(NamedTuple):
 
 
 def for_each_goal(problem: Problem) -> list[Problem]:
-    """Return the problem of each goal by itself, in order; prices that are known are not found anew."""
+    """Return one problem for each single goal, in order; prices that are already computed are shared."""
     shared = {name: value for name, value in vars(problem).items() if name in {"prices", "unpriced"}}
     problems = [replace(problem, goals=(goal,)) for goal in problem.goals]
     for single in problems:
@@ -711,9 +715,10 @@ def first_places(network: Network) -> Iterable[tuple[str, Source]]:
 def unrated_text(
     motions: Iterable[tuple[str, Source]], rates: Mapping[str, Fraction], max_lines: int = 10
 ) -> str:
-    """Return the message that motions have no success rate, with the source of each; empty without any.
+    """Return the message that lists motions without a success rate; empty if every motion has one.
 
-    It lists ``max_lines`` of them. ``motions`` may have a motion several times; its first source is shown.
+    It lists at most ``max_lines`` motions, each with its source. ``motions`` may have a motion several times;
+    the first source is shown.
     """
     missing: dict[str, Source] = {}
     for motion, source in motions:
@@ -732,7 +737,7 @@ def unrated_text(
 
 
 def unrated_remarks(motions: Iterable[tuple[str, Source]], rates: Mapping[str, Fraction]) -> list[str]:
-    """Return the warning, if any, that motions have no success rate, so that no success is known."""
+    """Return a list with the warning that motions have no success rate; empty if every motion has one."""
     lacking = [
         repr(motion) for motion in dict.fromkeys(motion for motion, _ in motions) if motion not in rates
     ]

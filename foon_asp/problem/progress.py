@@ -11,9 +11,9 @@ from foon_asp.problem.objective import Objective
 class Progress(NamedTuple):
     """The progress of a question: the ``costs`` of the incumbent, and the proved ``bounds`` by objective.
 
-    Of questions with several answers, ``done`` of ``total`` answers are finished; while networks are read,
-    they are bytes, and while one is built, units. ``total`` is 0 where nothing is counted. ``costs`` are
-    ``None`` before the first tree.
+    ``costs`` are ``None`` before the first tree. ``done`` of ``total`` are answers for a question with
+    several answers, bytes while a network is read, and units while it is built. ``total`` is 0 if nothing is
+    counted.
 
     Example:
         >>> reports = []

@@ -33,11 +33,11 @@ class _FixedCosts:
 
 
 class Purchases:
-    """A question about what to buy, as one about a tree.
+    """A question about what to buy, posed as a question about a tree or plan.
 
-    ``problem`` has one more unit for each ware, which makes a copy of the ware out of nothing. Under
-    ``objectives`` its best tree or plan has the cheapest purchases; ties are broken by fewer purchases, by
-    fewer second choices, and by the objectives of the question.
+    ``problem`` has an additional unit for each ware, which makes a copy of the ware out of nothing. The best
+    tree or plan under ``objectives`` has the cheapest purchases; ties are broken by fewer purchases, by fewer
+    second choices, and by the objectives of the question.
     """
 
     def __init__(
@@ -47,6 +47,11 @@ class Purchases:
         second_choices: Collection[int],
         objectives: Sequence[Objective],
     ) -> None:
+        """Add a unit to a problem for each ware.
+
+        ``wares`` are the prices of object nodes that can be bought, by id. ``second_choices`` are the wares
+        to avoid.
+        """
         self._wares = tuple(wares)
         self._first = len(problem.network)
         self._purchases = range(self._first, self._first + len(wares))
@@ -77,7 +82,7 @@ class Purchases:
         )
 
     def without(self, wares: Collection[int]) -> Self:
-        """Return the purchases without some wares, by the ids of the object nodes, for items that last."""
+        """Return the question without some wares, given by object node id; items have to last."""
         removed = {unit for unit in self._purchases if self._wares[unit - self._first] in wares}
         if not removed:
             return self
@@ -86,9 +91,9 @@ class Purchases:
         return fewer
 
     def split(self, units: Sequence[int]) -> tuple[dict[int, int], tuple[int, ...]]:
-        """Return the purchases of a tree or plan, and its other units, in their order.
+        """Return the purchases in a tree or plan, and its other units in their order.
 
-        The purchases are numbers of copies by ascending ids of object nodes.
+        The purchases are numbers of copies by object node id, in ascending order of id.
         """
         bought = Counter(self._wares[unit - self._first] for unit in units if unit >= self._first)
         return dict(sorted(bought.items())), tuple(unit for unit in units if unit < self._first)

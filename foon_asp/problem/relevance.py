@@ -14,10 +14,10 @@ from foon_asp.problem.restriction import Restriction
 class Reached(NamedTuple):
     """The forward closure of the kitchen.
 
-    ``units`` are all reachable units, in an executable order. ``makers[o]`` is the first achiever of object
-    ``o`` in this order (kitchen items have none), so that the achievers have no cycle. ``available`` has a 1
-    for every reachable object, by id. Units that a restriction removes are left out, and each set that it
-    requires has an achiever like an object (``Problem.targets``).
+    ``units``: all reachable units, in an executable order, without units that a restriction removes.
+    ``makers``: the first achiever of each object in this order, so that the achievers have no cycle. Kitchen
+    items have no achiever. A required set of a restriction has one, like an object (:attr:`Problem.targets`).
+    ``available``: a 1 for every reachable object, by id.
     """
 
     units: tuple[int, ...]
@@ -163,9 +163,9 @@ def follow(
     needs: Sequence[Iterable[int]],
     start: Container[int],
 ) -> set[int] | None:
-    """Return the units that make objects, by one achiever for each, down to the start.
+    """Return the units that make objects out of ``start``, with one achiever, ``maker``, for each object.
 
-    ``None`` where an object has no achiever.
+    ``None`` if an object has no achiever.
     """
     units: set[int] = set()
     stack = list(objects)

@@ -10,9 +10,10 @@ from typing import NamedTuple, overload
 class Restriction:
     """Units that no tree may contain, and disjunctive action landmarks that rules add.
 
-    ``removed`` returns whether no tree may contain a unit, by id; it is called at most once for each unit,
-    when the unit is accessed. Of each set in ``required``, a tree has to contain and execute a unit, which
-    need not lead to a goal: a required set is an additional goal, of which its units are the achievers.
+    ``removed`` takes the id of a unit and returns ``True`` if no tree may contain the unit. It is called at
+    most once for each unit, when the unit is accessed. A tree has to contain and execute a unit of each set
+    in ``required``; the unit need not lead to a goal. So a required set is like an additional goal whose
+    achievers are its units.
     """
 
     removed: Callable[[int], bool]
@@ -38,7 +39,7 @@ class Left(Sequence[tuple[int, ...]]):
         self._filtered: dict[int, tuple[int, ...]] = {}
 
     def instead(self, others: Mapping[int, tuple[int, ...]]) -> "Left":
-        """Return a copy with other sets at some positions: ``others`` by position, which are not filtered."""
+        """Return a copy with the sets in ``others`` at their positions; these sets are not filtered."""
         copy = Left(self._sets, self._removed)
         copy._filtered.update(others)
         return copy

@@ -25,9 +25,9 @@ class Trait(NamedTuple):
 
 
 class Wanted(NamedTuple):
-    """A unit that rules require, in disjunctive normal form: it has all traits of at least one row.
+    """A unit that rules require, described in disjunctive normal form: it has all traits of at least one row.
 
-    ``always`` says that the rules require it in every network.
+    ``always`` says that the rules require the unit whatever the network is.
     """
 
     rows: Sequence[Sequence[Trait]]

@@ -111,9 +111,11 @@ Conjunct = Literal | Test | Conditional | Aggregate | Strange
 class Clause(NamedTuple):
     """A rule without pools, taken apart.
 
-    ``head`` is the atom of a ``plain`` rule, ``None`` for a constraint. Any other rule has a choice, a
-    disjunction or a negated head: ``others`` has its atoms, each with its condition. ``ast``
-    is the rule without pools, with a node for each conjunct of ``body``.
+    ``plain``: the rule is a constraint, or its head is one atom without negation or choice.
+    ``head``: this atom; ``None`` for a constraint, and for a rule that is not plain.
+    ``others``: the head atoms of a rule that is not plain, each with its condition.
+    ``number``: the number of the rule, the same for all clauses of a rule with pools.
+    ``ast``: the syntax tree of the clause; its body has one node for each conjunct of ``body``.
     """
 
     head: Literal | None
@@ -138,7 +140,7 @@ class Clause(NamedTuple):
 def clauses(rule: AST, number: int, constants: Constants) -> Iterator[Clause]:
     """Unpool a rule: return one clause for each choice from its pools.
 
-    ``number`` is that of the rule, the same for all of its clauses.
+    ``number`` is the number of the rule; each of its clauses gets it.
     """
     source = source_of(rule)
     for clause in rule.unpool(condition=True):
@@ -196,7 +198,7 @@ def value(term: AST, constants: Constants) -> Symbol | None:
 
 
 def plain_value(symbol: Symbol) -> str | int | None:
-    """Return a text or a number; ``None`` for anything else, such as a word without quotes."""
+    """Return the text or number that a symbol is; ``None`` for others, such as words without quotes."""
     if symbol.type is SymbolType.Number:
         return symbol.number
     return symbol.string if symbol.type is SymbolType.String else None
@@ -321,7 +323,7 @@ class _Reader:
         )
 
     def _aggregate(self, node: AST) -> Aggregate:
-        """Return an aggregate with its guards on the right of it."""
+        """Return an aggregate; its left guard is turned around, so that each guard stands on the right."""
         atom = node.atom
         guards = []
         if atom.left_guard is not None:

@@ -37,7 +37,7 @@ def library_constraints() -> list[LibraryConstraint]:
 
 
 def _read(file: Path) -> LibraryConstraint:
-    """Take apart the comment that opens a file: a title, then Purpose with an example call at its end."""
+    """Read the comment at the start of a constraint's file: the title, the purpose and an example call."""
     lines = file.read_text(encoding="utf-8").split("\n")
     header = [line.removeprefix("%").strip() for line in lines[: lines.index("")]]
     sections: dict[str, list[str]] = {}

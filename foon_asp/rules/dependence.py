@@ -1,7 +1,7 @@
 """Monotonicity of predicates in the tree: monotone, antimonotone, both or neither.
 
-``available(O)`` means that O is in the kitchen or made by a unit of the tree, all of which execute, so it is
-monotone. A predicate with neither rules nor facts never holds.
+``available(O)`` holds if O is in the kitchen or a unit of the tree makes O. All units of a tree execute, so
+``available`` is monotone. A predicate with neither rules nor facts never holds.
 """
 
 from collections import defaultdict
@@ -59,7 +59,7 @@ class Depends(Flag):
 class Doubt(NamedTuple):
     """The reason why the monotonicity of a predicate is unknown.
 
-    ``source`` is the place of the rule that is the reason, ``None`` where no rule is.
+    ``source`` is the place of the rule that causes it; ``None`` if no rule does.
     """
 
     reason: str
@@ -75,6 +75,7 @@ class Dependence:
     def __init__(
         self, program: Sequence[Clause], constants: Constants, varied: Collection[Signature] = ()
     ) -> None:
+        """Compute the monotonicity of all predicates, and the reasons why it is unknown for some."""
         self._constants = constants
         self._varied = frozenset(varied)
         self._depends: dict[Signature, Depends] = {USE: Depends.GROWS, AVAILABLE: Depends.GROWS}
@@ -205,9 +206,9 @@ class Dependence:
             self._at_least_0 -= maybe_negative
 
     def _is_at_least_0(self, term: AST, condition: Iterable[Conjunct]) -> bool:
-        """Whether a term, where it is a number and the condition holds, is at least 0.
+        """Whether a term cannot be a negative number where the condition holds.
 
-        Its product with the number of executions of a unit is at least 0, too.
+        The term may be a product with a number of executions (of ``times/2``), which is never negative.
         """
         condition = tuple(condition)
         product = factors(term)
@@ -281,7 +282,10 @@ def named(signature: Signature) -> str:
 
 
 def _reads(conjuncts: Iterable[Conjunct], plainly: bool) -> Iterator[tuple[Signature, bool]]:
-    """Return the predicates that a body reads, each with whether it is neither negated nor aggregated."""
+    """Return the predicates that a body reads, each with a flag.
+
+    The flag is ``False`` if the predicate is negated, aggregated or in a condition, or if not ``plainly``.
+    """
     for conjunct in conjuncts:
         if isinstance(conjunct, Literal):
             yield conjunct.signature, plainly and conjunct.positive
@@ -294,7 +298,7 @@ def _reads(conjuncts: Iterable[Conjunct], plainly: bool) -> Iterator[tuple[Signa
 
 
 def _closure(start: Signature, reads: Mapping[Signature, set[Signature]]) -> set[Signature]:
-    """Return a predicate and all predicates that it is derived from, its transitive closure."""
+    """Return a predicate and all predicates that it is derived from, directly or through others."""
     closure, stack = {start}, [start]
     while stack:
         for read in reads.get(stack.pop(), ()):

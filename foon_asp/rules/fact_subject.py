@@ -1,4 +1,4 @@
-"""Subjects of facts: the unit, object node or label of each fact, and further subjects that follow."""
+"""Subjects of facts: the arguments that stand for a unit, an object node or a label."""
 
 from enum import StrEnum
 from typing import NamedTuple
@@ -15,10 +15,11 @@ class Subject(StrEnum):
 
 
 class Subjects(NamedTuple):
-    """The arguments of a fact, by position: its subjects, and the subjects that it leads to.
+    """The subjects among the arguments of a fact, by position.
 
-    If its subjects are in the tree, so are the subjects that it leads to. Other arguments are names and
-    numbers; the positions in ``numbers`` are never negative.
+    ``about``: the subjects that the fact is about. ``leads_to``: further subjects; they are in the tree if
+    the subjects in ``about`` are. ``numbers``: the positions of numbers that are never negative. Arguments at
+    other positions are names or numbers.
     """
 
     about: dict[int, Subject]

@@ -16,7 +16,7 @@ Value = str | int | None
 
 
 class Columns(NamedTuple):
-    """The columns of a fact, by position: numbers of units, numbers of object nodes, other numbers, texts."""
+    """The argument positions of a fact by type: unit numbers, object node numbers, other numbers, texts."""
 
     units: tuple[int, ...] = ()
     objects: tuple[int, ...] = ()
@@ -98,8 +98,8 @@ def misplaced(columns: Columns, values: Mapping[int, Value]) -> int | None:
 class FactValues:
     """Facts about the whole network of a question, not only about the part that goals can need.
 
-    Of a store, the part in memory is searched first, and then the other units and nodes, one by one. After
-    ``max_read`` of them, the search ends, and a name that was not found counts as known.
+    In a store, the part in memory is searched first, then all units and nodes, one by one. The search reads
+    at most ``max_read`` units and as many nodes; a name that is not found among these counts as known.
     """
 
     max_read: ClassVar[int] = 200_000
@@ -109,7 +109,10 @@ class FactValues:
         self._lookups_left = 20
 
     def matches(self, name: str, columns: Columns, values: Mapping[int, Value]) -> bool:
-        """Whether some fact has these values, by position; texts have to be in one fact together."""
+        """Whether some fact may have ``values``, given by argument position.
+
+        One fact must have all the texts. The number of a unit or node need only exist.
+        """
         if misplaced(columns, values) is not None:
             return False
         network = self._problem.network
@@ -129,9 +132,9 @@ class FactValues:
         return bool(network.object_numbers) and self._may_have_beyond(name, wanted)
 
     def nearest(self, name: str, columns: Columns, words: Mapping[int, str]) -> dict[int, str] | None:
-        """Return the texts of the fact, by position, whose spelling is most similar to some words.
+        """Find the fact whose texts are spelled most like ``words``; return its texts, by argument position.
 
-        ``None`` where no text is similar, and for each call after the twentieth.
+        ``None`` if no text is similar, and for every call after the twentieth.
         """
         self._lookups_left -= 1
         if self._lookups_left < 0:
@@ -169,7 +172,7 @@ class FactValues:
         return None if origin is None else origin.whole_network
 
     def _may_have_beyond(self, name: str, wanted: Mapping[int, Value]) -> bool:
-        """Whether the part of a store that is not in memory may have such a fact."""
+        """Whether the part of a store that is not in memory may have a fact with the ``wanted`` texts."""
         whole = self._whole
         if whole is None or self._has(name, wanted, whole):
             return True
@@ -184,14 +187,14 @@ def unknown_text(facts: Sequence[str], word: str, meant: str | None) -> str:
 
 
 def nearest_text(facts: Sequence[str], word: str, values: FactValues) -> str | None:
-    """Return the text of some facts that is most similar to a word, ``None`` where no text is similar."""
+    """Return the text in facts of these predicates that is most similar to a word; ``None`` if none is."""
     nearest = [values.nearest(fact, COLUMNS[fact, 2], {1: word}) for fact in facts]
     best = near_labels(word, sorted({match[1] for match in nearest if match is not None}), 1)
     return best[0] if best else None
 
 
 def has_text(facts: Sequence[str], word: str, values: FactValues) -> bool:
-    """Whether one of some facts has a text."""
+    """Whether a fact of one of these predicates has the text ``word``."""
     return any(values.matches(fact, COLUMNS[fact, 2], {1: word}) for fact in facts)
 
 

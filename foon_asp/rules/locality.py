@@ -1,10 +1,11 @@
 """Locality of rules: whether they read facts about the tree alone, its units, object nodes and goals.
 
 A rule is local if its truth for a tree stays the same without the facts of units outside the tree and of
-object nodes that only such units have. So every fact that it reads has to be about a subject that is known to
-be in the tree: ``use(U)`` leads to a unit of it, ``input(U,O)`` from there to an object node, ``label(O,L)``
-to a label, and ``goal(O)`` to a goal, which is always there. An auxiliary predicate may be about its
-arguments: ``tainted(O) :- label(O,"nut").`` reads facts about O alone.
+object nodes that only such units have. So each fact that a local rule reads is about a subject that is known
+to be in the tree. In ``use(U)``, the unit U is in the tree. If U is in the tree, so is the object node O in
+``input(U,O)``. If O is in the tree, so is the label L in ``label(O,L)``. The node O in ``goal(O)`` always is
+in the tree. The arguments of an auxiliary predicate may be subjects: ``tainted(O) :- label(O,"nut").`` reads
+facts about O only.
 """
 
 from collections import defaultdict
@@ -33,6 +34,7 @@ class Locality:
     """Locality of each rule of a program, as a fixpoint over its auxiliary predicates."""
 
     def __init__(self, program: Sequence[Clause], dependence: Dependence) -> None:
+        """Find the locality of all predicates that the clauses of a program derive."""
         self._dependence = dependence
         self._rules: defaultdict[Signature, list[Clause]] = defaultdict(list)
         for clause in program:
@@ -59,7 +61,7 @@ class Locality:
         return lacking.nonlocality if lacking else None
 
     def _find_leads(self) -> dict[Signature, dict[int, set[Subject]]]:
-        """Return the arguments of auxiliary predicates that are always in the tree, by position."""
+        """Return the subjects of the arguments of auxiliary predicates that are always in the tree."""
         leads = {
             signature: {position: set(Subject) for position in range(signature[1])}
             for signature in self._rules
@@ -81,7 +83,7 @@ class Locality:
         return leads
 
     def _find_abouts(self, program: Sequence[Clause]) -> None:
-        """Find which arguments of auxiliary predicates have to be in the tree for their rules to be local."""
+        """Find the arguments of auxiliary predicates that must be in the tree; a rule is local only then."""
         changed = True
         while changed:
             changed = False
@@ -104,7 +106,7 @@ class Locality:
                     changed |= self._find_about(clause, clause.head)
 
     def _find_about(self, clause: Clause, head: Literal) -> bool:
-        """Add the requirements of a rule's body to the conditions on its head; return whether any is new."""
+        """Find head arguments that must be in the tree to make a rule local; return whether any is new."""
         changed = False
         while head.signature not in self._nonlocal:
             about = self._about[head.signature]
@@ -133,7 +135,10 @@ class Locality:
     def _tree_terms(
         self, conjuncts: Iterable[Conjunct], before: Mapping[str, set[Subject]] | None = None
     ) -> _TreeTerms:
-        """Return the terms that are in the tree wherever conjuncts hold, with those known ``before``."""
+        """Return the terms that are in the tree wherever the conjuncts hold, as text, with their subjects.
+
+        ``before`` has terms that are known to be in the tree; they are in the result, too.
+        """
         positive = [literal for literal in conjuncts if isinstance(literal, Literal) and literal.positive]
         tree_terms = {term: set(subjects) for term, subjects in (before or {}).items()}
         changed = True
@@ -148,7 +153,10 @@ class Locality:
         return tree_terms
 
     def _led_arguments(self, literal: Literal, tree_terms: _TreeTerms) -> list[tuple[int, Subject]]:
-        """Return the arguments of a literal that are in the tree because others are, with their subjects."""
+        """Return the arguments that are in the tree if a literal holds, as positions with subjects.
+
+        ``tree_terms`` has the terms that are known to be in the tree.
+        """
         if literal.signature in self._leads_to:
             leads = self._leads_to[literal.signature]
             return [(position, subject) for position, subjects in leads.items() for subject in subjects]
@@ -163,7 +171,7 @@ class Locality:
     def _lacking(
         self, conjuncts: Iterable[Conjunct], tree_terms: _TreeTerms, source: Source
     ) -> "_Lacking | None":
-        """Return the first term that has to be in the tree but may be outside it; ``None`` without one."""
+        """Return the first term that has to be in the tree but may be outside; ``None`` if there is none."""
         for conjunct in conjuncts:
             lacking = self._lacking_in(conjunct, tree_terms, source)
             if lacking:
@@ -220,7 +228,7 @@ class Locality:
 class _Lacking(NamedTuple):
     """A term that has to be in the tree for a rule to be local, and the reason if it is not.
 
-    The term is empty where no term would make the rule local.
+    ``term`` is empty if the rule is not local whatever terms are in the tree.
     """
 
     term: str

@@ -33,10 +33,10 @@ _DECIMAL = re.compile(r"[0-9]{1,1000}(\.[0-9]{1,1000})?", re.ASCII)
 
 @dataclass(frozen=True)
 class Measure:
-    """User rules for the cost of each unit by one objective, whose name is that of the measure.
+    """User rules that define an objective by the cost of each unit.
 
-    ``place`` says where the rules are from: the path of a file, or words for a text. A file may hold several
-    measures.
+    ``name`` is the name of the objective. ``place`` says where the rules are from: the path of a file, or a
+    name such as ``measure 1`` for rules passed as text. A file may define several measures.
     """
 
     name: str
@@ -49,7 +49,9 @@ class Measure:
         return hashlib.sha256(self.text.encode()).hexdigest()
 
     def costs(self, problem: Problem, deadline: Deadline | None = None) -> Sequence[Cost]:
-        """Return the cost of each unit of a problem, by id; evaluated once for a network, up to a deadline.
+        """Return the cost of each unit of a problem, by id.
+
+        Clingo evaluates the rules until the deadline at most. The costs are cached for the network.
 
         Raises :class:`InputError` if rules give a unit two costs, or a cost other than a number from 0.
         """
@@ -73,10 +75,10 @@ class Measure:
 def wrong_cost(
     measure: Measure, problem: Problem, stated: Mapping[int, Fraction], deadline: Deadline
 ) -> str | None:
-    """Return a message about the first unit whose cost differs from the stated one; ``None`` without one.
+    """Return a message about the first unit whose cost differs from the stated cost; ``None`` if none does.
 
-    ``stated`` has costs by unit. Each of these units is evaluated by itself. Raises as
-    :meth:`Measure.costs` does.
+    ``stated`` has costs by unit id. Each of these units is evaluated, even if others have the same facts.
+    Raises the errors of :meth:`Measure.costs`.
     """
     from foon_asp.rules.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)
 
@@ -104,7 +106,7 @@ class _Evaluation:
         self._number = problem.network.unit_number
 
     def costs(self) -> Sequence[Cost]:
-        """Return the cost of each unit, by id; of units with the same facts, one is evaluated."""
+        """Return the cost of each unit, by id. Only one of several units with the same facts is evaluated."""
         units = range(len(self._problem.network))
         alike = self._alike()
         if alike is None:
@@ -120,8 +122,8 @@ class _Evaluation:
     def _alike(self) -> Sequence[Hashable] | None:
         """Return a key for each unit.
 
-        Units with equal keys have the same facts, up to numbers of units and nodes. ``None`` where rules
-        read these numbers, or facts without a key.
+        Units with equal keys have the same facts, except for numbers of units and nodes. ``None`` if the
+        rules use these numbers, or read a fact that the keys do not cover.
         """
         if not self._rules.nameless:
             return None
@@ -158,7 +160,7 @@ class _Evaluation:
         return list(zip(*columns, strict=True)) if columns else [()] * len(network)
 
     def cost_by_number(self, units: Iterable[int]) -> dict[int, Cost]:
-        """Return costs by public number, for the units with a cost by the rules."""
+        """Return the cost of each unit that the rules give a cost, by unit number (not id)."""
         by_number = {self._number(unit): unit for unit in units}
         values: dict[int, Cost] = {}
         for world, name, number, value in self._derived(by_number.values(), self._rules.statements):
@@ -173,7 +175,10 @@ class _Evaluation:
     def _derived(
         self, units: Iterable[int], statements: Iterable["Statement"]
     ) -> Sequence[tuple["Value", ...]]:
-        """Derive costs of units with clingo; raises :class:`InputError` for instances that it drops."""
+        """Derive costs of units with clingo: rows of world, measure, unit number and cost.
+
+        Raises :class:`InputError` if clingo drops an instance of a rule.
+        """
         from foon_asp.encoding import derived  # noqa: PLC0415
         from foon_asp.encoding.encoding import fault  # noqa: PLC0415 (takes clingo along)
         from foon_asp.rules.measure_rules import COST, WORLD  # noqa: PLC0415
@@ -215,7 +220,7 @@ class _Evaluation:
         return located(Severity.ERROR, code, message, source, [stated])
 
     def _refuse(self, unit: int) -> None:
-        """Raise :class:`InputError` for a unit with an invalid cost or several, naming their rules."""
+        """Raise :class:`InputError` with the rules by which a unit has an invalid cost or several costs."""
         from foon_asp.rules.measure_rules import BEYOND  # noqa: PLC0415 (takes clingo along)
 
         network, number = self._problem.network, self._number(unit)
@@ -248,7 +253,10 @@ class _Evaluation:
 def _shape(
     network: Network, unit: int, object_lists: Sequence[Sequence[Sequence[int]]], kinds: Sequence[int]
 ) -> Hashable:
-    """Return the object nodes of a unit up to renaming: their kinds, and their positions in each list."""
+    """Return a key for the object nodes of a unit that does not depend on their numbers.
+
+    The key has the kind of each node, and the positions of the nodes in each of ``object_lists``.
+    """
     nodes = dict.fromkeys((*network.inputs[unit], *network.outputs[unit]))
     positions = {o: position for position, o in enumerate(nodes)}
     return (
@@ -258,7 +266,7 @@ def _shape(
 
 
 def _cost(value: "Value") -> Cost | None:
-    """Return an exact cost, as an integer where it is whole; ``None`` for anything but a number from 0."""
+    """Return a value as an exact cost, an ``int`` if possible; ``None`` if it is no number, or below 0."""
     if isinstance(value, int):
         return value if value >= 0 else None
     if not isinstance(value, str) or not _DECIMAL.fullmatch(value):

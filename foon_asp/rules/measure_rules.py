@@ -1,9 +1,9 @@
 """Parser and checker of user measures: rules for the cost of one unit at a time.
 
-Each unit has a world of its own, with the facts about this unit and its object nodes and no others, and rules
-are evaluated in each world. So the cost of a unit can depend on nothing else, be it a question, a tree or
-another unit. In the program for clingo, a predicate ``p`` that depends on facts is
-``_p`` with the world as first argument; tables, which depend on none, stay as they are.
+The rules are evaluated for each unit in a *world*, which has only the facts about this unit and its object
+nodes. So the cost of a unit cannot depend on the question, the tree or another unit. In the program for
+clingo, a predicate ``p`` that depends on such facts becomes ``_p`` with the world as first argument. Tables,
+which depend on no facts, are not changed.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -74,10 +74,11 @@ class Statement(NamedTuple):
 class MeasureRules(NamedTuple):
     """Rules of measures, translated for clingo.
 
-    ``names`` are the names of the measures, each with the place of its first occurrence; ``reads`` the
-    predicates of facts that they read. ``nameless`` says that the numbers of units and object nodes do not
-    matter: units with facts equal up to numbers cost the same. ``plain`` says that the grounding cannot be
-    large: no intervals, no two tables joined, and few atoms in a rule.
+    ``names``: the names of the measures, each with the place of its first occurrence.
+    ``reads``: the predicates of facts that the rules read.
+    ``nameless``: units whose facts differ only in numbers of units and object nodes cost the same.
+    ``plain``: no rule has an interval, a division, two tables or many atoms, so the grounding cannot be
+    large.
     """
 
     names: dict[str, Source]
@@ -105,6 +106,7 @@ class _Reader:
     """Checker of the rules of measures, and their translator for clingo."""
 
     def __init__(self, statements: Sequence[AST], stated: Stated) -> None:
+        """Sort the statements; raises :class:`InputError` for statements that are not allowed."""
         self._stated = stated
         self._errors: list[Diagnostic] = []
         self._rules: list[AST] = []
@@ -152,7 +154,7 @@ class _Reader:
     def _beyond(
         self, names: Iterable[str], dependent: frozenset[Signature], world: str
     ) -> Iterator[Statement]:
-        """Return rules that derive the cost ``BEYOND`` where arithmetic leaves the numbers of clingo."""
+        """Return rules that derive the cost ``BEYOND`` where arithmetic overflows 32 bits in clingo."""
         statements: list[AST] = []
         sources: list[Source] = []
         for name in names:
@@ -192,7 +194,7 @@ class _Reader:
                 self._error("owned-predicate", f"found a rule for {name}/{arity}: give it another name", atom)
 
     def _check_atoms(self, atoms: "_Atoms") -> None:
-        """Refuse negated, reserved and undefined atoms, and those that are not about one unit."""
+        """Refuse atoms that are negated with a minus, reserved, undefined or not about one unit."""
         for minus in atoms.negated:
             self._error("negation", "found an atom with a minus before it, expected one without", minus)
         for atom in (*atoms.heads, *atoms.used):
@@ -228,7 +230,7 @@ class _Reader:
             )
 
     def _check_numbers(self) -> None:
-        """Refuse terms that are compared with numbers and never are numbers, and costs of another arity."""
+        """Refuse comparisons of a number with a term that never is one, and ``cost`` with an arity not 3."""
         for term, message in no_numbers(self._rules, [definition.name for definition in self._constants]):
             self._error("no-number", message, term)
         for atom in (head for atoms in self._atoms for head in atoms.heads):
@@ -304,11 +306,12 @@ def _signature(atom: AST) -> Signature:
 class _Atoms(Transformer):
     """Visitor that collects the atoms of a rule, as terms, and the use of its variables.
 
-    ``compared`` are variables whose values matter, beyond their equality. At -2147483648 / -1 the
-    process of clingo ends, so it matters whether a rule ``divides``.
+    ``compared`` are the variables that are used other than in tests for equality. ``divides`` says whether
+    the rule has a division: clingo's process crashes at -2147483648 / -1.
     """
 
     def __init__(self, rule: AST) -> None:
+        """Visit the head and the body of a rule."""
         self.heads: list[AST] = []
         self.used: list[AST] = []
         self.negated: list[AST] = []
@@ -335,7 +338,7 @@ class _Atoms(Transformer):
             self._terms(symbol.arguments)
 
     def _terms(self, terms: Iterable[AST]) -> None:
-        """Visit terms other than variables, which are only tested for equality there."""
+        """Visit the terms that are not variables; as arguments, variables are only tested for equality."""
         for term in terms:
             if term.ast_type is not ASTType.Variable:
                 self.visit(term)
@@ -371,7 +374,8 @@ def _nameless(rules: Sequence[_Atoms]) -> bool:
     """Whether rules compare units and object nodes for equality only.
 
     The argument positions of units and of object nodes are inferred from the facts, along the variables of
-    each rule. No constant and no other kind may stand there, and their variables may not be compared.
+    each rule. The answer is no if such a position has a constant or a variable of the other kind, or if such
+    a variable is compared.
     """
     kinds: dict[tuple[Signature, int], str] = {(COST, 1): _UNIT}
     for name, arity in FACT_PREDICATES.items():
@@ -412,6 +416,7 @@ class _World:
         self._dependent, self._world = dependent, world
 
     def written(self, rule: AST, source: Source) -> Statement:
+        """Return a rule as a statement for clingo, with a world if its head depends on facts."""
         heads = _Atoms(rule).heads
         text = str(rule)
         if any(_signature(atom) in self._dependent for atom in heads):

@@ -55,10 +55,10 @@ def _placed(term: AST) -> str:
 
 
 def beyond(statements: Iterable[AST], head: Head) -> Iterator[tuple[AST, str]]:
-    """Return rules that hold where a term overflows, each with the statement of the term.
+    """Return check rules, which derive ``head`` where a term overflows, each with the statement of the term.
 
-    Their bodies have the conditions that bind variables, and the conditions without arithmetic. A term is
-    evaluated again only where a value in it is so large that it may overflow.
+    The body of a check has the conditions of the statement that bind variables or have no arithmetic. The
+    check evaluates the term again only if a value in it is large enough for an overflow.
     """
     for statement in statements:
         if not _CALCULATES.search(str(statement)):
@@ -97,7 +97,10 @@ def _checks(node: AST, conditions: Sequence[AST], head: Head) -> Iterator[str]:
 
 
 def _postfix(term: AST, leaves: dict[str, AST]) -> Iterator[str]:
-    """Yield a term in postfix notation; its ``leaves`` are numbered in the order in which they come."""
+    """Yield a term in postfix notation: its operators, and its leaves as indices in ``leaves``.
+
+    Leaves that are not yet in ``leaves`` are added.
+    """
     if term.ast_type == ASTType.BinaryOperation:
         yield from _postfix(term.left, leaves)
         yield from _postfix(term.right, leaves)
@@ -111,12 +114,15 @@ def _postfix(term: AST, leaves: dict[str, AST]) -> Iterator[str]:
 
 
 def _safe_magnitude(term: AST) -> int:
-    """Return a magnitude up to which values in a term cannot make it overflow, -1 if it may always."""
+    """Return the magnitude up to which values in a term cannot make the term overflow; -1 without one."""
     return next((limit for limit in (LARGEST >> n for n in range(32)) if _size(term, limit) <= LARGEST), -1)
 
 
 def _size(term: AST, limit: int) -> int:
-    """Return the greatest magnitude of a term and its subterms if no value in it is beyond ``limit``."""
+    """Return an upper bound on the magnitude of a term and its subterms.
+
+    The values in the term are assumed to have at most the magnitude ``limit``.
+    """
     if term.ast_type == ASTType.UnaryOperation:
         return _size(term.argument, limit) + int(term.operator_type == UnaryOperator.Negation)
     if term.ast_type != ASTType.BinaryOperation:
@@ -143,7 +149,7 @@ def _has_interval(term: AST) -> bool:
 
 
 def _sums(rule: AST) -> Iterator[tuple[AST, list[str]]]:
-    """Return the sums of a rule, each with its elements rewritten to weigh their magnitudes."""
+    """Return the sums of a rule, each with its elements as text, in which weights become magnitudes."""
     for body_part in rule.body if rule.ast_type == ASTType.Minimize else [rule.head, *rule.body]:
         aggregate = body_part.atom if body_part.ast_type == ASTType.Literal else body_part
         if aggregate.ast_type not in _AGGREGATES:
@@ -155,7 +161,7 @@ def _sums(rule: AST) -> Iterator[tuple[AST, list[str]]]:
 
 
 def _sizes(element: AST) -> Iterator[str]:
-    """Return elements that add the magnitude of a weight where it is a number."""
+    """Return two elements, as text, that add the magnitude of a positive and of a negative weight."""
     inner = element.condition
     condition = list(inner.condition) if isinstance(inner, AST) else list(inner)
     weight = "_Weight"
@@ -194,7 +200,11 @@ def _terms_with_conditions(statement: AST) -> Iterator[tuple[AST, Sequence[AST]]
 def _element_terms(
     element: AST, conditions: Sequence[AST], counted: bool = False
 ) -> Iterator[tuple[AST, Sequence[AST]]]:
-    """Return the terms and literals of an element of an aggregate, a choice or a conditional literal."""
+    """Return the terms and literals of an element, each with the conditions that bind its variables.
+
+    The element is of an aggregate, a choice or a disjunction, or is a conditional literal. With ``counted``,
+    its literal is one of the conditions.
+    """
     terms: list[AST] = list(getattr(element, "terms", ()))
     conditional = element if element.ast_type == ASTType.ConditionalLiteral else element.condition
     if isinstance(conditional, AST) and conditional.ast_type == ASTType.ConditionalLiteral:
@@ -227,16 +237,16 @@ def _terms(node: AST) -> Iterator[AST]:
 
 
 def _conditions(body: Iterable[AST]) -> list[AST]:
-    """Return the conditions that bind variables, and those without arithmetic and aggregates."""
+    """Return the conditions that bind variables or have neither arithmetic nor aggregates."""
     return [
         condition for condition in body if _binds(condition) or not any(map(_calculates, nodes(condition)))
     ]
 
 
 def _without(node: AST, conditions: Sequence[AST]) -> Sequence[AST]:
-    """Return the conditions except the one whose arithmetic is checked, if other ones bind its variables.
+    """Return the conditions for the check of a node, without the node itself if others bind its variables.
 
-    Clingo drops an instance in which an equation overflows, and with it the check.
+    Clingo drops an instance in which an equation overflows. A check with this equation would be dropped, too.
     """
     others = [condition for condition in conditions if condition != node]
     bound = _bound(others)
@@ -249,7 +259,7 @@ def _without(node: AST, conditions: Sequence[AST]) -> Sequence[AST]:
 
 
 def _bound(conditions: Sequence[AST]) -> set[str]:
-    """Return the variables that positive atoms bind, or equations to terms of bound variables."""
+    """Return the variables bound by positive atoms, or by equations with terms of bound variables."""
     bound: set[str] = set()
     comparisons: list[tuple[AST, AST]] = []
     for condition in filter(_binds, conditions):

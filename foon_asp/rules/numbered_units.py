@@ -21,7 +21,7 @@ class NumberedUnit(NamedTuple):
 def numbered_unit(statements: Iterable[AST]) -> NumberedUnit | None:
     """Return the first atom or comparison that names a unit by its number; ``None`` without one.
 
-    A number that reaches a unit through a predicate of the user is not seen.
+    A number that is matched with a unit only through a user predicate is not found.
     """
     for statement in statements:
         if statement.ast_type == ASTType.Rule:

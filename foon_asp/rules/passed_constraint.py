@@ -103,7 +103,7 @@ def given_constraint(constraint: str | PathLike[str] | Constraint) -> Constraint
 
 
 def named_constraint(text: str, path: type[Path] = Path) -> Path | LibraryUse:
-    """Return a path, or a ready-made constraint by its name with constants of its own."""
+    """Return the ready-made constraint that ``NAME:CONSTANT=VALUE`` stands for; any other text is a path."""
     name, colon, _ = text.partition(":")
     if colon and not exists(Path(text)):
         file = _bundled(Path(name))
@@ -113,7 +113,7 @@ def named_constraint(text: str, path: type[Path] = Path) -> Path | LibraryUse:
 
 
 def find_constraint(constraint: Constraint) -> Constraint:
-    """Return a constraint, in which the name of a ready-made one is replaced by the path of its file.
+    """Return a constraint; the name of a ready-made one is replaced by the path of its file.
 
     Raises :class:`UserError` where there is no such file and no ready-made constraint of this name.
     """
@@ -142,7 +142,7 @@ def _library() -> Path:
 
 
 def _bundled(path: Path) -> Path | None:
-    """Return the ready-made constraint of a name, with or without its suffix."""
+    """Return the file of the ready-made constraint with this name (``.lp`` may be missing), else ``None``."""
     if path.name != str(path):
         return None
     file = _library() / (path.name.removesuffix(_SUFFIX) + _SUFFIX)

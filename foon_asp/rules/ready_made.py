@@ -1,7 +1,7 @@
 """Ready-made constraints, evaluated without clingo.
 
 Importing clingo, parsing a constraint and checking a tree takes as long as all other work of a small
-question. The meaning of these constraints is the one that certificates are checked by.
+question. Here the constraints have the meaning by which certificates are checked.
 """
 
 import re
@@ -39,12 +39,12 @@ _REQUIRING_PREFIX = "require_"  # prefix of the names of constraints that requir
 
 
 class ReadyMade:
-    """Ready-made constraints of one question, with the meaning that certificates use.
+    """Ready-made constraints of one question, with the meaning by which certificates are checked.
 
-    They are local, and require redundant units only as members of required sets. ``unsettled`` says that
-    some constraints, all antimonotone, do more than to remove and require units. ``shrinking`` says that all
-    constraints are antimonotone: every subtree of a tree that keeps to them does, too. ``constants`` are
-    their constants, as terms, and ``files`` their files.
+    They are local. A tree needs redundant units for them only as members of required sets.
+    ``unsettled``: some constraints do more than to remove and require units; these are antimonotone.
+    ``shrinking``: all constraints are antimonotone: if a tree keeps to them, so does every subtree.
+    ``constants``: the constants by name, as terms. ``files``: the files of the constraints.
     """
 
     local: Final = True
@@ -65,8 +65,8 @@ class ReadyMade:
     def fit(self, problem: Problem) -> bool:
         """Whether the constraints have the same meaning for a problem here as in clingo.
 
-        False where unsettled constraints do not see all available object nodes, and for prices that clingo
-        refuses.
+        ``False`` if some are ``unsettled`` and the rules see less than the kitchen (``kitchen_seen``), and
+        for prices that clingo refuses.
         """
         if self.unsettled and problem.kitchen_seen != problem.kitchen:
             return False
@@ -78,7 +78,7 @@ class ReadyMade:
         return True
 
     def leave_to_search(self, problem: Problem) -> bool:
-        """Whether the search enforces the constraints; never."""
+        """Return ``False``: the search is never left to enforce the constraints."""
         return False
 
     def applied(self, problem: Problem, deadline: Deadline) -> Restriction | Contradiction:
@@ -109,7 +109,7 @@ class ReadyMade:
         return ruled.fault(tree, frozenset(range(len(problem.network))) - tree) is None
 
     def _meanings(self, problem: Problem) -> tuple[tuple[Meaning, ...], Ruled]:
-        """Return the meanings of the constraints for a problem, and their network."""
+        """Return the meanings of the constraints for a problem, and a checker of trees against these."""
         if self._last is None or self._last[0] is not problem:
             question, nodes = question_of(problem), len(problem.network.objects)
             meanings = tuple(meaning(rule, question) for rule in self.rules)
@@ -118,10 +118,10 @@ class ReadyMade:
 
 
 def ready_made(constraints: Sequence[Constraint], settings: Sequence[str]) -> ReadyMade | None:
-    """Return constraints that are all ready-made, unchanged, and used once, with all constants set.
+    """Return the constraints if each is ready-made, unchanged, used once, and has all its constants set.
 
-    ``settings`` set constants as ``NAME=VALUE`` of constraints without constants of their own. ``None`` for
-    any other constraints, and for values that are no plain texts or numbers.
+    ``settings``, as ``NAME=VALUE``, set the constants of constraints that are passed without constants.
+    ``None`` for any other constraints, and if a value is not a plain text or number.
     """
     shared = dict(setting.partition("=")[::2] for setting in settings)
     files: list[Path] = []

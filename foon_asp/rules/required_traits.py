@@ -1,4 +1,4 @@
-"""Traits of the units that a rule requires: names that each of them has, as far as the rule states them."""
+"""Traits of the units that a rule requires: the names that the rule states for each of these units."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import count, product
@@ -22,20 +22,23 @@ _Atom = tuple[Signature, int, tuple[_Term, ...]]  # with its negations
 
 
 class TraitReader:
-    """Reader of traits in conjunctions about one unit of the tree, whose auxiliary predicates it unfolds."""
+    """Reader of traits in conjunctions about one unit of the tree; it unfolds auxiliary predicates."""
 
     def __init__(self, clauses: Mapping[Signature, Sequence[Clause]], constants: Constants) -> None:
         self._clauses, self._constants = clauses, constants
         self._fresh = count()
 
     def rows(self, conjuncts: Iterable[Conjunct]) -> list[list[Trait]]:
-        """Return, for each disjunct, traits of every unit for which the disjunct holds."""
+        """Unfold a conjunction into disjuncts; return for each the traits of all units for which it holds."""
         return [list(_traits(atoms)) for atoms in self._disjuncts(conjuncts, {}, ())]
 
     def _disjuncts(
         self, conjuncts: Iterable[Conjunct], names: dict[str, _Term], above: tuple[Signature, ...]
     ) -> list[list[_Atom]]:
-        """Return the disjuncts of a conjunction whose variables stand for the terms in ``names``."""
+        """Return the disjuncts of a conjunction, with its variables replaced by the terms in ``names``.
+
+        ``above`` has the auxiliary predicates that are being unfolded.
+        """
         alternatives = []
         for conjunct in conjuncts:
             if isinstance(conjunct, Literal):
@@ -70,7 +73,7 @@ class TraitReader:
 
 
 def _traits(atoms: Sequence[_Atom]) -> Iterator[Trait]:
-    """Return the traits of the unit of a conjunction of atoms."""
+    """Return the traits that a conjunction of atoms states for its unit."""
     units = {terms[0] for signature, negations, terms in atoms if signature in {USE, TIMES} and not negations}
     facts = [(signature[0], terms) for signature, negations, terms in atoms if not negations]
     outside = {terms[0] for signature, negations, terms in atoms if signature == _KITCHEN and negations == 1}

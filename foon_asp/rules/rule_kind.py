@@ -1,9 +1,9 @@
 """Kind and locality of the rules of one question, inferred from clingo's syntax tree.
 
-All rules of a question are analysed together, since a rule in another file may change the effect of one. A
-rule whose effect is in doubt is ``OTHER``; docs/writing-constraints.md explains the consequences. The kinds
-serve to cut the search: clingo itself enforces every rule that is not known to remove units or to require one
-of a set.
+All rules of a question are analysed together, since a rule in one file may change the effect of a rule in
+another. A rule whose effect is unknown is ``OTHER``; docs/writing-constraints.md explains the consequences.
+The kinds serve to cut the search. Rules known to remove units or to require one of a set can be applied
+before the search; clingo enforces all other rules.
 """
 
 from collections.abc import Collection, Iterable, Sequence
@@ -72,12 +72,12 @@ _IMPLIED = "times(U,1) :- use(U)."
 class Rule(NamedTuple):
     """A rule of one question, with its kind and locality.
 
-    ``reason`` says why its kind is ``OTHER``, or why it has no effect, at ``reason_source``; else empty.
-    ``nonlocality`` says what it reads beyond the tree, at ``nonlocality_source``. If it is empty, the rule is
-    local: its truth for a tree stays the same without the facts of units outside the tree and of object
-    nodes that only those have. A ``HELPER`` is always local: its facts count for the rules that use it.
-    ``one_of`` says that a requiring rule is an at-least-one constraint over one or several sets, known
-    without clingo.
+    ``reason``, at ``reason_source``: why the kind is ``OTHER``, or why the rule has no effect; else empty.
+    ``nonlocality``, at ``nonlocality_source``: the facts outside the tree that the rule reads. It is empty
+    for a local rule, whose truth for a tree stays the same without the facts of units outside the tree and of
+    object nodes that only such units have. A ``HELPER`` is always local: its facts count for the rules that
+    use it.
+    ``one_of``: the rule requires a unit of each of one or several sets; the sets are found before the search.
     """
 
     source: Source
@@ -102,10 +102,12 @@ class Rule(NamedTuple):
 class Analysis:
     """The rules of one question as clauses, each with its kind.
 
-    ``rules`` are in the order of the files. ``live`` are the clauses that can have an effect: a clause with a
-    condition that never holds is excluded. ``of_rule`` has the live clauses of each rule, by its index in
-    ``rules``. By the same index, ``removals``, ``at_least_ones`` and ``rows`` have the translations of rules
-    by ``translator``. ``constant_texts`` define the constants in these.
+    ``rules``: the rules, in the order of the files.
+    ``live``: the clauses that can have an effect, which excludes those with a condition that never holds.
+    ``of_rule``: the live clauses of each rule, by its index in ``rules``.
+    ``removals``, ``at_least_ones``, ``rows``: the rules that ``translator`` could translate, by the same
+    index.
+    ``constant_texts``: ``#const`` statements for the constants in these translations.
     """
 
     def __init__(
@@ -142,7 +144,7 @@ class Analysis:
         )
 
     def kind(self, clause: Clause) -> tuple[Kind, Doubt | None]:
-        """Return the kind of a clause, and why it is ``OTHER``, else ``None``."""
+        """Return the kind of a clause, and the reason if the kind is ``OTHER``, else ``None``."""
         dependence = self.dependence
         doubt: Doubt | None
         if not clause.plain:

@@ -55,9 +55,9 @@ class Together(StrEnum):
 class Rules:
     """All rules that are added to one question, taken together.
 
-    ``rules`` has each of them with its kind, in the order of the files. The kinds hold for questions with
-    the facts of the network, the kitchen and the goals; where a question derives or varies a predicate of
-    facts, :meth:`varying` returns the rules with the kinds for that.
+    ``rules`` has each of them with its kind, in the order of the files. The kinds hold if all facts about the
+    network, the kitchen and the goals are fixed. If a question derives or varies a predicate of facts,
+    :meth:`varying` returns the rules with the kinds for this question.
     """
 
     def __init__(
@@ -140,7 +140,7 @@ class Rules:
 
     @cached_property
     def unsettled(self) -> tuple[Rule, ...]:
-        """The rules that :meth:`applied` does not settle, so that clingo has to enforce them."""
+        """The rules that clingo has to enforce: the restriction by :meth:`applied` does not cover them."""
         settled = self._analysis.removals.keys() | self._analysis.at_least_ones.keys()
         return tuple(
             rule
@@ -150,9 +150,9 @@ class Rules:
 
     @property
     def wanted(self) -> list[Wanted] | None:
-        """The traits of required units, by at-least-one constraint.
+        """The traits of required units, for each at-least-one constraint.
 
-        ``None`` where rules are not local, or do more than to remove and require units.
+        ``None`` if a rule is not local, or does more than to remove or require units.
         """
         if not self.local or self.unsettled:
             return None
@@ -164,7 +164,7 @@ class Rules:
 
     @property
     def only_limits(self) -> bool:
-        """Whether no rule reads the number of executions except to bound it from above."""
+        """Whether rules read numbers of executions only to bound these numbers from above."""
         at_most = {number for number, bound in self._analysis.rows.items() if not bound.at_least}
         others = (
             clause
@@ -201,15 +201,15 @@ class Rules:
         """Return the restriction of a problem by the rules that remove units or require one of a set.
 
         A tree keeps to these rules if and only if it has no removed unit, and a unit of each required set.
-        Only ``units`` are considered, by default those that can execute. ``None`` where clingo refuses a
-        rule. Raises :class:`UserError` for prices that rules read and that are no whole numbers of
+        Only ``units`` are considered, by default the units that can execute. Returns ``None`` if clingo
+        refuses a rule. Raises :class:`UserError` if rules read a price that is not a whole number of
         hundredths.
         """
         answers = self._answers(problem, deadline, units)
         return None if answers is None else answers.restriction
 
     def leave_to_search(self, problem: Problem) -> bool:
-        """Whether the search enforces the rules of a large network: that is faster if none requires units."""
+        """Whether to leave the rules to the search: faster in a large network if no unit is required."""
         large = len(problem.network) > TUNING.evaluated_units
         return large and not self._analysis.at_least_ones
 
@@ -240,7 +240,11 @@ class Rules:
         return self._last[2]
 
     def _readable(self, problem: Problem) -> Collection[int]:
-        """Return the units that rules can be about: those that can execute, or those that rules name."""
+        """Return the units to evaluate rules on: all that can execute.
+
+        In a large network, they are only the units that at-least-one constraints name, if no other rules are
+        evaluated.
+        """
         network = problem.network
         if len(network) > TUNING.evaluated_units and not (self._analysis.removals or self._analysis.rows):
             named = candidates(network, (one.wanted for one in self._at_least_ones))

@@ -16,8 +16,9 @@ from foon_asp.rules.passed_constraint import Constraint, LibraryUse, RuleText
 def loaded(constraints: Sequence[Constraint]) -> dict[Constraint, Loaded]:
     """Return the file or text that clingo loads for each constraint.
 
-    Rules are numbered in their order, and so are ready-made constraints with constants of their own. Raises
-    :class:`UserError` for constants that a ready-made constraint does not have, and for wrong values.
+    Rules given as text are called ``rule 1``, ``rule 2`` and so on; ready-made constraints with constants of
+    their own ``use 1``, ``use 2``. Raises :class:`UserError` for constants that a ready-made constraint does
+    not have, and for wrong values.
     """
     loaded_by_constraint: dict[Constraint, Loaded] = {}
     rules = uses = 0
@@ -36,9 +37,9 @@ def loaded(constraints: Sequence[Constraint]) -> dict[Constraint, Loaded]:
 
 
 def _renamed(use: LibraryUse, number: int) -> Stated:
-    """Return a ready-made constraint with its constants set, renamed together with its predicates.
+    """Return the text of a ready-made constraint with constants set, and constants and predicates renamed.
 
-    Each statement is on the line on which it begins in the file.
+    Each statement is on the same line as its beginning in the file.
     """
     encoding = read_encoding(use.file)
     values = use.constants
@@ -85,7 +86,7 @@ class _Renaming(Transformer):
         return atom.update(symbol=self._symbol(atom.symbol))
 
     def _symbol(self, symbol: AST) -> AST:
-        """Return a symbol in which the predicates that are renamed have their new names."""
+        """Return the symbol of an atom, with the new name of its predicate if it has one."""
         if symbol.ast_type == ASTType.UnaryOperation:  # classical negation
             return symbol.update(argument=self._symbol(symbol.argument))
         if symbol.ast_type == ASTType.Pool:

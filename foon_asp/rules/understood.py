@@ -1,10 +1,10 @@
 """Translation of rules into programs about single units, which clingo evaluates.
 
 A translated rule *removes* the units that break it by themselves, requires *at least one* of the units that
-keep to it by themselves, or is a *row*, which bounds a sum of weights of units. Each kind is a program for
-clingo, which derives ``_of_unit(NUMBER,WHAT,OF,W)`` in a world ``W`` for each unit, where no other unit is
-used, and in the world ``NOTHING``, where none is. Any other rule is a *check*: clingo evaluates it on whole
-trees.
+keep to it by themselves, or is a *row*, which bounds a sum of weights of units. The translation is a program
+that clingo evaluates in several worlds: one world for each unit, in which only this unit is used, and the
+world ``NOTHING``, in which no unit is. The program derives ``_of_unit(NUMBER,WHAT,OF,W)`` in a world ``W``.
+Any other rule is a *check*: clingo evaluates it on whole trees.
 
 A rule can be translated if, by its syntax, each of its derivations looks at one unit of the tree, and
 if it calculates nothing: then no number can overflow, and grounding ends.
@@ -48,15 +48,19 @@ _ONE_EXECUTION = {USE, TIMES}
 
 
 class Removes(NamedTuple):
-    """No tree has a unit in whose world ``breaks`` is derived; if it is in ``NOTHING``, there is no tree."""
+    """A rule that removes the units in whose worlds its program derives ``breaks``.
+
+    If the program derives ``breaks`` in the world ``NOTHING``, there is no tree.
+    """
 
     program: tuple[str, ...]
 
 
 class AtLeastOne(NamedTuple):
-    """For each term with ``asks``, a tree has a unit in whose world ``meets`` is derived of this term.
+    """A rule that requires a unit for each term of which its program derives ``asks``.
 
-    ``wanted`` are traits of these units.
+    The tree needs a unit in whose world the program derives ``meets`` of the same term. ``wanted`` are traits
+    of such units.
     """
 
     program: tuple[str, ...]
@@ -64,10 +68,12 @@ class AtLeastOne(NamedTuple):
 
 
 class Row(NamedTuple):
-    """The weights of units, in atoms ``weighs``, add up to at most ``bound``; with ``at_least``, at least.
+    """A rule that bounds a sum of weights of units, which its program derives in atoms ``weighs``.
 
-    These atoms have the ``number`` of the row. Different weights of a unit add up. They count for each
-    execution; with ``used``, only once. With ``per_unit``, the bound holds for each unit by itself.
+    ``number``: the first argument of these atoms. Different weights of a unit add up.
+    ``bound``: an upper bound on the sum; with ``at_least``, a lower bound.
+    ``used``: a weight counts once, not for each execution of the unit.
+    ``per_unit``: the bound holds for each unit by itself, not for the sum over units.
     """
 
     number: int
@@ -90,7 +96,10 @@ _ALLOWED = {
 
 
 class Translator:
-    """Translator of rules to their kinds; each method returns ``None`` for rules that are not of its kind."""
+    """Translator of rules to removals, at-least-one constraints or rows.
+
+    The method for a kind returns ``None`` for a rule of another kind.
+    """
 
     def __init__(self, program: Sequence[Clause], constants: Constants, dependence: Dependence) -> None:
         self._constants, self._dependence = constants, dependence
@@ -107,7 +116,7 @@ class Translator:
         self._looks: dict[Signature, int] = {}
 
     def removes(self, clauses: Sequence[Clause]) -> Removes | None:
-        """Return the removal that a rule of ``clauses`` stands for."""
+        """Return the rule that consists of ``clauses`` as a removal of units."""
         if not all(self._is_plain(clause.body) for clause in clauses):
             return None
         if any(self._looks_of(clause.body) > 1 for clause in clauses):
@@ -157,7 +166,10 @@ class Translator:
         return None
 
     def support(self, programs: Sequence[str], read: Iterable[Clause]) -> tuple[list[str], set[Signature]]:
-        """Return the rules that programs need, and the predicates of facts that these and ``read`` read."""
+        """Return ``programs`` with the rules that they need, and the predicates of the facts that they read.
+
+        ``read`` has the clauses of which the programs are translations.
+        """
         facts: set[Signature] = {("unit", 1)}
         rules: list[str] = []
         done: set[Signature] = set()
@@ -199,9 +211,10 @@ class Translator:
         return Row(self._numbers, program, allowed[1], allowed[0], used == {USE})
 
     def _weights(self, element: Element, condition: Sequence[AST]) -> tuple[str, Signature] | None:
-        """Return the rule of the weights for one execution, and the predicate that states executions.
+        """Return a rule that derives the weight of one execution, and the predicate that states executions.
 
-        The weight of several executions is a multiple of this weight, since nothing else reads their number.
+        The predicate is ``use/1`` or ``times/2``. Nothing else reads the number of executions, so the weight
+        of n executions is n times this weight. ``None`` if the element has another form.
         """
         executions = _executions(element.condition)
         if executions is None or not self._is_plain(element.condition):
@@ -236,7 +249,11 @@ class Translator:
         return allowed[0], number.number + allowed[1]
 
     def _alternatives(self, clause: Clause, position: int) -> "list[_Alternative] | None":
-        """Return the conditions under which a unit makes a conjunct of a requiring rule false."""
+        """Return the conditions under which a unit makes a conjunct of a requiring rule false.
+
+        Each condition is given as texts for clingo and as conjuncts. ``None`` if the conjunct has another
+        form.
+        """
         conjunct, node = clause.body[position], clause.ast.body[position]
         if isinstance(conjunct, Aggregate):
             if not _counts_none(conjunct, self._constants):
@@ -273,7 +290,10 @@ class Translator:
         return f'{ANSWER[0]}({self._numbers},"{what}",{of},{world})'
 
     def _stated(self, head: str, clause: Clause) -> str:
-        """Return a rule for each world if it depends on the tree, else for the world without units."""
+        """Return a rule with this head and the body of a clause.
+
+        It holds in each world if the clause depends on the tree, else in the world without units only.
+        """
         body = [str(self._worlds.visit(node)) for node in clause.ast.body]
         if self._world in head:
             where = (
@@ -285,7 +305,7 @@ class Translator:
         return f"{head} :- {'; '.join(body) or '#true'}."
 
     def _looks_of(self, body: Iterable[Conjunct]) -> int:
-        """Return at how many units of the tree a conjunction looks; 2 stands for more than one."""
+        """Return on how many units of the tree a conjunction depends; 2 stands for more than one."""
         looks = 0
         for conjunct in body:
             if isinstance(conjunct, Literal):
@@ -295,7 +315,7 @@ class Translator:
         return min(looks, 2)
 
     def _looks_of_atom(self, signature: Signature) -> int:
-        """Return at how many units of the tree an atom looks; 2 stands for more than one."""
+        """Return on how many units of the tree an atom depends; 2 stands for more than one."""
         if signature in {USE, AVAILABLE}:
             return 1
         if signature not in self._looks:
@@ -308,7 +328,7 @@ class Translator:
         return self._looks[signature]
 
     def _has_unit(self, body: Iterable[Conjunct]) -> bool:
-        """Whether a conjunction about one unit never holds without it."""
+        """Whether a conjunction about one unit is false in the world without units."""
         return any(
             isinstance(one, Literal)
             and (
@@ -346,7 +366,7 @@ _Alternative = tuple[list[str], Sequence[Conjunct]]
 
 
 def _terms_of(conjunct: Conjunct) -> Iterator[AST]:
-    """Return all terms in a conjunct whose truth is not known."""
+    """Return all terms in a conjunct, except in comparisons whose truth is known."""
     if isinstance(conjunct, Literal):
         yield from conjunct.arguments
     elif isinstance(conjunct, Test):
@@ -365,7 +385,7 @@ def _terms_of(conjunct: Conjunct) -> Iterator[AST]:
 
 
 def _is_strange(conjunct: Conjunct) -> bool:
-    """Whether a conjunct has a part that is not known, or calculates other than by counting."""
+    """Whether a conjunct has a part of an unknown kind, or an aggregate other than a count."""
     if isinstance(conjunct, Conditional):
         return any(map(_is_strange, (conjunct.literal, *conjunct.condition)))
     if isinstance(conjunct, Aggregate):
@@ -375,7 +395,7 @@ def _is_strange(conjunct: Conjunct) -> bool:
 
 
 def _comparison(test: Test) -> tuple[AST, int, AST] | None:
-    """Return the two terms of a comparison, with its operator between them; ``None`` for longer ones."""
+    """Return the left term, operator and right term of a comparison; ``None`` for any other test."""
     atom = test.ast.atom
     if test.ast.sign or atom.ast_type != ASTType.Comparison or len(atom.guards) != 1:
         return None

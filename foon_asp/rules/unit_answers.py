@@ -15,7 +15,7 @@ from foon_asp.rules.understood import ANSWER, NOTHING
 
 
 class UnitAnswers(NamedTuple):
-    """The ``restriction`` by rules that remove units and require sets, and weights by row and unit."""
+    """Removed units and required sets as a ``restriction``, and ``weights`` by row and by unit id."""
 
     restriction: Restriction | Contradiction
     weights: Mapping[int, Mapping[int, int]]
@@ -28,11 +28,11 @@ def ask_units(
     read: Collection[Signature],
     deadline: Deadline | None,
 ) -> UnitAnswers | None:
-    """Evaluate the programs of rules over units; with a ``deadline``, in another process.
+    """Evaluate the programs of rules on units; with a ``deadline``, in another process.
 
-    ``read`` are the predicates of facts that the rules read. ``None`` where clingo refuses a rule: then the
-    search reports its message. Raises :class:`UserError` for prices that rules read and that are no whole
-    numbers of hundredths.
+    ``read`` are the predicates of facts that the rules read. Returns ``None`` if clingo refuses a rule; the
+    search then reports the message of clingo. Raises :class:`UserError` if rules read a price that is not a
+    whole number of hundredths.
     """
     try:
         facts = write_facts_read(problem, sorted(units), read)
@@ -52,7 +52,10 @@ def ask_units(
 
 
 def candidates(network: Network, wanted: Iterable[Wanted]) -> set[int] | None:
-    """Return a superset of the units that rules require, by their names; ``None`` without names."""
+    """Return all units with a name that the traits ask for, a superset of the units that rules require.
+
+    ``None`` if a rule requires units without saying a name.
+    """
     units: set[int] = set()
     for row in (row for one in wanted for row in one.rows):
         if not row:

@@ -46,9 +46,9 @@ def unmatched(
 ) -> Iterator[Diagnostic]:
     """Return a warning for each literal over a fact whose constants match nothing in the network.
 
-    ``theirs`` are user files, ``ours`` ready-made constraints used with them, and ``settings`` the
-    constants that are set. A literal is skipped where another rule with the same head has its constants in
-    a literal that matches: a name may be a label or an ingredient.
+    ``theirs`` are user files, ``ours`` ready-made constraints used with them, and ``settings`` the constants
+    that are set. There is no warning if another rule with the same head has a literal that matches and has
+    the same constants: one rule may look for a label, the other for an ingredient, of the same name.
     """
     encodings = (*theirs, *ours)
     definitions = [statement for encoding in encodings for statement in encoding.definitions]
@@ -71,7 +71,7 @@ def unmatched(
 class _Search:
     """A search for literals that match no fact.
 
-    ``program`` has all rules, since facts of one file may bind variables of another.
+    ``program`` has the rules of all files, since facts in one file may bind variables in another.
     """
 
     def __init__(self, program: Sequence[Clause], constants: Constants, values: FactValues) -> None:
