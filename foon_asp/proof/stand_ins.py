@@ -46,7 +46,10 @@ def stand_in_prices(table: StandInTable) -> list[list[str]]:
 
 
 def price_of(table: StandInTable, serving: ObjectNode, served: ObjectNode) -> Fraction | None:
-    """Return the price of a stand-in, ``None`` where the table has none; all edits are priced one by one."""
+    """Return the price of using ``serving`` in place of ``served``; ``None`` where the table forbids it.
+
+    The price is the table's price of the pair of nodes, or else the sum of the prices of all differences.
+    """
     if (serving, served) in table.pairs:
         return table.pairs[serving, served]
     prices: list[Fraction | None] = []
@@ -126,7 +129,11 @@ def _bare(label: str) -> str:
 
 
 class _Servers:
-    """The nodes that stand in for others; with ``nearest``, only those no more expensive than a free node."""
+    """The nodes that may stand in for others, by a table.
+
+    ``free`` are the nodes that can be made without stand-ins. With ``nearest``, a node that costs more than
+    the cheapest free node is left out.
+    """
 
     def __init__(self, network: Network, table: StandInTable, free: Collection[int], nearest: bool) -> None:
         self.free, self.nearest = free, nearest
@@ -140,7 +147,7 @@ class _Servers:
         self._of: dict[int, dict[int, Fraction]] = {}
 
     def of(self, served: int) -> dict[int, Fraction]:
-        """Return the serving nodes, by id, with their prices."""
+        """Return the nodes that may serve for a node, by id, with their prices."""
         if served not in self._of:
             objects = self._network.objects
             node = objects[served]
@@ -156,7 +163,7 @@ class _Servers:
         return self._of[served]
 
     def _candidates(self, node: ObjectNode) -> Iterator[int]:
-        """Yield what may be used in place of a node: nodes of its label, and those of pairs of the table."""
+        """Yield the nodes to be priced: those whose label is spelled alike, and those paired by the table."""
         yield from self._spelled[_bare(node.label)]
         for serving, served in self._table.pairs:
             if served == node.label and isinstance(serving, str):
@@ -168,7 +175,7 @@ class _Servers:
 
 
 def _least(network: Network, servers: _Servers, goals: Sequence[int], makes: Makes) -> dict[int, Fraction]:
-    """Return a lower bound on the dissimilarity of making each node; free nodes have none.
+    """Return a lower bound on the dissimilarity of making each node; 0 for nodes that need no stand-in.
 
     A unit costs at least as much as its most expensive input; a stand-in adds its price.
     """

@@ -65,9 +65,10 @@ class Means(NamedTuple):
         return label in self.tools and self.tools[label] is None
 
     def name(self, node: ObjectNode, label: str) -> ToolName:
-        """Return the name by which a tool with a label, which is or contains a node, is counted.
+        """Return the name under which a tool is counted.
 
-        Tools with contents are counted by their contents.
+        ``label`` is the label of the tool, and ``node`` is the tool or an object in it. The name is the node
+        or the label if ``tools`` lists it. Otherwise, a tool with contents is named by its contents.
         """
         if node in self.tools:
             return node
@@ -128,11 +129,11 @@ def tools_asked(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[st
 def timetable_fault(
     problem: Problem, plan: Sequence[FunctionalUnit], steps: Sequence[TimedStep], means: Means
 ) -> str | None:
-    """Return what is wrong with a schedule of a plan, ``None`` where nothing is.
+    """Return the first fault of a schedule of a plan in words; ``None`` without one.
 
-    At each moment there has to be a copy for each step that takes one, nobody may do two things, and each
-    tool is at one step, in the state in which an earlier one left it or as the kitchen has it. The problem
-    has to be one whose plans can be replayed.
+    At each moment, each step needs copies that no other step has, each agent is at most at one step, and each
+    tool is at most at one step. A tool is in the state in which an earlier step left it, or as the kitchen
+    has it. Items of the problem have to be used up (:func:`foon_asp.proof.replay.replayable`).
     """
     if len(steps) != len(plan):
         return f"there are {len(plan)} steps, and times for {len(steps)}"
@@ -164,7 +165,7 @@ class _Run:
     def fault(self) -> str | None:
         """Return the first fault of the schedule in words; ``None`` without one.
 
-        Steps that end at a time end before others start at it.
+        At the same time, ends of steps come before starts of steps.
         """
         events = [(step.end, False, number) for number, step in enumerate(self._steps)]
         events += [(step.start, True, number) for number, step in enumerate(self._steps)]
@@ -198,7 +199,7 @@ class _Run:
         self._working.update(dict.fromkeys(hands, number))
 
     def _end(self, number: int) -> None:
-        """End a step: what it adds is there, and its tools are free again."""
+        """End a step: add its outputs, and release its tools and its agent."""
         unit, step = self._plan[number], self._steps[number]
         needed, consumes, made = self._executions.of(unit)
         for node, amount in needed.items():

@@ -58,14 +58,19 @@ _SURROGATE = re.compile("[\ud800-\udfff]")
 
 
 class CertificateLimits(NamedTuple):
-    """Limits beyond which a certificate, which may come from a stranger, is refused rather than checked.
+    """Limits beyond which a certificate, which may come from a stranger, is refused without being checked.
 
-    ``letters``, ``brackets``: characters of the file, and lists and objects in it.
-    ``steps``: a look at a unit is one; adding and comparing numbers takes more.
-    ``steps_each``: additional steps for each unit and object node of the network.
-    ``rules`` of a claim. ``rule_steps``: for each unit and object node that a rule is checked against.
-    ``digits`` of a fraction that is read. ``sum_bits`` of a sum of fractions. ``product_bits`` of a product
-    of rates. ``written_bits`` of what a tree costs: Python writes numbers of up to 4,300 digits.
+    Attributes:
+        letters: Characters of the file.
+        brackets: Lists and objects in the file.
+        steps: Steps of the check. A look at a unit is one step; arithmetic takes more.
+        steps_each: Additional steps for each unit and object node of the network.
+        rules: Rules of a claim.
+        rule_steps: Steps for each rule and each unit and object node.
+        digits: Digits of a fraction that is read.
+        sum_bits: Bits of a sum of fractions.
+        product_bits: Bits of a product of rates.
+        written_bits: Bits of the cost of a tree; Python writes numbers of up to 4,300 digits.
     """
 
     letters: int = 16_000_000
@@ -100,9 +105,9 @@ TREE_FORM = Form("foon-asp certificate", 5, CERTIFICATE_KEYS)
 class Subject(NamedTuple):
     """The data that a certificate is about; ``kitchen`` are object node ids.
 
-    ``stated`` are digests by name that are not computed from the other fields; those named in ``trusted``
-    were never computed. ``stand_ins`` is the table of the stand-ins that the network has, ``None`` without.
-    ``amounts`` count in plans, whose certificates state them.
+    ``stated`` has digests by name that replace those computed from the other fields. ``trusted`` names those
+    stated digests that nobody computed. ``stand_ins`` is the table by which stand-ins were added to the
+    network, ``None`` without stand-ins. ``amounts`` matter only for plans.
     """
 
     network: Network
@@ -183,8 +188,8 @@ class UsedUp(NamedTuple):
     """The statements about consumable items in a claim about plans.
 
     ``stock`` maps consumable kitchen items, by id, to their copies. ``stays`` maps labels, and object nodes
-    by id, to whether they stay when used, which overrides the rule. ``wanted`` maps goals to the copies that
-    are wanted, where that is not one.
+    by id, to whether they stay when used, which overrides the rule. ``wanted`` maps goals to the number of
+    copies wanted, if above 1.
     """
 
     stock: Mapping[int, int]
@@ -218,9 +223,9 @@ class Verified(NamedTuple):
 
 
 def load_certificate(file: Path) -> Any:
-    """Return the content of a certificate file, reading no more than a certificate may have.
+    """Return the content of a certificate file; no more than the greatest length of certificates is read.
 
-    Raises ``OSError`` and ``UnicodeDecodeError`` where it cannot be read, and else as
+    Raises ``OSError`` and ``UnicodeDecodeError`` where the file cannot be read, and otherwise as
     :func:`read_certificate`.
     """
     with file.open("rb") as stream:
@@ -270,10 +275,10 @@ def refusing_depth() -> Iterator[None]:
 
 @refusing_depth()
 def verify(certificate: Any, subject: Subject) -> Verified:
-    """Check a certificate of a tree against the data it speaks about.
+    """Check a certificate of a tree against its data.
 
     The time is linear in the number of cuts times the size of the network. Raises :class:`LimitError` where
-    it would be more than a few seconds longer than that of the digest of the network. Raises
+    the check would take more than a few seconds beyond the time for the digest of the network. Raises
     :class:`RefusedError` with the first fault that is found.
     """
     rules = read_frame(certificate, TREE_FORM, subject)
@@ -281,7 +286,7 @@ def verify(certificate: Any, subject: Subject) -> Verified:
 
 
 def read_frame(certificate: Any, form: Form, subject: Subject) -> tuple[Rule, ...]:
-    """Check that a certificate has a form, was not changed and is about the data; return its rules."""
+    """Check the form, the seal and the digests of a certificate; return its rules."""
     require(isinstance(certificate, dict), "expected an object with the keys of a certificate")
     require(certificate.get("format") == form.name, f"expected the format {form.name!r}")
     version = certificate.get("version")
@@ -308,6 +313,7 @@ class Check:
     """
 
     def __init__(self, certificate: dict[str, Any], rules: tuple[Rule, ...], subject: Subject) -> None:
+        """Read objectives, costs, goals, rules and cuts of a certificate; its proof is read later."""
         network, kitchen, rates, utensils, prices = subject[:5]
         self.allowed = ALLOWED.steps + ALLOWED.steps_each * (len(network) + len(network.objects))
         self.steps = self.allowed  # that are left
@@ -542,7 +548,7 @@ class Check:
         return costs
 
     def _keep(self, units: frozenset[int]) -> None:
-        """Check a tree against the rules."""
+        """Refuse a tree that does not keep to the rules."""
         self._spend(len(self.ruled.makers) + len(self.network) * len(self.ruled.barred))
         self._spend(len(units) * len(self.ruled.limits))
         others = frozenset(range(len(self.network))) - units if self.rules else frozenset[int]()
@@ -618,11 +624,11 @@ class Check:
     def _packed(
         self, weights: Any, limits: Any, used: frozenset[int], without: frozenset[int]
     ) -> tuple[Amount, Callable[[int], Amount]]:
-        """Return the sum of a cost partition, after checking it, and the reduced cost of each member.
+        """Check a cost partition; return its sum and a function that returns the reduced cost of a member.
 
-        A member that consumes from a limit may carry the weight of the limit for each unit it consumes; the
-        weight of the whole limit, less the amounts of used members, is then taken from the bound. Trees with
-        a member cost at least the sum and the reduced cost of the member.
+        A tree with a member costs at least the sum plus the reduced cost of the member. A limit may have a
+        weight, too. A member then carries this weight for each unit that it consumes from the limit. In
+        return, the weight of the remaining limit, after the used members, is subtracted from the sum.
         """
         total: Amount = {}
         carried: list[tuple[Amount, Mapping[int, Fraction]]] = []
@@ -684,8 +690,8 @@ class Check:
     def _rounded(self, amount: Amount, stated: Any) -> Amount:
         """Round up a bound to a stated common divisor of all costs.
 
-        It is rounded at the first objective whose stated divisor does not divide it. The parts after this
-        objective become 0, since no cost is below 0.
+        It is rounded at the first objective whose part is no multiple of the stated divisor. The parts after
+        this objective become 0, since no cost is below 0.
         """
         multiples = {name: read_rational(multiple) for name, multiple in read_object(stated).items()}
         require(multiples.keys() <= set(self.objectives), "a multiple is stated for another objective")
@@ -761,9 +767,9 @@ class Check:
         return frozenset.union(*(made for _, made in self._details(unit)))
 
     def _details(self, unit: int) -> Iterator[tuple[frozenset[int | None], frozenset[int | None]]]:
-        """Yield preconditions and add effects of each unit that a unit stands for, at level 3 of itself.
+        """Yield preconditions and add effects of each unit of level 3 that a unit stands for.
 
-        Containers that a unit may skip are neither.
+        A unit of level 3 stands for itself. Containers that a unit may skip are omitted.
         """
         network = self.network
         whole = network.detailed or network
@@ -877,7 +883,7 @@ class Check:
     ) -> Iterator[tuple[list[int], Amount]]:
         """Read the weights under a key of a proof.
 
-        The first ``numbers`` entries of each list name what is weighted.
+        The first ``numbers`` entries of each row are the numbers of the weighted condition.
         """
         for name, value in self.read_named(key, stated, numbers):
             weight = read(value)
@@ -951,8 +957,8 @@ class Check:
         """Return bounds of ``-log(rate)`` from below and above.
 
         Python's decimal logarithm is correctly rounded, so it is off by less than one unit of its last digit.
-        For a rate near 1, the logarithms of denominator and numerator share their first digits. So more are
-        computed: one for each three bits that are shared.
+        For a rate near 1, the logarithms of denominator and numerator share their first digits. So one more
+        digit is computed for each three bits that they share.
         """
         shared = (rate.denominator.bit_length() - (rate.denominator - rate.numerator).bit_length()) // 3
         precise = Context(prec=50 + min(shared, 400))
@@ -994,7 +1000,7 @@ class Check:
 
 
 def bit_length(value: Fraction) -> int:
-    """Return the length of a fraction."""
+    """Return the number of bits of a fraction, numerator and denominator together."""
     return value.numerator.bit_length() + value.denominator.bit_length()
 
 
