@@ -121,7 +121,7 @@ def _at_odds(outcome: Outcome, certificate: Certificate, covered: Coverage) -> s
 def _costs_at_odds(
     outcome: Outcome, units: Sequence[int], certificate: Certificate, covered: Coverage
 ) -> str | None:
-    """Return why a tree cannot cost what a certificate proves; ``None`` where it can."""
+    """Return why the costs of a tree contradict a certificate; ``None`` where they do not."""
     problem, content = outcome.problem, certificate.content
     arrays = Arrays(problem, certificate.certified, covered)
     cost = arrays.order.total(arrays.costs[a] for a in arrays.actions(units))
@@ -167,7 +167,7 @@ def _contradiction(outcome: Outcome, settings: Settings, why: str) -> BugError:
 
 
 def _tree(outcome: Outcome, units: Sequence[int]) -> str:
-    """Return a text that describes a tree and its costs."""
+    """Return a text that describes a tree and its costs, for the message about a contradiction."""
     return f"the units {list(units)} ({_figures(outcome.problem, units)})"
 
 

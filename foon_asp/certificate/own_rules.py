@@ -91,7 +91,7 @@ def check_with_clingo(
 
 
 def _some_tree(content: Mapping[str, Any], problem: Problem, settings: Settings, rules: str) -> bool:
-    """Return whether clingo finds any tree, of all executable units, that keeps to additional rules."""
+    """Return whether clingo finds a tree of executable units that keeps to the additional ``rules``."""
     ours = set(Objective)
     objectives = tuple(Objective(name) for name in content["objective"] if name in ours)
     try:

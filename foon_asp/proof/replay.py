@@ -81,8 +81,8 @@ def replayable(problem: Problem, plan: Iterable[FunctionalUnit]) -> Problem:
 def waits(replay: Replay) -> Iterator[set[int]]:
     """Yield for each step, in order, the positions of the steps that have to be done before it.
 
-    An earlier step has to be done before if it made a copy that the step needs, or read a copy that the step
-    uses up. Nodes that are not consumable always have another copy.
+    An earlier step has to be done before it if the earlier step made a copy that the step needs, or read a
+    copy that the step uses up. Nodes that are not consumable always have another copy.
     """
     readers: dict[tuple[Copy, int], set[int]] = {}
     spent: Counter[Copy] = Counter()  # how often a copy like this was used up: those of a stock are alike
@@ -100,7 +100,7 @@ def waits(replay: Replay) -> Iterator[set[int]]:
 def readers(replay: Replay, is_free: Callable[[str], bool]) -> list[tuple[int, ...]]:
     """Return, for each copy that several steps need and do not use up, the positions of the steps.
 
-    Nodes that never run out are omitted: no step made them, and the stock does not count them. Nodes whose
+    Copies that neither a step made nor the stock counts are omitted, since they never run out. Nodes whose
     label ``is_free`` accepts are omitted, too, since each step can have another copy.
     """
     reading: dict[tuple[Copy, int], list[int]] = {}

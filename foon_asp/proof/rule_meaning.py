@@ -90,8 +90,8 @@ class Meaning(NamedTuple):
 class Constraint(NamedTuple):
     """A ready-made constraint: the types of its values by name (``list`` is of texts), and its meaning.
 
-    ``removes`` says that it only removes units. ``places`` returns what the constraint reads of the sources
-    of a unit; ``None`` where it reads no sources.
+    ``removes`` says that the constraint only removes units. ``places`` returns the parts of a unit's sources
+    that the constraint reads; it is ``None`` where the constraint reads no sources.
     """
 
     values: Mapping[str, type]
@@ -114,7 +114,7 @@ def meaning(rule: Rule, question: Question) -> Meaning:
 
 
 def looked_at(rule: Rule, network: Network) -> list[list[str]] | None:
-    """Return the sources of each unit that a constraint reads; ``None`` where it reads no sources."""
+    """Return for each unit the sources that a constraint reads; ``None`` where it reads no sources."""
     places = None if rule["rule"] in {OWN, ALL_STEPS} else LIBRARY[rule["rule"]].places
     if places is None:
         return None

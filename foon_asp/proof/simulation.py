@@ -42,9 +42,9 @@ class Obstacle(NamedTuple):
 class Simulation(NamedTuple):
     """The result of a simulation of a tree.
 
-    ``verdict`` tells how the tree executes. ``order`` has positions in the tree, in an order that executes,
-    as far as one does. ``as_listed`` is what stops the listed order, ``obstacle`` what stops every order;
-    each is ``None`` if nothing does.
+    ``verdict`` tells how the tree executes. ``order`` has positions in the tree, in an executable order;
+    units that cannot run are omitted. ``as_listed`` is the obstacle of the listed order, and ``obstacle``
+    that of every order; ``None`` without an obstacle.
 
     Example:
         >>> problem = foon_asp.load().problem("macaroni")

@@ -33,7 +33,7 @@ class TimedStep(NamedTuple):
     """A scheduled step: its times, its agent and its tools.
 
     ``start`` and ``end`` are in seconds. ``agent`` is a number from 1, ``None`` where nobody has to stand by.
-    ``tools`` are in use by it alone, in the order of the unit's objects.
+    ``tools`` are used only by this step while it runs; they are in the order of the unit's objects.
     """
 
     start: Fraction
@@ -45,8 +45,8 @@ class TimedStep(NamedTuple):
 class Means(NamedTuple):
     """The resources of a schedule.
 
-    ``durations`` are those of motions. ``tools`` maps some tools to their number, ``None`` for an unlimited
-    number. Of other utensils there is one each.
+    ``durations`` are those of motions. ``tools`` maps tools to their number, ``None`` for an unlimited
+    number. There is one of each utensil that ``tools`` omits.
     """
 
     durations: Mapping[str, Duration]
@@ -131,9 +131,9 @@ def timetable_fault(
 ) -> str | None:
     """Return the first fault of a schedule of a plan in words; ``None`` without one.
 
-    At each moment, each step needs copies that no other step has, each agent is at most at one step, and each
-    tool is at most at one step. A tool is in the state in which an earlier step left it, or as the kitchen
-    has it. Items of the problem have to be used up (:func:`foon_asp.proof.replay.replayable`).
+    At each moment, there have to be enough copies for all running steps, and each agent and each tool may be
+    at only one step. A tool has to be in the state in which an earlier step left it, or as the kitchen has
+    it. Items of the problem have to be used up (:func:`foon_asp.proof.replay.replayable`).
     """
     if len(steps) != len(plan):
         return f"there are {len(plan)} steps, and times for {len(steps)}"
@@ -212,7 +212,7 @@ class _Run:
             self._working.pop(hand, None)
 
     def _wrong_tools(self, unit: FunctionalUnit, tools: Sequence[Tool]) -> Iterator[str]:
-        """Yield the faults of the tools of a step at its start."""
+        """Yield each fault of the tools with which a step starts."""
         problem, means = self._problem, self._means
         needs, needed = tools_asked(problem, means, unit), self._executions.of(unit).preconditions
         brought = Counter(tool.label for tool in tools)

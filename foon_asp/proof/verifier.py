@@ -2,15 +2,15 @@
 
 docs/dev/certificates.md describes certificates and proves that what passes here is true. In short: take a set
 T of object nodes with a goal in it (a *cut*). The first unit of a tree that makes a node of T needs no node
-of T, so every tree uses one of the units that make a node of T and need none: the *members* of T. Positive
-weights on cuts that overload no unit (those of its cuts add up to at most its cost) therefore add up to a
-lower bound on every tree's cost. A cut without members shows that there is no tree.
+of T. So every tree uses one of the *members* of T: the units that make a node of T and need no node of T. Now
+give each cut a positive weight such that for every unit, the weights of the cuts that it is a member of add
+up to at most its cost. Then the sum of all weights is a lower bound on every tree's cost. A cut without
+members shows that there is no tree.
 
 Weights and costs have one part for each objective and are compared objective by objective, like words. The
-part for ``success`` is a sum of ``e * -log(rate)`` with rational ``e``; its sign is found by bounds of the
-logarithms, and where these are too close, by comparing the product of ``rate ** e`` with 1 in whole
-numbers. This module imports the standard library and the plain network, and nothing of the rest of the
-package.
+part for ``success`` is a sum of ``e * -log(rate)`` with rational ``e``. Its sign is found by bounds of the
+logarithms. Where these are too close, the product of ``rate ** e`` is compared with 1 in whole numbers. This
+module imports the standard library and the plain network, and nothing of the rest of the package.
 """
 
 import hashlib
@@ -456,7 +456,7 @@ class Check:
         return prices
 
     def _complete(self, values: Sequence[Fraction | None] | None, count: int, what: str) -> list[Fraction]:
-        """Return the values, after checking that none is missing or below 0."""
+        """Return the values of ``count`` units; refuse missing values and values below 0."""
         require(values is not None, f"a claim needs {what}, but none are given")
         present = [value for value in values or () if value is not None]
         require(len(present) == count, f"a unit has none of the {what} that a claim needs")
@@ -556,7 +556,7 @@ class Check:
         require(fault is None, f"the tree {fault}")
 
     def _barred(self, number: int, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
-        """Return the units that a rule excludes from trees with the used members and none of ``without``."""
+        """Return the units barred by a rule: no tree with all ``used`` and none of ``without`` has them."""
         self._spend(len(self.network) + 5 * self.claimed)
         units = frozenset(member for member in used if member < len(self.network))
         return self.ruled.barred[number](units, without)
@@ -781,7 +781,8 @@ class Check:
     def _skipped(self, whole: Network, inputs: set[int]) -> set[int]:
         """Return the inputs of a unit that the rule ``implied`` takes as given.
 
-        These are utensils with exactly one ingredient that, located in the utensil, is another input.
+        An input is taken as given if it is a utensil with exactly one ingredient, and this ingredient,
+        located in the utensil, is another input.
         """
         nodes = [(o, whole.objects[o]) for o in inputs]
         return {
@@ -1122,7 +1123,7 @@ def read_rules(value: Any, units: int) -> tuple[Rule, ...]:
 def _own(rule: Rule, units: int) -> None:
     """Check the form of claims about user rules; the claims themselves are taken on trust.
 
-    A claim has the texts of the rules, their digests, and sets of units.
+    The claims consist of the texts of the rules, their digests, and sets of units.
     """
     read_object(rule, ("rule", "claims", "constants", "files", "library", "limits"))
     for key in ("constants", "library"):
