@@ -188,9 +188,9 @@ def _tokens(text: str) -> Iterator[_Token]:
 
 
 def string_constant(value: str) -> str:
-    """Return the text of a setting of a string constant, with or without quotes.
+    """Return the text that a setting of a string constant means; quotes around it may be omitted.
 
-    Raises :class:`UserError` for a quote at the beginning without a string of clingo.
+    Raises :class:`UserError` for a setting that begins with a quote and is no string of clingo.
     """
     if not value.startswith('"'):
         return value

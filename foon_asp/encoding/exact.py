@@ -39,9 +39,9 @@ _UNARY: Final[dict[str, Callable[[int], int]]] = {"neg": lambda a: -a, "abs": ab
 
 
 def is_beyond(text: str, values: Sequence[int]) -> bool:
-    """Whether the value of a term or of a subterm is outside clingo's numbers.
+    """Return whether the value of a term or of a subterm is outside clingo's numbers.
 
-    ``text`` is the term in postfix notation, with indices into ``values``: ``0 1 + 0 *``.
+    ``text`` is the term in postfix notation, as in ``0 1 + 0 *``; a number in it is an index into ``values``.
     """
     stack: list[int] = []
     try:

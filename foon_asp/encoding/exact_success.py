@@ -60,8 +60,8 @@ class RateScale(NamedTuple):
 def rate_scale(rates: Collection[Fraction]) -> RateScale:
     """Return the finest useful scale of rates in (0, 1] within clingo's 32-bit integers.
 
-    It is at most 10^8, except where a rate next to 1 would weigh almost 0. Raises ``ValueError`` for other
-    rates.
+    The scale is at most 10^8, except where a rate next to 1 would weigh almost 0. Raises ``ValueError`` for a
+    rate outside of (0, 1].
     """
     if not all(0 < rate <= 1 for rate in rates):
         raise ValueError("expected success rates above 0 and at most 1")
@@ -108,7 +108,7 @@ def _minus_log(rate: Fraction, digits: int) -> Decimal:
 def _weight(rate: Fraction, scale: int) -> int:
     """Return ``floor(scale * -ln rate)``, exactly.
 
-    The logarithm of a rational number other than 1 is irrational, so enough digits always settle the floor.
+    The logarithm of a rational number other than 1 is irrational, so with enough digits the floor is certain.
     """
     lost = scale * (1 - rate)
     low, high = lost, lost / rate  # bounds of -ln rate, precise enough next to 1

@@ -30,6 +30,7 @@ class GroundProgram:
     def __init__(
         self, files: Sequence[str | Stated], text: str, arguments: Sequence[str], products: int = 0
     ) -> None:
+        """Load files and text into clingo, and ground them."""
         self._messages: list[str] = []
         self._statistics = asks_for_statistics(arguments)
         with refusing(self._messages):
@@ -55,6 +56,7 @@ class GroundProgram:
                 self._control.load(file)
 
     def _ground(self, parts: Sequence[tuple[str, Sequence[Symbol]]]) -> None:
+        """Ground parts of the program, and record messages about overflows."""
         try:
             self._control.ground(parts, Exact())
         finally:
@@ -83,10 +85,15 @@ class GroundProgram:
     ) -> Ended:
         """Search for the best answer, and return how the search ended; any thread may report trees.
 
-        ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (stop at the first answer).
-        ``predicates``, by name and arity, are those whose atoms are reported besides ``use``; these begin
-        with a number. Raises :class:`UserError` for an option that clasp refuses and for invalid answers, and
-        whatever ``on_tree`` raises.
+        Parameters:
+            opt_mode: As in clasp: ``opt``, ``opt,BOUND,...`` or ``ignore`` (stop at the first answer).
+            predicates: Predicates (name and arity) whose atoms are reported, in addition to ``use``. The
+                first argument of their atoms is a number.
+            on_tree: Is called with each answer.
+            on_bound: Is called with each new lower bound.
+
+        Raises :class:`UserError` for an option that clasp refuses and for invalid answers, and any error that
+        ``on_tree`` raises.
         """
         # overrides the options: a proof needs the whole search space
         models = 1 if opt_mode == "ignore" else 0

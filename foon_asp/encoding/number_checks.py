@@ -1,7 +1,7 @@
 """Overflow checks: rules that find arithmetic beyond clingo's numbers, which wraps silently.
 
-They derive ``_beyond(File,Line,Column,Term)``, and call ``@_exact(Text,...)`` with a term in the notation of
-:func:`foon_asp.encoding.exact.is_beyond`, and its values.
+These rules derive ``_beyond(File,Line,Column,Term)``. They call ``@_exact(Text,...)`` with a term, in the
+notation of :func:`foon_asp.encoding.exact.is_beyond`, and the values in the term.
 """
 
 from collections.abc import Callable, Iterator
