@@ -67,7 +67,11 @@ class ClingoAnswer(NamedTuple):
 
 
 class Clingo:
-    """Runs of clingo on one program: ``seconds`` at most in all, and ``memory`` bytes each, of up to 4 GB."""
+    """Runs of clingo on one program.
+
+    ``seconds`` limits the time of all runs together. ``memory`` limits the memory of each run, in bytes; the
+    limit is 4 GB at most.
+    """
 
     def __init__(self, program: BareProgram, seconds: float, memory: int | None) -> None:
         self._program, self._seconds = program, seconds
@@ -78,7 +82,8 @@ class Clingo:
     def best(self, extra_facts: str = "", with_second_opinion: bool = True) -> ClingoAnswer | None:
         """Return an optimal answer, or ``None`` where no answer exists.
 
-        ``extra_facts`` are for the encoding of the second opinion, or without it for the program itself.
+        ``extra_facts`` go to the second-opinion encoding if ``with_second_opinion``, else to the program
+        itself.
         """
         options = ("--opt-mode=opt", "--models=0", "--quiet=1")
         result, _, answers = self._run(extra_facts, options, bool(extra_facts) and with_second_opinion)
@@ -89,7 +94,10 @@ class Clingo:
         return answers[-1]
 
     def all_kinds(self, extra_facts: str, bounds: Sequence[int]) -> list[ClingoAnswer]:
-        """Return one answer for each distinct count of equal units, with costs up to ``bounds``."""
+        """Return one answer of each kind with costs up to ``bounds``.
+
+        Answers are of one kind if they have the same number of units of each cost by the rounded objective.
+        """
         mode = ",".join(["--opt-mode=enum", *map(str, bounds)])
         options = (mode, f"--models={MAX_KINDS + 1}", "--project=project")
         result, exhausted, answers = self._run(extra_facts, options, True)
@@ -163,6 +171,7 @@ class _Check:
     """
 
     def __init__(self, claim: Asked, program: BareProgram, clingo: Clingo) -> None:
+        """Read the weights of units from the facts of the program."""
         self.claim, self.clingo = claim, clingo
         self.outcome, self.problem = claim.outcome, claim.outcome.problem
         self.levels = levels(self.outcome.objectives)
@@ -216,7 +225,7 @@ class _Check:
         return ours
 
     def _has_standard_costs(self, answer: ClingoAnswer) -> bool:
-        """Return whether clingo adds up the costs of the units; replaced encodings may count others.
+        """Return whether clingo adds up the costs of the units; a replaced encoding may add other numbers.
 
         The penalty of soft constraints is not compared.
         """
@@ -245,7 +254,7 @@ class _Check:
             )
 
     def _compare(self, answer: ClingoAnswer, objectives: Iterable[Objective]) -> None:
-        """Raise :class:`DisagreementError` where the penalty or an objective differs from our tree's."""
+        """Raise :class:`DisagreementError` where the penalty, or an objective, differs from our tree."""
         compared = self._answer(answer)
         if self.claim.soft and self.claim.penalty != answer.costs[0]:
             raise differing("penalty", self.claim.penalty or 0, answer.costs[0], compared)
@@ -274,9 +283,9 @@ class _Check:
     ) -> None:
         """Compare lexicographically where one objective is ``rounded`` in the facts.
 
-        Trees with the same number of units of each cost are one kind. clingo enumerates the kinds up to a
-        bound on the weight of that objective, and their costs are compared in fractions. Among the kinds as
-        good as our tree, clingo minimizes the less important objectives.
+        Trees with the same number of units of each cost are of one kind. clingo enumerates the kinds up to a
+        bound on the weight of the rounded objective, and their costs are compared as fractions. Among the
+        kinds that are as good as our tree, clingo minimizes the less important objectives.
         """
         index = self.levels.index(rounded)
         before, after, weights = self.levels[:index], self.levels[index:], self.weights[rounded]
@@ -393,7 +402,7 @@ def _minus_log(rate: Fraction) -> tuple[Fraction, Fraction]:
 
 
 def _limit(process: int, seconds: float, memory: int) -> None:
-    """Limit the memory, in bytes, and the time of a process, where the system can: grounding may not end."""
+    """Limit the memory (bytes) and the time of a process, if the system can; grounding may not end."""
     with contextlib.suppress(ImportError, AttributeError, OSError, ValueError):
         import resource  # noqa: PLC0415 (not everywhere)
 

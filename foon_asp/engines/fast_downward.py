@@ -70,9 +70,10 @@ def solve_with_fast_downward(
 
 
 def _task(problem: Problem, objective: Objective, forbidden: frozenset[int]) -> str:
-    """Return the text of the planning task; a variable is 0 once its node is available.
+    """Return the planning task as text, in the format of Fast Downward's translator.
 
-    Raises :class:`NotCheckedError` where costs are too large for Fast Downward.
+    Each node that has to be made, or taken at a cost, is a binary variable, which is 0 once the node is
+    available. Raises :class:`NotCheckedError` where costs are too large for Fast Downward.
     """
     scope = scope_of(problem, forbidden)
     items = kitchen_items(problem, scope.units) if objective.row.item else []

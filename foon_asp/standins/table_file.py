@@ -24,9 +24,8 @@ def read_stand_ins(
 ) -> StandInTable:
     """Return the usual table with the changes of files; a later file takes precedence.
 
-    The lexicons ``similar`` are read before all ``files``. Their pairs with labels of ``utensils`` are left
-    out, since a tool or vessel stands in only where one of the ``files`` lists it. Raises
-    :class:`InputError`.
+    The lexicons ``similar`` are read before all ``files``. Pairs with a label of ``utensils`` in lexicons are
+    ignored: a tool or vessel stands in only where one of the ``files`` lists it. Raises :class:`InputError`.
     """
     table = StandInTable.usual()
     for file in similar:
