@@ -32,15 +32,19 @@ _UNITS = {"": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
 
 
 class _Pace(NamedTuple):
-    """How long work may go on after a limit, and how often limits are looked at.
+    """How long work may continue after a limit, and how often limits are checked.
 
-    ``tolerance_seconds``: after a limit until work is overdue and interrupted; half of it after a cancel.
-    More lets work end with an answer, less ends sooner. ``memory_tolerance_seconds``: the same where memory
-    is short. ``grace_seconds``: the least time for a last piece of work that begins at a limit.
-    ``poll_seconds``: between two looks at the memory; longer ones overshoot the limit, shorter cost time.
-    ``interrupts``: sent at most, since destructors lose some. ``interrupt_seconds``: between two of them.
-    ``lost_polls``: polls until a sent interrupt counts as lost, a second.
-    ``handover_seconds``: between two looks at whether another thread has sent its interrupt.
+    Attributes:
+        tolerance_seconds: From a limit until work is overdue and interrupted; half as long after a cancel.
+            With more, work may end with an answer; with less, it ends sooner.
+        memory_tolerance_seconds: The same after the memory limit.
+        grace_seconds: The least time for the last piece of work if it begins at a limit.
+        poll_seconds: Between two checks of the memory. A longer time overshoots the limit, a shorter one
+            costs time.
+        interrupts: The greatest number of interrupts that are sent, since destructors lose some.
+        interrupt_seconds: Between two interrupts.
+        lost_polls: Polls until an interrupt counts as lost, a second in all.
+        handover_seconds: Between two checks of whether another thread has sent its interrupt.
     """
 
     tolerance_seconds: float = 0.5
@@ -109,7 +113,7 @@ _CANCEL: ContextVar[Cancel | None] = ContextVar("cancel", default=None)
 
 @contextlib.contextmanager
 def stoppable(seconds: float | None, token: Cancel | None, doing: str) -> Iterator["Deadline"]:
-    """Limit the time of a ``with`` block, and cancel it by a token, which deadlines made in it obey as well.
+    """Limit the time of a ``with`` block, and cancel it by a token; deadlines made in the block obey both.
 
     At a limit, code that checks its deadline has time to end with its incumbent. After this time, the block
     is interrupted, and :class:`StoppedError` is raised. ``doing`` describes the work, as in "while reading".
@@ -153,10 +157,13 @@ class LimitError(KeyboardInterrupt):
 class Deadline:
     """The limits of one question, shared by all its work, and the limit that stopped it.
 
-    ``seconds`` count from ``began``, a time of the monotonic clock (``None`` is now), ``memory`` is in bytes;
-    ``None`` is no limit. The memory includes that of processes that work for this one. A deadline ``within``
-    another one has the smaller limits of both, and ctrl-C ends both. ``doing`` describes the current work, as
-    in "while reading".
+    ``doing`` describes the current work, as in "while reading".
+
+    Parameters:
+        seconds: The time limit; ``None`` is no limit.
+        memory: The memory limit in bytes, for this process and those that work for it; ``None`` is no limit.
+        began: The start of the time, on the monotonic clock; ``None`` is now.
+        within: An outer deadline. The smaller limits of both apply, and ctrl-C ends both.
 
     Raises :class:`UserError` for a memory limit where the system does not report the memory in use.
     """
@@ -315,9 +322,9 @@ class Deadline:
     def watched(self, doing: str, late: bool = False, grace: bool = False) -> "Watch":
         """Return a context that interrupts work at the limits, for code that does not check the deadline.
 
-        It raises :class:`LimitError` anywhere in the block, which therefore must not have state to lose, nor
-        handle ctrl-C itself. With ``late`` the block is interrupted only when overdue; with ``grace`` it has
-        at least a quarter of a second, to finish an answer.
+        The context may raise :class:`LimitError` anywhere in the block. So the block must be safe to abort,
+        and must not handle ctrl-C itself. With ``late``, the block is interrupted only when overdue. With
+        ``grace``, it has at least a quarter of a second to finish an answer.
         """
         return Watch(self, doing, late, grace)
 
@@ -405,6 +412,7 @@ class Watch:
         self._wake: SimpleQueue[None] = SimpleQueue()
 
     def __enter__(self) -> Self:
+        """Start the background thread; raises :class:`LimitError` if the deadline allows no more work."""
         deadline = self._deadline
         deadline.doing = self._doing
         if self._due or (deadline.passed and deadline.full and not self._begins):
@@ -422,6 +430,7 @@ class Watch:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        """Stop the background thread; raises :class:`LimitError` if it has sent an interrupt."""
         received = kind is not None and issubclass(kind, KeyboardInterrupt)
         while True:  # an interrupt may come within this loop, which can be repeated
             try:
@@ -452,9 +461,10 @@ class Watch:
         return due and time.monotonic() >= self._earliest
 
     def poll(self, interrupts: int) -> tuple[float, int] | None:
-        """Poll the deadline, and interrupt the thread if it has passed, repeatedly, since some are lost.
+        """Poll the deadline, and interrupt the thread if it has passed.
 
-        Returns the seconds until the next poll and the number of interrupts sent, or ``None`` after the last.
+        Interrupts are repeated, since some are lost. Returns the seconds until the next poll and the number
+        of interrupts sent so far, or ``None`` after the last poll.
         """
         if self._finished or interrupts == _PACE.interrupts:
             return None

@@ -80,7 +80,10 @@ def answer_on_cluster(
 def _answer_some(
     opener: Opener, chunk: tuple[BatchQuestion, ...], memory_limit: int | None, settings: Settings | None
 ) -> list[AnswerRow]:
-    """Return the rows of the first questions of a chunk: at least one, and no new one after half a second."""
+    """Return the rows of the first questions of a chunk, at least one.
+
+    After half a second, no other question is begun.
+    """
     asker = _open(opener)
     began = time.monotonic()
     rows = [answer_row(asker, chunk[0], memory_limit, settings)]

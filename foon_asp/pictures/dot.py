@@ -40,7 +40,7 @@ _POINT_DEFAULTS = f"""\
 
 
 def dot_text(drawing: Drawing) -> str:
-    """Return a drawing as DOT, from top to bottom; a network of many units as :func:`graph_text`."""
+    """Return a drawing as DOT, from top to bottom; the graph of a large network as by :func:`graph_text`."""
     if drawing.graph and drawing.units > BOXED_UNITS:
         return graph_text(drawing)
     labels = (_node(box, (*box.head, *box.details), _ROLE_ATTRIBUTES[box.role]) for box in drawing.boxes)
