@@ -145,8 +145,8 @@ def _reason(stop: KeyboardInterrupt, deadline: "Deadline") -> str:
 class LimitError(KeyboardInterrupt):
     """A limit was reached, or ctrl-C pressed, before any answer.
 
-    It is a ``KeyboardInterrupt``, since code handles a limit like ctrl-C, and so that handlers of
-    ``Exception`` do not catch it. ``stopped`` is the limit and the work in words, ``advice`` what to do.
+    It is a ``KeyboardInterrupt``, so that code handles a limit like ctrl-C, and handlers of ``Exception`` do
+    not catch it. ``stopped`` is the limit and the work in words. ``advice`` is advice for the user.
     """
 
     def __init__(self, deadline: "Deadline") -> None:
@@ -287,7 +287,7 @@ class Deadline:
 
     @property
     def stopped(self) -> str | None:
-        """The limit that stopped the question, and the work at that time, in words; ``None`` before."""
+        """The limit that stopped the question and the work at that time, in words; ``None`` if none did."""
         return None if self._stopped_by is None else f"{self._stopped_by} while {self._doing}"
 
     @property
@@ -333,7 +333,8 @@ class Deadline:
 def resend_lost_interrupts() -> Iterator[None]:
     """Resend interrupts that Python loses in a ``with`` block of the main thread.
 
-    Python only reports an exception in a destructor, so an interrupt in a destructor is sent again.
+    Python reports an exception in a destructor, but does not raise it. So an interrupt that comes in a
+    destructor is sent again.
     """
     previous_hook = sys.unraisablehook
     main = threading.main_thread().ident or 0
@@ -398,9 +399,9 @@ if hasattr(os, "register_at_fork"):
 
 
 class Watch:
-    """A context in which a background thread polls a deadline, and interrupts this thread as ctrl-C does.
+    """A context in which a background thread polls a deadline and interrupts this thread as ctrl-C does.
 
-    An interrupt at the very end of the block leaves it as ``KeyboardInterrupt``.
+    An interrupt at the very end of the block leaves the context as ``KeyboardInterrupt``.
     """
 
     def __init__(self, deadline: Deadline, doing: str, late: bool, grace: bool) -> None:
@@ -504,7 +505,7 @@ class Watch:
 
 
 def _watch(watching: "weakref.ref[Watch]", wake: "SimpleQueue[None]") -> None:
-    """Poll a watch until its end, or until it is garbage because an interrupt prevented its end."""
+    """Poll a watch until its end, or until it is garbage collected because an interrupt prevented its end."""
     pause, interrupts = _PACE.poll_seconds, 0
     while True:
         with contextlib.suppress(Empty):
@@ -527,7 +528,7 @@ def _resident(statm: Path) -> int:
 
 
 def seconds(number: float | str, quantity: str = "the time limit") -> float:
-    """Return a number of seconds, from 0; raises :class:`UserError` about the ``quantity`` for others."""
+    """Return a number of seconds, at least 0; raises :class:`UserError` about the ``quantity`` otherwise."""
     try:
         value = float(number)
     except (TypeError, ValueError, OverflowError):

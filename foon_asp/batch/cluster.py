@@ -24,10 +24,10 @@ def answer_on_cluster(
     """Answer questions on the workers of a scheduler, under ``settings``; return rows as they come.
 
     A worker opens the data once and keeps them until a question about other data comes. The files need the
-    same names on every worker. Questions of a failed task are asked again, each in a task of its own. A
-    question whose worker dies repeatedly is asked while no other question runs on the cluster, since
-    another question on the same worker may be the cause; if its worker dies again, its row says so. Raises
-    :class:`UserError` where there is no scheduler, or Dask is not installed.
+    same names on every worker. If a task fails, each of its questions is asked again in a separate task. If
+    the worker of a question dies repeatedly, another question on that worker may be the cause. The question
+    is then asked while no other question runs on the cluster; if its worker dies again, its row says so.
+    Raises :class:`UserError` where there is no scheduler, or Dask is not installed.
     """
     try:
         from distributed import Client, KilledWorker, as_completed  # noqa: PLC0415 (an extra, slow to import)

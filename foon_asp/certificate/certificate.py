@@ -33,8 +33,8 @@ class NotBestError(Exception):
 class Certificate(NamedTuple):
     """A verified certificate with its claim.
 
-    ``claim`` is ``optimal``, ``bound`` or ``infeasible``. ``certified`` are the objectives, from the first
-    on, that it speaks about; those after them are only the solver's.
+    ``claim`` is ``optimal``, ``bound`` or ``infeasible``. ``certified`` are the first objectives, as many as
+    the certificate proves; the other objectives rest on the solver alone.
     """
 
     content: dict[str, Any]

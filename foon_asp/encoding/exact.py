@@ -1,4 +1,4 @@
-"""Exact evaluation of arithmetic terms, to find those beyond clingo's numbers of 32 bits."""
+"""Exact evaluation of arithmetic terms, to find values beyond clingo's integers of 32 bits."""
 
 from collections.abc import Callable, Sequence
 from typing import Final

@@ -155,9 +155,9 @@ def _other_lines(problem: Problem, nodes: Sequence[int]) -> Iterator[str]:
 def write_worlds(
     problem: Problem, units: Iterable[int], predicates: Collection[str], world: str
 ) -> Iterator[str]:
-    """Yield facts about units and their object nodes by predicates, each unit in a world of its own.
+    """Yield facts about units and their object nodes by predicates, each unit in a separate world.
 
-    A world lets rules see each unit separately; ``world`` is the predicate of worlds.
+    In a separate world, rules see no other unit. ``world`` is the predicate of worlds.
     """
     network = problem.network
     sees_nodes = not OBJECT_FACTS.isdisjoint(predicates)
@@ -344,7 +344,10 @@ def write_seen(numbers: Iterable[int]) -> str:
 
 
 def write_fewer(units: Mapping[int, int]) -> str:
-    """Return facts that allow excluded products of rates, by number, to trees of fewer units."""
+    """Return facts that allow small trees to have products of rates that are otherwise excluded.
+
+    ``units`` maps the number of a product to N: trees of fewer than N units may have this product.
+    """
     return "".join(f"_fewer({number},{count}).\n" for number, count in units.items())
 
 
@@ -354,7 +357,7 @@ def write_wanted(number: int) -> str:
 
 
 def write_for_sale(prices: Mapping[int, int], second_choices: Iterable[int]) -> str:
-    """Return facts of the integer prices of object nodes for sale, and of those bought only if necessary."""
+    """Return facts of object nodes for sale: their integer prices, and which are bought only if necessary."""
     facts = [f"_for_sale({o},{_check(price)}).\n" for o, price in prices.items()]
     return "".join([*facts, *(f"_second_choice({o}).\n" for o in second_choices)])
 
@@ -418,7 +421,11 @@ def write_below(below: Iterable[Mapping[Objective, int | Fraction]], scales: Sca
 
 
 def write_assisted(twins: Mapping[int, int], max_assisted: int) -> str:
-    """Return facts that pair each unit of a person with that of the robot, and bound a person's units."""
+    """Return facts that pair each unit done by a person with the same unit done by the robot.
+
+    ``twins`` maps the number of a person's unit to that of the robot's unit. The facts also limit the
+    person's units in a tree to ``max_assisted``.
+    """
     facts = [f"_takes_over({_check(ours)},{theirs}).\n" for ours, theirs in twins.items()]
     return "".join([*facts, f"_at_most_assisted({_check(max_assisted)}).\n"])
 
@@ -447,12 +454,12 @@ def write_avoided(number: int, units: Iterable[int]) -> str:
 
 
 def write_unseen(units: Iterable[int]) -> str:
-    """Return facts that ask for a tree with at least one of some units, by their numbers."""
+    """Return facts that require a tree with at least one of some units, by their numbers."""
     return "".join(f"_unseen({_check(unit)}).\n" for unit in units)
 
 
 def write_in_all(units: Iterable[int]) -> str:
-    """Return facts that ask for a tree that lacks at least one of some units, by their numbers."""
+    """Return facts that require a tree without at least one of some units, by their numbers."""
     return "".join(f"_in_all({_check(unit)}).\n" for unit in units)
 
 

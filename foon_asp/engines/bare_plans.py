@@ -17,10 +17,10 @@ from foon_asp.proof.replay import replay_for
 
 
 def check_plan_with_bare_clingo(claim: Asked, seconds: float) -> tuple[Objective, ...]:
-    """Compare a plan with clingo's own; return the objectives by which they agree: those in whole numbers.
+    """Compare a plan with clingo's own; return the objectives by which they agree, all in whole numbers.
 
-    Raises :class:`DisagreementError` where both cannot be right, and :class:`NotCheckedError` where clingo's
-    answer implies nothing about ours, or did not come within ``seconds``.
+    Raises :class:`DisagreementError` where both cannot be right. Raises :class:`NotCheckedError` where
+    clingo's answer implies nothing about ours, or did not come within ``seconds``.
     """
     outcome, problem = claim.outcome, claim.outcome.problem
     if outcome.units is None or outcome.costs is None or outcome.status is not Status.OPTIMAL:

@@ -61,7 +61,7 @@ class Drawing(NamedTuple):
 
     @property
     def units(self) -> int:
-        """The number of functional units, each of which is one motion."""
+        """The number of functional units; each has one box, its motion."""
         return sum(box.role is Role.MOTION for box in self.boxes)
 
 
@@ -179,5 +179,5 @@ def _lines(text: str, width: int) -> tuple[str, ...]:
 
 
 def printable(text: str) -> str:
-    """Return a text with replacements for invisible or misleading characters, and those that XML forbids."""
+    """Return a text in which characters that are invisible, misleading or forbidden in XML are replaced."""
     return _NONCHARACTERS.sub("\ufffd", UNSAFE.sub("\ufffd", text))

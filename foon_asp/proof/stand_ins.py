@@ -1,4 +1,4 @@
-"""Check, for certificates, that the stand-ins of a network are those of its table.
+"""Check, for certificates, that a network has the stand-ins of its table.
 
 docs/stand-ins.md has the definition, and the argument why no other stand-in can be in a best tree. The code
 that makes stand-ins is not used here: the prices are computed anew.
@@ -81,12 +81,12 @@ def price_of(table: StandInTable, serving: ObjectNode, served: ObjectNode) -> Fr
 def stand_in_fault(
     network: Network, table: StandInTable, makes: Makes, goals: Sequence[int], claim: Claim
 ) -> str | None:
-    """Return what is wrong with the stand-ins of a network; ``None`` if they are those of its table.
+    """Return the first fault of the stand-ins of a network; ``None`` if they agree with its table.
 
     Each stand-in has to have a price, and to serve a node that cannot be made without stand-ins. No stand-in
-    may be missing, with two exceptions where ``claim`` is by dissimilarity: those that cost more than a free
-    node in the same place, and those that lead to more than ``claim.bound``. ``goals`` are all nodes that
-    every tree makes or takes.
+    may be missing. If ``claim`` is by dissimilarity, two kinds may be missing: stand-ins that cost more than
+    a free node in the same place, and stand-ins that lead to more than ``claim.bound``. A free node can be
+    made without stand-ins. ``goals`` are all nodes that every tree makes or takes.
     """
     objects = network.objects
     listed: set[tuple[int, int]] = set()

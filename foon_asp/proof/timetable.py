@@ -15,7 +15,7 @@ ToolName = str | ObjectNode
 
 
 class Tool(NamedTuple):
-    """One tool or vessel: the ``number``-th, from 1, of its ``name``, a label or an object node."""
+    """One tool or vessel: the ``number``-th (from 1) of a ``name``, which is a label or an object node."""
 
     name: ToolName
     number: int
@@ -106,7 +106,10 @@ class ToolNeed(NamedTuple):
 
 
 def tools_asked(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[str, ToolNeed]:
-    """Return the tools a unit needs by label: its utensils, and those that its objects are in, on or at."""
+    """Return the tools that a unit needs, by label.
+
+    They are its utensils, and the tools that its objects are in, on or at.
+    """
     needed, _, made = Executions(problem).of(unit)
     needs: dict[str, ToolNeed] = {}
     nodes = (*dict.fromkeys(unit.inputs), *unit.outputs)
@@ -239,5 +242,5 @@ class _Run:
 
 
 def _hands(step: TimedStep) -> list[int | Tool]:
-    """Return the resources that a step occupies: its tools and its agent."""
+    """Return the resources that a step occupies: its tools, and its agent as a number."""
     return [*step.tools] + ([] if step.agent is None else [step.agent])

@@ -437,7 +437,11 @@ class Check:
         return self._complete(prices, len(self.network), "prices")
 
     def _each_price(self, unit_prices: UnitPrices | None) -> Sequence[Fraction | None]:
-        """Return the prices of units, their own or those of their motions; below level 3 the least."""
+        """Return the price of each unit: its own, or else that of its motion; ``None`` without a price.
+
+        Below level 3, it is the least price of the units of level 3 that the unit stands for; ``None`` if one
+        of them has no price.
+        """
         network = self.network
         if unit_prices is None:
             return [None] * len(network)
@@ -564,8 +568,8 @@ class Check:
     def _prove(self, proof: Any, least: Amount | None) -> None:
         """Check a proof, with its branches, that every tree costs at least ``least``.
 
-        ``None`` stands for a proof that no tree exists: all costs are 0 then, so weights that add up to
-        more than 0 are a contradiction.
+        If ``least`` is ``None``, the proof is that no tree exists. All costs are then 0, so weights that add
+        up to more than 0 are a contradiction.
         """
         nobody: frozenset[int] = frozenset()
         waiting: list[tuple[Any, frozenset[int], frozenset[int]]] = [(proof, nobody, self.ruled.removed)]
@@ -616,7 +620,7 @@ class Check:
         return actions
 
     def _enough(self, bound: Iterable[Amount], least: Amount | None) -> bool:
-        """Return whether a bound is at least ``least``; ``None`` asks for a bound above 0."""
+        """Return whether a bound is at least ``least``; if ``least`` is ``None``, whether it is above 0."""
         if least is None:
             return self.sign(self.sum(bound)) > 0
         return self.sign(self.sum([*bound, negative(least)])) >= 0
@@ -750,7 +754,7 @@ class Check:
                         yield unit
 
     def _preconditions(self, member: int) -> frozenset[int | None]:
-        """Return the preconditions of a unit or a step, with those by rules; an item has none."""
+        """Return the preconditions of a unit or a step, including those by rules; an item has none."""
         if member in self.ruled.steps:
             return frozenset(self.ruled.steps[member][0])
         if member >= len(self.network):
@@ -759,11 +763,17 @@ class Check:
         return self.needs(member).union(own) if own else self.needs(member)
 
     def _needs(self, unit: int) -> frozenset[int | None]:
-        """Return the preconditions of a unit; below level 3, those common to all units that it stands for."""
+        """Return the preconditions of a unit.
+
+        Below level 3, they are the common preconditions of all units of level 3 that the unit stands for.
+        """
         return frozenset.intersection(*(needed for needed, _ in self._details(unit)))
 
     def _gives(self, unit: int) -> frozenset[int | None]:
-        """Return the add effects of a unit; below level 3 those of any unit that it stands for."""
+        """Return the add effects of a unit.
+
+        Below level 3, they are the add effects of all units of level 3 that the unit stands for.
+        """
         return frozenset.union(*(made for _, made in self._details(unit)))
 
     def _details(self, unit: int) -> Iterator[tuple[frozenset[int | None], frozenset[int | None]]]:
@@ -1021,7 +1031,7 @@ def _described(network: Network) -> list[Any]:
 
 
 def _stated(prices: UnitPrices, network: Network) -> list[list[Any]]:
-    """Return the prices by motion, and those of single units by their id at level 3."""
+    """Return the prices by motion, and the prices of single units by their id at level 3."""
     ids = ((network.unit_id(unit), price) for unit, price in prices.units.items())
     single = sorted([unit, str(price)] for unit, price in ids if unit is not None)
     return [sorted([motion, str(price)] for motion, price in prices.motions.items()), single]

@@ -57,7 +57,7 @@ _LEAF = {"weights", "before", "supply", "balance", "limits", "levels", "rounded"
 
 
 class Flow(NamedTuple):
-    """The preconditions of a unit, the nodes that it consumes and those that it adds, with their copies."""
+    """The object nodes that a unit needs, consumes and adds, each with the number of copies."""
 
     asks: Mapping[int, int]
     uses: Mapping[int, int]
@@ -320,7 +320,8 @@ class PlanCheck(Check):
     def _prove(self, proof: Any, least: Amount | None) -> None:
         """Check for each objective that plans as good by earlier objectives cost at least ``least``.
 
-        ``None`` claims that there is no plan: all costs are 0 then, and bounds have to be above 0.
+        If ``least`` is ``None``, the proof is that no plan exists. All costs are then 0, and bounds have to
+        be above 0.
         """
         proofs = read_list(proof)
         levels = range(max(1, len(self.objectives)))
@@ -363,10 +364,9 @@ class PlanCheck(Check):
         self._require_enough(bound, level)
 
     def _cheapest(self, member: int, level: int, node: Node, conditions: "_Conditions") -> Amount | None:
-        """Return the least of the reduced cost of a member over the counts that it may have.
+        """Return the least reduced cost of a member over all counts that are possible; ``None`` without any.
 
-        ``None`` where it may have no count. The cost is linear in the count from 1 on, so only the ends
-        matter.
+        From 1 on, the cost is linear in the count, so only 0 and the ends of the range from 1 on matter.
         """
         low, high = node.min_counts.get(member, 0), self._max_count(member, level, node)
         if high is not None and high < low:
@@ -628,7 +628,7 @@ def _stock(value: Any, kitchen: Collection[int]) -> dict[int, int]:
 
 
 def _amounts(value: Any, subject: Subject) -> dict[int, tuple[dict[int, int], dict[int, int]]]:
-    """Read the amounts of units by id, and of their inputs and outputs; they have to be those of the data."""
+    """Read the amounts of inputs and outputs by unit id; refuse amounts that differ from the data."""
     what = "units and the amounts of their inputs and outputs"
     stated: dict[int, tuple[dict[int, int], dict[int, int]]] = {}
     for row in read_list(value):

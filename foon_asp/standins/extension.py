@@ -21,8 +21,8 @@ def with_stand_ins(problem: Problem, table: StandInTable, everything: bool = Fal
     """Return a problem whose network also has stand-ins, each a unit with one input and one output.
 
     A stand-in uses one node in place of another that cannot be made from the kitchen. With ``everything``,
-    there is a stand-in for each such pair of nodes that the table has a price for. Otherwise there are only
-    those stand-ins that a tree of least dissimilarity can have (proof in docs/stand-ins.md).
+    each such pair of nodes with a price in the table has a stand-in. Otherwise, only the stand-ins that a
+    tree of least dissimilarity can have are added (proof in docs/stand-ins.md).
 
     Raises:
         UserError: below level 3, where items are used up, or if a unit has the motion of stand-ins.

@@ -69,7 +69,7 @@ def _row(name: str, value: str, column: int) -> tuple[Entry, Fraction | None]:
 
 
 def _edit(name: str) -> Edit | tuple[Edit, str]:
-    """Return the kind of edit that a name stands for, with the state or ingredient, if it names one."""
+    """Return the edit that the name of a row means, with its state or ingredient if the name has one."""
     kind, colon, word = (text.strip() for text in name.partition(":"))
     if kind not in (_NAMED if colon else _KINDS) or (colon and not word):
         kinds = ", ".join(_KINDS)
