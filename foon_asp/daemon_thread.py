@@ -1,7 +1,7 @@
 """Background threads without the locks of :mod:`threading`.
 
-An interrupt while such a lock is taken leaves it locked, and the next thread that takes it waits forever.
-Operations of ``SimpleQueue`` are atomic, and cannot be interrupted.
+An interrupt while a thread holds such a lock leaves it locked, and the next thread that takes the lock waits
+forever. Operations of ``SimpleQueue`` are atomic, and cannot be interrupted.
 """
 
 import _thread

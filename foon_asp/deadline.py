@@ -363,7 +363,8 @@ def resend_lost_interrupts() -> Iterator[None]:
 def uninterrupted() -> Iterator[None]:
     """Defer ctrl-C and interrupts of watches in a ``with`` block until its end.
 
-    C libraries turn an interrupt during their import into an ``ImportError``, and stay broken.
+    This is for imports: a C library that is interrupted during its import raises ``ImportError``, and cannot
+    be imported any more.
     """
     deferred: list[int] = []
     shield, thread = object(), threading.get_ident()

@@ -149,7 +149,7 @@ class Arrays:
     def cases(self, cases: Cases) -> Cases:
         """Return the branching cases of an answer, renumbered as actions; ``None`` for unknown cases.
 
-        In answers, the action that takes an item is numbered by its object, after all units.
+        In an answer, the action that takes an item has the number of units plus the item's id.
         """
         if cases is None:
             return None

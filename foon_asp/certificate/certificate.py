@@ -169,7 +169,7 @@ def _write(
 ) -> Certificate | None:
     """Return the certificate of a claim, in which each cut and each limit has a number.
 
-    ``None`` where the numbers of its proof are too long for certificates.
+    ``None`` where the numbers in the proof are too long for certificates.
     """
     problem, network = arrays.problem, arrays.problem.network
     subject = subject or subject_of(problem)

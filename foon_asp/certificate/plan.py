@@ -59,8 +59,9 @@ def certify_plan(
 ) -> Certificate | None:
     """Certify that a plan is optimal, by as many of the first objectives as are proved, or certify a bound.
 
-    ``plan`` lists units in the order of execution. ``None`` where nothing is proved before time is up, and
-    for objectives that need rates where a rate is 0 or is not that of a motion.
+    ``plan`` lists unit ids in the order of execution. Return ``None`` where nothing is proved before time is
+    up, and where an objective needs rates of units that differ from those of their motions. An objective that
+    needs rates is not proved if a rate is 0.
     """
     if problem.own_rates and (covered.rules or any(o.row.needs is Known.RATES for o in objectives)):
         return None

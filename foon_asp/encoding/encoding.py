@@ -278,11 +278,11 @@ def check_encodings(
 ) -> list[Diagnostic]:
     """Check the user's files: the constraints ``added``, and files in ``base`` that are not built-in.
 
-    ``others`` are further built-in files that are loaded. Returns warnings about undefined atoms, with the
-    most similar defined predicate, and about terms that are compared with numbers but never are numbers.
-    Raises :class:`InputError` for statements that would change the set of trees or their order, or that
-    clingo would ignore silently: rules for built-in predicates, reserved names, and statements other than
-    rules.
+    ``others`` are further built-in files that are loaded. Returns warnings about undefined atoms, each with
+    the most similar defined predicate. It also returns warnings about terms that are compared with numbers
+    and can never be numbers. Raises :class:`InputError` for statements that would change the set of trees or
+    their order, or that clingo would ignore silently. These are rules for built-in predicates, reserved
+    names, and statements other than rules.
     """
     errors: list[Diagnostic] = []
     defined = set(PUBLIC)
@@ -539,7 +539,8 @@ def _fits(value: str) -> bool:
 def fault(messages: Sequence[str], otherwise: str, files: Sequence[Loaded] = ()) -> InputError | UserError:
     """Return clingo's messages about a program as one error with places and source lines.
 
-    ``files`` are the files and texts of the program; the texts are needed for their lines.
+    ``files`` are the files and texts of the program. A source line of a text is found only there.
+    ``otherwise`` is the message of the error if clingo has given none.
     """
     errors: dict[Source, Diagnostic] = {}
     for message in messages:

@@ -102,9 +102,9 @@ def _check_file(file: Path, errors: list[Diagnostic]) -> list[Path]:
 
 
 def _check_content(text: str, origin: str, file: Path | None, errors: list[Diagnostic]) -> list[Path]:
-    """Append the errors of a text to ``errors``.
+    """Append the errors of a text to ``errors``; return the files that it includes.
 
-    Return the files that it includes, where it has a ``file``.
+    ``file`` is the file that has the text; a text without a file may include nothing.
     """
     lines = text.split("\n")
 

@@ -1,8 +1,9 @@
 """Success rates as integer weights for clingo, and as exact exponents where rounding could decide.
 
-The logarithm of a product of rates is the sum of their logarithms; clingo adds integers, so each
-rate p has the weight ``floor(S * -ln p)``. Rounding down loses less than 1 per unit, which bounds its error:
-see ``docs/dev/exact-success.md`` for the argument and ``foon_asp/asp/solver.py`` for its use.
+The logarithm of a product of rates is the sum of their logarithms. clingo adds integers, so each rate p has
+the weight ``floor(S * -ln p)``. Rounding down changes the weight of a unit by less than 1, so the error of a
+sum is below the number of units. ``docs/dev/exact-success.md`` has the argument, and
+``foon_asp/asp/solver.py`` uses it.
 """
 
 import math
@@ -49,7 +50,7 @@ class RateScale(NamedTuple):
     def success_bound(self, weight: int) -> Fraction:
         """Return an upper bound on the success of trees whose weights sum up to at least ``weight``.
 
-        Since rounding went down, such a tree has ``-ln(success) >= weight / scale``.
+        Weights are rounded down, so such a tree has ``-ln(success) >= weight / scale``.
         """
         value = _CONTEXT.exp(_CONTEXT.divide(Decimal(-weight), Decimal(self.scale)))
         places = _CONTEXT.scaleb(Decimal(1), value.adjusted() - 17)

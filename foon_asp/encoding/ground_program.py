@@ -1,6 +1,6 @@
 """A program that clingo grounds and searches, independent of the question.
 
-Arguments and results are plain values, so that it may be in another process.
+Arguments and results are plain values, so that the program may be in another process.
 """
 
 from collections import Counter
@@ -21,8 +21,8 @@ from foon_asp.errors import UserError
 class GroundProgram:
     """Ground program of files and text; raises :class:`ProgramError` where clingo refuses it.
 
-    Instances that clingo drops with a mere message are an error, too. ``products`` is the number of products
-    of rates in the text. A search ends at the ``deadline``, if any.
+    A rule instance that clingo drops with only a message is an error, too. ``products`` is the number of
+    products of rates in the text. A search ends at the ``deadline``, if any.
     """
 
     deadline: Deadline | None = None
@@ -65,7 +65,7 @@ class GroundProgram:
     def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
         """Return the arguments of all atoms of each predicate, by name and arity; all arguments are numbers.
 
-        Only for stratified rules, whose atoms grounding alone derives.
+        The rules have to be stratified, so that grounding alone derives all atoms.
         """
         atoms = self._control.symbolic_atoms
         return [

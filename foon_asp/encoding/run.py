@@ -23,7 +23,7 @@ def asks_for_statistics(options: Sequence[str]) -> bool:
 class FoundAnswer(NamedTuple):
     """An answer: the units in use, the cost vector, and counts of atoms by predicate and first argument.
 
-    ``rows`` has the arguments of atoms with numbers only, by predicate.
+    ``rows`` has, by predicate, the arguments of the atoms whose arguments are all numbers.
     """
 
     units: frozenset[int]

@@ -44,7 +44,7 @@ def cost_scale(costs: Iterable[Fraction]) -> CostScale:
 def require_one_rounded(problem: Problem, objectives: Iterable[Objective]) -> None:
     """Raise :class:`UserError` where two of the objectives have to be rounded.
 
-    All units of the network count, so that the error does not depend on the units that matter for the goals.
+    All units of the network are taken into account, so that the error does not depend on the goals.
     """
     fractions = [objective for objective in objectives if multiplies(objective) or not objective.row.whole]
     if len(fractions) < 2:

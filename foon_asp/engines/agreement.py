@@ -138,8 +138,8 @@ def agree(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
     """Return the objectives by which an engine finds our tree optimal, the most important first.
 
     Costs are computed anew from the units, as rational numbers. An engine that works in floats may call a
-    tree optimal whose cost differs from ours by less than its precision: then neither this objective nor any
-    less important one counts as checked.
+    tree optimal although its cost differs from ours by less than the engine's precision. Then neither this
+    objective nor any less important one counts as checked.
 
     Raises :class:`DisagreementError` where both answers cannot be right, and :class:`NotCheckedError` where
     the engine's answer implies nothing about ours.

@@ -1,14 +1,14 @@
-"""Check of an answer by stock clingo, in a process of its own, on the text that ``foon-asp facts`` prints.
+"""Check of an answer by stock clingo, in a separate process, on the text that ``foon-asp facts`` prints.
 
-clingo reads constraints, soft files, constants and encodings unchanged. The problem is not reduced, nothing
-is reused from earlier questions, and clingo does not know our answer while it searches, with other options
-than ours. The answers are compared in exact numbers: the costs that clingo adds up have to be those of its
+clingo reads constraints, soft files, constants and encodings unchanged. The problem is not reduced, and
+nothing is reused from earlier questions. clingo searches with other options than ours and does not know our
+answer. The answers are compared in exact numbers: the costs that clingo adds up have to be the costs of its
 units, its tree has to execute in our simulation, and our tree has to keep to the rules in clingo.
 
-Objectives with fractions, such as ``success``, have rounded weights in the facts, so that clingo's optimum
-need not be the true one. Every tree at least as good as ours has a rounded weight below a bound that is
-computed here anew (docs/dev/certificates.md). clingo enumerates the trees below it, and their costs are
-compared as fractions.
+Objectives with fractions, such as ``success``, have rounded weights in the facts, so clingo's optimum may not
+be the true one. Every tree at least as good as ours has a rounded weight up to a bound that is computed here
+anew (docs/dev/certificates.md). clingo enumerates the trees up to this bound, and their costs are compared as
+fractions.
 """
 
 import contextlib
@@ -366,10 +366,11 @@ def greatest_weight(
     """Return an upper bound on the sum of weights of a tree that is at least as good as ours.
 
     ``weights`` are the distinct pairs of a unit's cost and its weight; ``our_costs`` are the costs of our
-    units. Costs are rates where the objective ``multiplies``. Nothing is assumed of how the weights were
-    rounded. Let L(c) = c for a cost, L(p) = -ln p for a rate, and S the maximum of w / L(c) over all units
-    with a cost. Then w <= S * L(c) for every unit, so the weights of any tree T add up to at most S * L(T),
-    where L(T) is the sum of its costs; and L(T) is at most that of our tree.
+    units. Where the objective ``multiplies``, costs are rates. The weights may have been rounded in any way.
+
+    Let L(c) = c for a cost, L(p) = -ln p for a rate, and S the maximum of w / L(c) over all units with a
+    cost. Then w <= S * L(c) for every unit, so the weights of any tree T add up to at most S * L(T), where
+    L(T) is the sum over its units. A tree as good as ours has an L(T) of at most that of our tree.
 
     Raises :class:`NotCheckedError` for a unit without a cost that has a weight, since no such S exists then,
     and for rates without a logarithm.

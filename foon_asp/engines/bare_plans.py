@@ -1,7 +1,8 @@
-"""Check of plans in which items are used up by stock clingo, as in :mod:`foon_asp.engines.bare_clingo`.
+"""Check by stock clingo of plans in which items are used up, as in :mod:`foon_asp.engines.bare_clingo`.
 
-clingo needs an upper bound on the executions of each unit, or its grounding would not end. These bounds hold
-for every plan as good as ours by the first objective, and are all that clingo gets from our search.
+clingo needs an upper bound on the executions of each unit, since its grounding would not end otherwise. The
+bounds hold for every plan that is as good as ours by the first objective. Nothing else is passed to clingo
+from our search.
 """
 
 from itertools import takewhile

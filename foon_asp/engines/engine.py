@@ -51,7 +51,8 @@ class Solve(Protocol):
     ) -> EngineAnswer:
         """Search for a lexicographically optimal tree without the forbidden units.
 
-        An engine may optimize only the first objectives, and then returns these. It stops after ``seconds``.
+        An engine may optimize only the first objectives; its answer then names only these. The engine stops
+        after ``seconds``.
 
         Raises :class:`NotCheckedError` for a problem or objective that the engine does not support.
         """

@@ -1,8 +1,9 @@
 """Fast Downward as a second engine: A* with the landmark-cut heuristic (Helmert & Domshlak 2009).
 
-It comes with the extra ``cross-check`` (GPL, so it is never installed otherwise) and runs as a program of
-its own. The task is written in its translator's format: a binary variable for each node that would have to be
-made, an operator for each unit, and an operator that takes each kitchen item, if the objective counts items.
+Fast Downward is installed only with the extra ``cross-check``, since it is under the GPL, and runs as a
+separate program. The task is written in the format of its translator. It has a binary variable for each node
+that has to be made, and an operator for each unit. If the objective counts kitchen items, it also has an
+operator that takes each item.
 """
 
 import importlib.util

@@ -47,8 +47,8 @@ class Step(NamedTuple):
 class Replay(NamedTuple):
     """The result of a replay: the ``steps`` that ran, and the ``shortage`` that stopped it, if one did.
 
-    ``left`` are the copies after the last step that were made or remain of the stock; nodes that are not
-    consumable are omitted. ``stock`` maps each node with a finite stock to the number of copies
+    ``left`` are the copies that exist after the last step, made by steps or remaining from the stock; nodes
+    that are not consumable are omitted. ``stock`` maps each node with a finite stock to the number of copies
     that the plan needs.
     """
 

@@ -24,9 +24,10 @@ class Makes(NamedTuple):
 
 
 class Claim(NamedTuple):
-    """The claim about stand-ins: whether dissimilarity comes first, and a lower bound on it.
+    """The part of a claim that concerns stand-ins.
 
-    ``bound`` is ``None`` where there is no tree, or the claim does not bound dissimilarity.
+    It says whether dissimilarity is the first objective, and has a lower bound on dissimilarity. ``bound`` is
+    ``None`` where there is no tree, or where the claim does not bound dissimilarity.
     """
 
     by_dissimilarity: bool

@@ -1,8 +1,8 @@
 """Search for an order in which a tree with consumable items runs, each of its steps once.
 
 Whether each of a multiset of steps can be done once is a question about the firing sequences of a Petri net.
-Where some node is used up more often than it is made, there is no such sequence; otherwise it is searched
-for, depth first.
+If more copies of some node are used up than exist and are made, there is no such sequence. Otherwise, the
+sequence is searched for, depth first.
 """
 
 from collections import Counter
@@ -36,9 +36,9 @@ class UsedUpRun(NamedTuple):
 def used_up_run(problem: Problem, tree: Iterable[FunctionalUnit]) -> UsedUpRun:
     """Return an order in which each step of a tree runs once, from the kitchen to the goals.
 
-    Items are used up as the problem says. Where its items last, the rule of docs/plans.md decides, and
-    kitchen items never run out. A unit that is listed several times is as many steps. Below level 3 nothing
-    is searched, since consumption depends on contents.
+    Items are used up as the problem says. In a problem whose items last, the rule of docs/plans.md says what
+    is used up, and kitchen items never run out. A unit that is listed several times is executed as many
+    times. Below level 3 nothing is searched, since consumption depends on contents.
 
     Parameters:
         problem: The problem that the tree is for.

@@ -123,8 +123,8 @@ class Subject(NamedTuple):
     def digests(self, rules: Iterable[Rule] = ()) -> dict[str, str]:
         """Return the SHA-256 digests of the data, by name, as a certificate states them.
 
-        Digests in ``stated`` are not computed. The digest of sources covers only the places that the rules
-        look at.
+        A digest in ``stated`` is returned as it is. The digest of sources covers only the parts of sources
+        that the rules read.
         """
         return {
             name: self.stated.get(name) or _digest(value()) for name, value in self._described(rules).items()
@@ -174,7 +174,7 @@ class LimitError(RefusedError):
 class Trusted(NamedTuple):
     """A statement taken on trust: the costs of units by a user measure.
 
-    The ``rules`` are stated to give these ``costs`` of units, by id, and no negative cost of any unit;
+    The statement is that the ``rules`` give the units these ``costs``, by id, and no unit a negative cost.
     ``sha256`` is the digest of the rules.
     """
 
@@ -307,9 +307,9 @@ def read_frame(certificate: Any, form: Form, subject: Subject) -> tuple[Rule, ..
 class Check:
     """One certificate, checked against its network.
 
-    A *member* is a unit, by its id, a kitchen item ``k``, by the number of units plus ``k``, or a step of a
-    constraint, numbered from the number of units and nodes on. Items are members only where the objective
-    ``kitchen`` counts them.
+    A *member* is a unit, a kitchen item or a step of a constraint. A unit has its id as number; item ``k``
+    has the number of units plus ``k``; steps are numbered from the number of units and nodes on. Items are
+    members only where the objective ``kitchen`` counts them.
     """
 
     def __init__(self, certificate: dict[str, Any], rules: tuple[Rule, ...], subject: Subject) -> None:
@@ -369,7 +369,7 @@ class Check:
     def _check_stand_ins(self, least: Fraction | None) -> None:
         """Check the stand-ins of the network against their table.
 
-        ``least`` is the dissimilarity that no tree is claimed to fall below, ``None`` where no tree exists.
+        ``least`` is the claimed lower bound on the dissimilarity of trees, ``None`` where no tree exists.
         """
         if self.stand_ins is None:
             return
@@ -832,9 +832,9 @@ class Check:
         return cost
 
     def _cost_by(self, level: int, member: int) -> Fraction | None:
-        """Return the cost of a unit or an item by an objective, ``None`` if it is not counted.
+        """Return the cost of a unit or an item by an objective, ``None`` if the objective does not count it.
 
-        By ``success`` it is the exponent of a unit's rate.
+        By ``success``, it is the exponent of the unit's rate.
         """
         network, objective = self.network, self.objectives[level]
         item = member >= len(network)

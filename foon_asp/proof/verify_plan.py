@@ -191,7 +191,8 @@ class PlanCheck(Check):
     def idle(self) -> frozenset[int]:
         """The units that no plan executes: removed by a rule, or with an unreachable precondition.
 
-        No node of ``unreached`` is initial, and every achiever of one has another as a precondition.
+        This holds because no node of ``unreached`` is initial, and each achiever of such a node is removed or
+        has a node of ``unreached`` as a precondition.
         """
         network = self.network
         stated = self.certificate["unreached"]
@@ -558,9 +559,10 @@ class _Conditions:
             self._bring(self.executed, unit, weight, -change)
 
     def _supply(self, o: int, supplied: int, weight: Amount) -> None:
-        """Add the supply of a unit: before it is executed, there are the copies of a node that it needs.
+        """Add the supply of a unit: the copies of a node that it needs exist before it is executed.
 
-        These copies are initial, or other units add them: the unit adds none before its first execution.
+        These copies are initial, or other units add them, since the unit adds none before its first
+        execution.
         """
         check, network = self.check, self.check.network
         read_number(o, range(len(network.objects)), "the id of a node in a supply")

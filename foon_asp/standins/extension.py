@@ -71,7 +71,7 @@ def _extended(network: Network, pairs: Sequence[Pair]) -> Network:
 class _Nearest:
     """Search for the stand-ins that a tree of least dissimilarity can have.
 
-    ``available`` has a 1 for each node that can be made without stand-ins, by id.
+    ``available`` has an entry for each node, by id: 1 if the node can be made without stand-ins, else 0.
     """
 
     def __init__(self, problem: Problem, prices: NodePrices, available: bytearray) -> None:
