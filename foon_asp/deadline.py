@@ -136,6 +136,7 @@ def stoppable(seconds: float | None, token: Cancel | None, doing: str) -> Iterat
 
 
 def _reason(stop: KeyboardInterrupt, deadline: "Deadline") -> str:
+    """Return why work was stopped, in words: it was cancelled, or a limit was reached."""
     token = _CANCEL.get()
     if token is not None and token.cancelled:
         return "cancelled"
@@ -175,6 +176,7 @@ class Deadline:
         began: float | None = None,
         within: "Deadline | None" = None,
     ) -> None:
+        """Begin to count the time; take over smaller limits of ``within``, and the current token."""
         if memory is not None and not _STATM.exists():
             raise UserError(
                 "a memory limit works only on Linux, where /proc shows how much memory is in use; leave it "

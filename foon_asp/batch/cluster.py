@@ -51,6 +51,7 @@ def answer_on_cluster(
             running.add(future)
 
         def submit_ahead() -> None:
+            """Submit tasks until enough of them wait on the cluster, first those to be asked again."""
             while len(chunk_of) < ahead:
                 # several in a task, for each of which Dask takes some milliseconds
                 chunk = retries.popleft() if retries else tuple(islice(waiting, 32))
@@ -94,4 +95,5 @@ def _answer_some(
 
 @functools.lru_cache(maxsize=1)
 def _open(opener: Opener) -> Asker:
+    """Open the data, or return them if they were the last opened."""
     return opener()

@@ -42,4 +42,5 @@ def answer_all(
 
 
 def _begin(opener: Opener, memory_limit: int | None, settings: Settings | None) -> "partial[AnswerRow]":
+    """Open the data in a worker, and return the function that answers a question."""
     return partial(answer_row, opener(), memory_limit=memory_limit, settings=settings)

@@ -24,6 +24,7 @@ class Arrays:
     """
 
     def __init__(self, problem: Problem, objectives: Sequence[Objective], covered: Coverage) -> None:
+        """Number the actions, compute their costs, and compile the covered rules into the graph."""
         network = problem.network
         self.problem, self.objectives = problem, tuple(objectives)
         self.rates = sorted({r for r in self._rates() if r != 1}) if Objective.SUCCESS in objectives else []

@@ -105,6 +105,7 @@ class _Question:
     def __init__(
         self, problem: Problem, covered: Coverage, plan: Sequence[int], expired: Callable[[], bool]
     ) -> None:
+        """Compute the reachable nodes, the relevant units, and the limits of rules in integers."""
         self._problem, self._covered, self._plan, self._expired = problem, covered, plan, expired
         self._ruled = ruled = covered.ruled(problem)
         self.proofs: list[Any] = []

@@ -109,6 +109,7 @@ def _check_content(text: str, origin: str, file: Path | None, errors: list[Diagn
     lines = text.split("\n")
 
     def error(code: str, message: str, start: int) -> None:
+        """Append an error at an offset of the text (``start``), with its line."""
         line = text.count("\n", 0, start) + 1
         column = start - text.rfind("\n", 0, start)
         shown = lines[line - 1].rstrip("\r")

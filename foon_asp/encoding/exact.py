@@ -18,6 +18,7 @@ def _divided(a: int, b: int) -> int:
 
 
 def _power(a: int, b: int) -> int:
+    """Return a power; raise for a negative exponent, where clingo returns wrong values."""
     if b < 0 and a:
         raise _BeyondError  # for clingo 2**(-1) is 0, and so is 1**(-1)
     power: int = a ** (b if abs(a) < 2 else min(b, 32))

@@ -352,7 +352,7 @@ def write_fewer(units: Mapping[int, int]) -> str:
 
 
 def write_wanted(number: int) -> str:
-    """Return the fact that requires the product of rates of a number."""
+    """Return the fact that a tree has to have the product of rates with a number."""
     return f"_wanted({number}).\n"
 
 
@@ -449,7 +449,10 @@ def write_tree(units: Collection[int]) -> str:
 
 
 def write_avoided(number: int, units: Iterable[int]) -> str:
-    """Return facts that exclude a tree, by the numbers of its units, and all trees that contain it."""
+    """Return facts that exclude a tree and all trees that contain it.
+
+    ``number`` is a number for the tree; ``units`` are the numbers of its units.
+    """
     return "".join(f"_avoid({number},{_check(unit)}).\n" for unit in units)
 
 

@@ -96,6 +96,7 @@ class Grounded:
         self._program.close()
 
     def _begin(self, doing: str, deadline: Deadline) -> None:
+        """Begin a phase, which has a name and a deadline."""
         deadline.doing = doing
         deadline.check()
         self._program.deadline = deadline

@@ -74,6 +74,7 @@ class Clingo:
     """
 
     def __init__(self, program: BareProgram, seconds: float, memory: int | None) -> None:
+        """Start the time of all runs."""
         self._program, self._seconds = program, seconds
         self._end = time.monotonic() + seconds
         max_memory = 4 * 2**30
@@ -341,6 +342,7 @@ class _Check:
         return self.problem.costs(map(self._unit, answer.times)).key(objectives)
 
     def _unit(self, number: int) -> int:
+        """Return the id of the unit with a public number; raise if there is no such unit."""
         unit = self.problem.network.unit_of_number(number)
         if unit is None:
             raise self._disagreement(f"clingo uses a unit number {number}, which there is not", None)
@@ -393,6 +395,7 @@ def _minus_log(rate: Fraction) -> tuple[Fraction, Fraction]:
     context = Context(prec=100)  # digits, of which at most 50 cancel in the difference of two logarithms
 
     def enclosed(number: int) -> tuple[Fraction, Fraction]:
+        """Return an interval that contains the logarithm of an integer."""
         logarithm = context.ln(Decimal(number))  # correctly rounded: the exact one is between its neighbours
         if not logarithm:
             return Fraction(0), Fraction(0)

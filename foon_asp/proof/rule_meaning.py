@@ -170,10 +170,12 @@ def _at_least_videos(question: Question, least_videos: int) -> Meaning:
 
 
 def _motion_only_with(question: Question, tied_motion: str, tied_utensil: str) -> Meaning:
+    """Remove the units with the motion that do not touch the utensil."""
     return Meaning(question.with_motion(tied_motion) - question.touching(question.labelled(tied_utensil)))
 
 
 def _never_heated(question: Question, unheated_ingredient: str, heats: list[str]) -> Meaning:
+    """Remove the units with a motion of ``heats`` that have the ingredient in one of their inputs."""
     network, hot = question.network, frozenset(heats)
     tainted = frozenset(question.made_with([unheated_ingredient]))
     heating = (unit for unit, motion in enumerate(network.motions) if motion in hot)
@@ -269,6 +271,7 @@ def _before(question: Question, earlier_motion: str, later_motion: str) -> Meani
         return available
 
     def barred(used: Units, without: Units) -> Units:
+        """Return the units with the later motion that need no late node."""
         available = early(used)
         late: set[int | None] = set()
         stack = list(first - without)

@@ -137,6 +137,7 @@ class _Servers:
     """
 
     def __init__(self, network: Network, table: StandInTable, free: Collection[int], nearest: bool) -> None:
+        """Index the nodes of the network by label and by spelling; prices are computed later."""
         self.free, self.nearest = free, nearest
         self._network, self._table = network, table
         self._by_label: dict[str, list[int]] = {}

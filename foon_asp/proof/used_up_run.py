@@ -77,6 +77,7 @@ def _shortage_as_listed(
     copies, consumers = dict(stock), dict[ObjectNode, list[int]]()
 
     def missing(step: int | None, required: Mapping[ObjectNode, int]) -> Shortage | None:
+        """Return the shortage of a step or, for ``None``, of the goals; ``None`` if nothing is missing."""
         for node, amount in required.items():
             if copies.get(node, 0) < amount:
                 return Shortage(step, node, tuple(consumers.get(node, ())), amount)
@@ -125,6 +126,7 @@ class _OrderSearch:
     def __init__(
         self, steps: Sequence[Execution], copies: Counter[ObjectNode], goals: Mapping[ObjectNode, int]
     ) -> None:
+        """Make all steps wait, and count how many copies of each node they use up and read."""
         self._steps, self._copies, self._goals = steps, copies, goals
         self.looks_left = 100_000  # some 50 ms; no tree of the corpus takes 1,000
         self.dead_end: Shortage | None = None

@@ -659,9 +659,11 @@ class Check:
                     load[member] += scaled
 
         def load_of(member: int) -> Amount:
+            """Return the sum of the weights of a member's cuts."""
             return {key: Fraction(load.get(member, 0), scales[key]) for key, load in loads.items()}
 
         def allowed(member: int) -> Amount:
+            """Return the greatest load of a member: its cost, and the weights of limits that it carries."""
             # a member that is used anyway was paid for, and can carry nothing more
             capacity = {} if member in used else self.cost(member)
             if carried and member not in used:
@@ -1081,6 +1083,7 @@ def read_number(value: Any, allowed: Container[int], what: str) -> int:
 
 
 def _names(value: Any) -> tuple[str, ...]:
+    """Read a list of different names, in order and without half letters."""
     names = read_list(value)
     require(all(isinstance(name, str) for name in names), "expected names")
     require(names == sorted(set(names)), "expected names in order, each of them once")
@@ -1098,6 +1101,7 @@ def read_numbers(value: Any, below: int, ascending: bool = True) -> list[int]:
 
 
 def _goal(value: Any, network: Network) -> int:
+    """Read a goal, given as id and text; return its id."""
     goal = read_object(value, ("id", "node"))
     (node,) = read_numbers([goal["id"]], len(network.objects))
     require(str(network.objects[node]) == goal["node"], "a goal is not the node of its id")

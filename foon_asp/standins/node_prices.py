@@ -14,6 +14,7 @@ class NodePrices:
     """
 
     def __init__(self, network: Network, table: StandInTable) -> None:
+        """Scale the prices of the table to integers, and index its pairs and the spellings of labels."""
         prices = (*table.edits.values(), *table.words.values(), *table.pairs.values())
         self.scale = math.lcm(*(price.denominator for price in prices if price is not None))
         self._objects, self._by_label = network.objects, network.by_label
