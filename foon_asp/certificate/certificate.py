@@ -230,7 +230,7 @@ def _write(
 
 
 class Claimed(NamedTuple):
-    """The claim of a certificate; ``units`` are a tree or plan, and ``bound`` is JSON of certificates."""
+    """The claim of a certificate; ``units`` are a tree or plan, and ``bound`` is written as JSON."""
 
     claim: str
     objectives: tuple[Objective, ...]

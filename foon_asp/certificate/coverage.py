@@ -32,7 +32,7 @@ class Coverage(NamedTuple):
     Attributes:
         rules: Rules from :data:`foon_asp.proof.rule_meaning.LIBRARY` with their values, and claims about user
             rules.
-        not_covered: Other rules, by name and digest, other constants, by name and value, and replaced
+        not_covered: Texts: names of other rules with digests, other constants with values, replaced
             encodings.
         limits: The search for limits that follow from user rules; ``None`` where it is not needed.
     """

@@ -26,8 +26,8 @@ class Execution(NamedTuple):
 class Executions:
     """Executions of units from the kitchen of a problem.
 
-    A problem whose items are used up says what each unit uses up. For a problem whose items last, the rule of
-    docs/plans.md says it, and every amount is 1.
+    If the items of the problem are used up, the problem says which inputs of a unit stay. If its items last,
+    the rule of docs/plans.md decides this, and every amount is 1.
     """
 
     def __init__(self, problem: Problem) -> None:

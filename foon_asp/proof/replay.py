@@ -69,8 +69,8 @@ def replay_for(problem: Problem, plan: Iterable[FunctionalUnit]) -> Replay:
 def replayable(problem: Problem, plan: Iterable[FunctionalUnit]) -> Problem:
     """Return a problem in which a plan can be replayed.
 
-    This is the problem itself if its items are used up. If its items last, it is a copy in which items are
-    used up, but none of the inputs in the plan.
+    This is the problem itself if its items are used up. If its items last, return a copy whose items can be
+    used up, but in which every input of the plan stays.
     """
     if problem.items is not None:
         return problem
@@ -81,8 +81,8 @@ def replayable(problem: Problem, plan: Iterable[FunctionalUnit]) -> Problem:
 def waits(replay: Replay) -> Iterator[set[int]]:
     """Yield for each step, in order, the positions of the steps that have to be done before it.
 
-    An earlier step has to be done before it if the earlier step made a copy that the step needs, or read a
-    copy that the step uses up. Nodes that are not consumable always have another copy.
+    These are the earlier steps that made a copy that the step needs, or that read a copy that the step uses
+    up. Nodes that are not consumable always have another copy.
     """
     readers: dict[tuple[Copy, int], set[int]] = {}
     spent: Counter[Copy] = Counter()  # how often a copy like this was used up: those of a stock are alike
