@@ -58,7 +58,7 @@ _SURROGATE = re.compile("[\ud800-\udfff]")
 
 
 class CertificateLimits(NamedTuple):
-    """Limits beyond which a certificate, which may come from a stranger, is refused without being checked.
+    """Limits on certificates, which may come from strangers; a certificate beyond a limit is refused.
 
     Attributes:
         letters: Characters of the file.
@@ -66,7 +66,7 @@ class CertificateLimits(NamedTuple):
         steps: Steps of the check. A look at a unit is one step; arithmetic takes more.
         steps_each: Additional steps for each unit and object node of the network.
         rules: Rules of a claim.
-        rule_steps: Steps for each rule and each unit and object node.
+        rule_steps: Steps for each unit and object node that a rule is checked against.
         digits: Digits of a fraction that is read.
         sum_bits: Bits of a sum of fractions.
         product_bits: Bits of a product of rates.
