@@ -45,11 +45,11 @@ def typed(function: Callable[P, T]) -> Callable[P, T]:
 def checker(
     function: Callable[..., object], signature: inspect.Signature | None = None
 ) -> Callable[[tuple[object, ...], Mapping[str, object]], None]:
-    """Return a function of arguments and named arguments that checks them against annotations.
+    """Return a function that checks arguments, positional and named, against the annotations of ``function``.
 
     It raises :class:`UserError` for a value that its annotation does not allow, and ``TypeError`` for
     arguments that the ``signature`` (by default that of the function) does not have. Items of iterators are
-    not checked, since they can be read only once; annotations that are strings allow all values.
+    not checked, since they can be read only once. Annotations that are strings allow all values.
     """
     allowed = signature or inspect.signature(function)
     annotations = {name: parameter.annotation for name, parameter in allowed.parameters.items()}

@@ -1,7 +1,7 @@
 """Background threads without the locks of :mod:`threading`.
 
-An interrupt while such a lock is taken leaves it locked, and the next thread that takes it waits forever.
-Operations of ``SimpleQueue`` are atomic, and cannot be interrupted.
+An interrupt while a thread holds such a lock leaves it locked, and the next thread that takes the lock waits
+forever. Operations of ``SimpleQueue`` are atomic, and cannot be interrupted.
 """
 
 import _thread
@@ -14,6 +14,7 @@ class DaemonThread:
     """A daemon thread that calls a function: the process does not wait for it at exit."""
 
     def __init__(self, function: Callable[..., object], *arguments: object) -> None:
+        """Start the thread."""
         self._finished = False
         self._wake: SimpleQueue[None] = SimpleQueue()
         _thread.start_new_thread(self._call, (function, arguments))
@@ -26,6 +27,7 @@ class DaemonThread:
         return self._finished
 
     def _call(self, function: Callable[..., object], arguments: tuple[object, ...]) -> None:
+        """Call the function, and record its end."""
         try:
             function(*arguments)
         finally:

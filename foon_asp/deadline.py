@@ -32,15 +32,19 @@ _UNITS = {"": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
 
 
 class _Pace(NamedTuple):
-    """How long work may go on after a limit, and how often limits are looked at.
+    """How long work may continue after a limit, and how often limits are checked.
 
-    ``tolerance_seconds``: after a limit until work is overdue and interrupted; half of it after a cancel.
-    More lets work end with an answer, less ends sooner. ``memory_tolerance_seconds``: the same where memory
-    is short. ``grace_seconds``: the least time for a last piece of work that begins at a limit.
-    ``poll_seconds``: between two looks at the memory; longer ones overshoot the limit, shorter cost time.
-    ``interrupts``: sent at most, since destructors lose some. ``interrupt_seconds``: between two of them.
-    ``lost_polls``: polls until a sent interrupt counts as lost, a second.
-    ``handover_seconds``: between two looks at whether another thread has sent its interrupt.
+    Attributes:
+        tolerance_seconds: From a limit until work is overdue and interrupted; half as long after a cancel.
+            With more, work may end with an answer; with less, it ends sooner.
+        memory_tolerance_seconds: The same after the memory limit.
+        grace_seconds: The least time for the last piece of work if it begins at a limit.
+        poll_seconds: Between two checks of the memory. A longer time overshoots the limit, a shorter one
+            costs time.
+        interrupts: The greatest number of interrupts that are sent, since destructors lose some.
+        interrupt_seconds: Between two interrupts.
+        lost_polls: Polls until an interrupt counts as lost, a second in all.
+        handover_seconds: Between two checks of whether another thread has sent its interrupt.
     """
 
     tolerance_seconds: float = 0.5
@@ -109,7 +113,7 @@ _CANCEL: ContextVar[Cancel | None] = ContextVar("cancel", default=None)
 
 @contextlib.contextmanager
 def stoppable(seconds: float | None, token: Cancel | None, doing: str) -> Iterator["Deadline"]:
-    """Limit the time of a ``with`` block, and cancel it by a token, which deadlines made in it obey as well.
+    """Limit the time of a ``with`` block, and cancel it by a token; deadlines made in the block obey both.
 
     At a limit, code that checks its deadline has time to end with its incumbent. After this time, the block
     is interrupted, and :class:`StoppedError` is raised. ``doing`` describes the work, as in "while reading".
@@ -132,6 +136,7 @@ def stoppable(seconds: float | None, token: Cancel | None, doing: str) -> Iterat
 
 
 def _reason(stop: KeyboardInterrupt, deadline: "Deadline") -> str:
+    """Return why work was stopped, in words: it was cancelled, or a limit was reached."""
     token = _CANCEL.get()
     if token is not None and token.cancelled:
         return "cancelled"
@@ -141,8 +146,8 @@ def _reason(stop: KeyboardInterrupt, deadline: "Deadline") -> str:
 class LimitError(KeyboardInterrupt):
     """A limit was reached, or ctrl-C pressed, before any answer.
 
-    It is a ``KeyboardInterrupt``, since code handles a limit like ctrl-C, and so that handlers of
-    ``Exception`` do not catch it. ``stopped`` is the limit and the work in words, ``advice`` what to do.
+    It is a ``KeyboardInterrupt``, so that code handles a limit like ctrl-C, and handlers of ``Exception`` do
+    not catch it. ``stopped`` is the limit and the work in words. ``advice`` is advice for the user.
     """
 
     def __init__(self, deadline: "Deadline") -> None:
@@ -153,10 +158,13 @@ class LimitError(KeyboardInterrupt):
 class Deadline:
     """The limits of one question, shared by all its work, and the limit that stopped it.
 
-    ``seconds`` count from ``began``, a time of the monotonic clock (``None`` is now), ``memory`` is in bytes;
-    ``None`` is no limit. The memory includes that of processes that work for this one. A deadline ``within``
-    another one has the smaller limits of both, and ctrl-C ends both. ``doing`` describes the current work, as
-    in "while reading".
+    ``doing`` describes the current work, as in "while reading".
+
+    Parameters:
+        seconds: The time limit; ``None`` is no limit.
+        memory: The memory limit in bytes, for this process and those that work for it; ``None`` is no limit.
+        began: The start of the time, on the monotonic clock; ``None`` is now.
+        within: An outer deadline. The smaller limits of both apply, and ctrl-C ends both.
 
     Raises :class:`UserError` for a memory limit where the system does not report the memory in use.
     """
@@ -168,6 +176,7 @@ class Deadline:
         began: float | None = None,
         within: "Deadline | None" = None,
     ) -> None:
+        """Begin to count the time; take over smaller limits of ``within``, and the current token."""
         if memory is not None and not _STATM.exists():
             raise UserError(
                 "a memory limit works only on Linux, where /proc shows how much memory is in use; leave it "
@@ -280,7 +289,7 @@ class Deadline:
 
     @property
     def stopped(self) -> str | None:
-        """The limit that stopped the question, and the work at that time, in words; ``None`` before."""
+        """The limit that stopped the question and the work at that time, in words; ``None`` if none did."""
         return None if self._stopped_by is None else f"{self._stopped_by} while {self._doing}"
 
     @property
@@ -315,9 +324,9 @@ class Deadline:
     def watched(self, doing: str, late: bool = False, grace: bool = False) -> "Watch":
         """Return a context that interrupts work at the limits, for code that does not check the deadline.
 
-        It raises :class:`LimitError` anywhere in the block, which therefore must not have state to lose, nor
-        handle ctrl-C itself. With ``late`` the block is interrupted only when overdue; with ``grace`` it has
-        at least a quarter of a second, to finish an answer.
+        The context may raise :class:`LimitError` anywhere in the block. So the block must be safe to abort,
+        and must not handle ctrl-C itself. With ``late``, the block is interrupted only when overdue. With
+        ``grace``, it has at least a quarter of a second to finish an answer.
         """
         return Watch(self, doing, late, grace)
 
@@ -326,7 +335,8 @@ class Deadline:
 def resend_lost_interrupts() -> Iterator[None]:
     """Resend interrupts that Python loses in a ``with`` block of the main thread.
 
-    Python only reports an exception in a destructor, so an interrupt in a destructor is sent again.
+    Python reports an exception in a destructor, but does not raise it. So an interrupt that comes in a
+    destructor is sent again.
     """
     previous_hook = sys.unraisablehook
     main = threading.main_thread().ident or 0
@@ -355,7 +365,8 @@ def resend_lost_interrupts() -> Iterator[None]:
 def uninterrupted() -> Iterator[None]:
     """Defer ctrl-C and interrupts of watches in a ``with`` block until its end.
 
-    C libraries turn an interrupt during their import into an ``ImportError``, and stay broken.
+    This is for imports: a C library that is interrupted during its import raises ``ImportError``, and cannot
+    be imported any more.
     """
     deferred: list[int] = []
     shield, thread = object(), threading.get_ident()
@@ -391,9 +402,9 @@ if hasattr(os, "register_at_fork"):
 
 
 class Watch:
-    """A context in which a background thread polls a deadline, and interrupts this thread as ctrl-C does.
+    """A context in which a background thread polls a deadline and interrupts this thread as ctrl-C does.
 
-    An interrupt at the very end of the block leaves it as ``KeyboardInterrupt``.
+    An interrupt at the very end of the block leaves the context as ``KeyboardInterrupt``.
     """
 
     def __init__(self, deadline: Deadline, doing: str, late: bool, grace: bool) -> None:
@@ -405,6 +416,7 @@ class Watch:
         self._wake: SimpleQueue[None] = SimpleQueue()
 
     def __enter__(self) -> Self:
+        """Start the background thread; raises :class:`LimitError` if the deadline allows no more work."""
         deadline = self._deadline
         deadline.doing = self._doing
         if self._due or (deadline.passed and deadline.full and not self._begins):
@@ -422,6 +434,7 @@ class Watch:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        """Stop the background thread; raises :class:`LimitError` if it has sent an interrupt."""
         received = kind is not None and issubclass(kind, KeyboardInterrupt)
         while True:  # an interrupt may come within this loop, which can be repeated
             try:
@@ -452,9 +465,10 @@ class Watch:
         return due and time.monotonic() >= self._earliest
 
     def poll(self, interrupts: int) -> tuple[float, int] | None:
-        """Poll the deadline, and interrupt the thread if it has passed, repeatedly, since some are lost.
+        """Poll the deadline, and interrupt the thread if it has passed.
 
-        Returns the seconds until the next poll and the number of interrupts sent, or ``None`` after the last.
+        Interrupts are repeated, since some are lost. Returns the seconds until the next poll and the number
+        of interrupts sent so far, or ``None`` after the last poll.
         """
         if self._finished or interrupts == _PACE.interrupts:
             return None
@@ -494,7 +508,7 @@ class Watch:
 
 
 def _watch(watching: "weakref.ref[Watch]", wake: "SimpleQueue[None]") -> None:
-    """Poll a watch until its end, or until it is garbage because an interrupt prevented its end."""
+    """Poll a watch until its end, or until it is garbage collected because an interrupt prevented its end."""
     pause, interrupts = _PACE.poll_seconds, 0
     while True:
         with contextlib.suppress(Empty):
@@ -517,7 +531,7 @@ def _resident(statm: Path) -> int:
 
 
 def seconds(number: float | str, quantity: str = "the time limit") -> float:
-    """Return a number of seconds, from 0; raises :class:`UserError` about the ``quantity`` for others."""
+    """Return a number of seconds, at least 0; raises :class:`UserError` about the ``quantity`` otherwise."""
     try:
         value = float(number)
     except (TypeError, ValueError, OverflowError):

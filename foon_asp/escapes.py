@@ -1,6 +1,7 @@
-r"""Escaped text: whatever a name holds, terminals and logs receive only printable characters.
+"""Escaped text: whatever a name contains, terminals and logs receive only printable characters.
 
-Other characters become ``\uXXXX``, as in JSON: an escaped JSON text is JSON with the same value.
+Other characters become a JSON escape (a backslash, ``u`` and four digits). So an escaped JSON text is JSON
+with the same value.
 """
 
 import re
@@ -21,12 +22,12 @@ _COMMAND = r"(?m)^([^\S\n]*):(?=:)|#(?=#(?:\[|vso\[))"
 
 
 def escaped(name: str) -> str:
-    """Return a name as it is shown within a line; line ends and tabs are escaped, too."""
+    """Return a name with escapes, as it is shown within a line; line ends and tabs are escaped, too."""
     return re.sub(_IN_A_LINE, _escape, name)
 
 
 def escaped_lines(text: str, styled: bool = False) -> str:
-    """Return a text of several lines as it is shown; one that is ``styled`` keeps its colours."""
+    """Return a text of several lines with escapes, as it is shown; a ``styled`` text keeps its colours."""
     shown = re.sub(_UNSAFE_BUT_ESCAPE, _escape, text) if styled else UNSAFE.sub(_escape, text)
     return re.sub(_COMMAND, _without_command, shown) if "::" in shown or "##" in shown else shown
 

@@ -1,4 +1,4 @@
-"""Permissions and owner that a file gets from the one that it replaces."""
+"""Permissions and owner of a replaced file, which the new file gets."""
 
 import contextlib
 import os
@@ -10,7 +10,7 @@ from foon_asp.warning import warn
 
 
 def pass_on(old: os.stat_result, file: Path) -> None:
-    """Set the permissions of a file to those of the ``old`` one, and its owner where the system allows it."""
+    """Set the permissions of a file to those of ``old``, and its owner where the system allows it."""
     new = file.stat()
     if (old.st_uid, old.st_gid) != (new.st_uid, new.st_gid):
         try:
@@ -22,7 +22,7 @@ def pass_on(old: os.stat_result, file: Path) -> None:
 
 
 def warn_of_replaced(file: Path, old: os.stat_result) -> None:
-    """Warn where an ``old`` file had hard links, or an owner that only root can set."""
+    """Warn where a replaced file had hard links, or an owner that only root can set."""
     name = escaped(str(file))
     if old.st_nlink > 1:
         others = "another name" if old.st_nlink == 2 else f"{old.st_nlink - 1} other names"

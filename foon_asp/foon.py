@@ -141,7 +141,7 @@ def _counted(on_progress: OnProgress | None, total: int) -> Iterator[Callable[[i
 def _limited(
     time_limit: float | None, cancel: Cancel | None, doing: str
 ) -> contextlib.AbstractContextManager[object]:
-    """Return a context that stops its ``with`` block at a time limit or by a token, if there is either."""
+    """Return a context that stops its ``with`` block at a time limit or by a token; neither is no limit."""
     if time_limit is None and cancel is None:
         return contextlib.nullcontext()
     return stoppable(None if time_limit is None else seconds(time_limit), cancel, doing)

@@ -9,8 +9,8 @@ from contextlib import contextmanager
 def uncollected() -> Iterator[None]:
     """Disable garbage collection in a ``with`` block, which should create little cyclic garbage.
 
-    If the block made very many objects, they are moved to the oldest generation, so that the next collection
-    does not traverse them, which would take seconds.
+    If the block made very many objects, they are moved to the oldest generation. Otherwise the next
+    collection would traverse them, which takes seconds.
     """
     collecting = gc.isenabled()
     gc.disable()

@@ -23,10 +23,10 @@ _PARTIAL = re.compile(r"\.foon-asp\.[0-9a-f]{16}")
 def write_whole(file: Path, content: bytes) -> None:
     """Write a new file beside the old one and rename it; after a failure, the old file is unchanged.
 
-    A file that is replaced passes on its permissions, and its owner where that is allowed; one that is
-    write-protected is not replaced. A link stays, and the file that it names is written. Of a file with
-    several names (hard links) only this one becomes the new file, with a warning. A pipe or
-    device is written to as it is. Raises :class:`UserError` when it cannot be written.
+    The new file gets the permissions of the old one, and its owner where that is allowed. A write-protected
+    file is not replaced. Where the path is a link, the linked file is written. Of a file with several names
+    (hard links), only this name gets the new content, with a warning. A pipe or device is written to
+    directly. Raises :class:`UserError` where the file cannot be written.
     """
     try:
         if file.exists() and not file.is_file():
@@ -41,10 +41,10 @@ def write_whole(file: Path, content: bytes) -> None:
 
 
 def write_all_whole(contents: Mapping[Path, bytes]) -> None:
-    """Replace several files: all is written beside them before the first is replaced.
+    """Replace several files: all new files are written beside the old ones before the first is replaced.
 
-    Raises :class:`UserError` when one of them cannot be written; all of them are then unchanged, as
-    after ctrl-C. Where the process is killed in the middle, each file is the old one or the new one.
+    Raises :class:`UserError` when one of the files cannot be written; then, and after ctrl-C, all files are
+    unchanged. If the process is killed in the middle, each file is the old one or the new one.
     """
     replaced: dict[Path, bytes] = {}
     try:
@@ -90,7 +90,10 @@ def _replace(target: Path, content: bytes) -> None:
 
 @contextlib.contextmanager
 def _staged(target: Path, content: bytes) -> Iterator[Path]:
-    """Write a new file beside the target, if that may be replaced; if it is not renamed, it is removed."""
+    """Write a new file beside the target, and yield it; afterwards remove it if it was not renamed.
+
+    Refuse a target that may not be replaced.
+    """
     old = None
     if target.exists():
         with target.open("ab"):  # may it be written? Renaming asks the folder alone
@@ -126,7 +129,7 @@ def _own_file(folder: Path) -> tuple[Path, BinaryIO]:
 
 @functools.cache  # once for each folder: fmt writes many files
 def _clear(folder: Path) -> None:
-    """Remove temporary files that killed processes left in a folder: those that no process has locked."""
+    """Remove the temporary files of killed processes from a folder: no process has locked them."""
     with contextlib.suppress(OSError):
         for name in filter(_PARTIAL.fullmatch, os.listdir(folder)):
             with contextlib.suppress(OSError):

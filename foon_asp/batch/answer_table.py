@@ -48,7 +48,8 @@ def columns(objectives: Iterable[Objective]) -> Iterator[tuple[str, Any]]:
 def check_table(file: Path, rows: Path) -> None:
     """Raise :class:`UserError` where a table cannot be written, or would replace another file.
 
-    An existing file counts as a table of answers only where ``rows``, which it was made from, exists.
+    An existing file may be replaced only if it is a table of answers: the file ``rows``, of which a table is
+    made, has to exist.
     """
     if file.suffix == ".parquet":
         try:

@@ -60,7 +60,7 @@ class Asker(Protocol):
         """Return the goals for which the word ``@goals`` or ``@makeable`` stands, in one-line notation."""
 
     def items(self, question: BatchQuestion) -> str:
-        """Return whether items last, or are used up, where a question does not say it."""
+        """Return whether items last or are used up; this is the default if the question does not say it."""
 
     def problem(self, question: BatchQuestion) -> Problem:
         """Pose a question as a problem; raises :class:`UserError` for an unknown goal or kitchen."""

@@ -24,10 +24,10 @@ def answer_on_cluster(
     """Answer questions on the workers of a scheduler, under ``settings``; return rows as they come.
 
     A worker opens the data once and keeps them until a question about other data comes. The files need the
-    same names on every worker. Questions of a failed task are asked again, each in a task of its own. A
-    question whose worker dies repeatedly is asked while no other question runs on the cluster, since
-    another question on the same worker may be the cause; if its worker dies again, its row says so. Raises
-    :class:`UserError` where there is no scheduler, or Dask is not installed.
+    same names on every worker. If a task fails, each of its questions is asked again in a separate task. If
+    the worker of a question dies repeatedly, another question on that worker may be the cause. The question
+    is then asked while no other question runs on the cluster; if its worker dies again, its row says so.
+    Raises :class:`UserError` where there is no scheduler, or Dask is not installed.
     """
     try:
         from distributed import Client, KilledWorker, as_completed  # noqa: PLC0415 (an extra, slow to import)
@@ -51,6 +51,7 @@ def answer_on_cluster(
             running.add(future)
 
         def submit_ahead() -> None:
+            """Submit tasks until enough of them wait on the cluster, first those to be asked again."""
             while len(chunk_of) < ahead:
                 # several in a task, for each of which Dask takes some milliseconds
                 chunk = retries.popleft() if retries else tuple(islice(waiting, 32))
@@ -80,7 +81,10 @@ def answer_on_cluster(
 def _answer_some(
     opener: Opener, chunk: tuple[BatchQuestion, ...], memory_limit: int | None, settings: Settings | None
 ) -> list[AnswerRow]:
-    """Return the rows of the first questions of a chunk: at least one, and no new one after half a second."""
+    """Return the rows of the first questions of a chunk, at least one.
+
+    After half a second, no other question is begun.
+    """
     asker = _open(opener)
     began = time.monotonic()
     rows = [answer_row(asker, chunk[0], memory_limit, settings)]
@@ -91,4 +95,5 @@ def _answer_some(
 
 @functools.lru_cache(maxsize=1)
 def _open(opener: Opener) -> Asker:
+    """Open the data, or return them if they were the last opened."""
     return opener()

@@ -27,12 +27,12 @@ _FOR_MANY = ("@goals", "@makeable")
 def read_questions(
     file: Path, time_limit: float | None, measures: Collection[str] = ()
 ) -> list[BatchQuestion]:
-    """Read questions, every combination of the values of a line; kitchens are beside the file.
+    """Read questions, one for every combination of the values of a line; kitchens are beside the file.
 
-    ``time_limit``, in seconds, is for questions without their own; ``measures`` are the names of user-defined
-    objectives. Goals may be words that stand for many.
+    ``time_limit``, in seconds, is for questions without a time limit. ``measures`` are the names of
+    user-defined objectives. A goal may be a word for many goals, such as ``@makeable``.
 
-    Raises :class:`InputError` naming every line that is not one object with known keys.
+    Raises :class:`InputError` that names every line which is not one object with known keys.
     """
     questions: list[BatchQuestion] = []
     errors: list[Diagnostic] = []

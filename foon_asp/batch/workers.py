@@ -20,9 +20,10 @@ def answer_all(
 ) -> Iterator[AnswerRow]:
     """Answer questions in processes, each with its own copy of the data; return rows as they come.
 
-    ``memory_limit`` is in bytes for each process. A process that dies, or does not answer ``grace`` seconds
-    after its time limit, is replaced, and the row of its question says so. Where the data cannot be opened,
-    each row has the message of :class:`UserError`: open the data once before.
+    ``memory_limit`` is in bytes for each process. A process that dies, or that does not answer until
+    ``grace`` seconds after its time limit, is replaced, and the row of its question says so. If the data
+    cannot be opened, each row has the message of the :class:`UserError`; so the caller should open the data
+    once before.
     """
 
     def seconds(question: BatchQuestion) -> float | None:
@@ -41,4 +42,5 @@ def answer_all(
 
 
 def _begin(opener: Opener, memory_limit: int | None, settings: Settings | None) -> "partial[AnswerRow]":
+    """Open the data in a worker, and return the function that answers a question."""
     return partial(answer_row, opener(), memory_limit=memory_limit, settings=settings)

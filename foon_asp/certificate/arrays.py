@@ -17,14 +17,14 @@ from foon_asp.proof import ruled, verifier
 class Arrays:
     """A question about trees in numbers: units are actions, and taking a kitchen item may be an action.
 
-    Where ``kitchen`` is an objective, no node is initial, and each item has an achiever of its own without
-    preconditions and of cost 1: the action's number is ``items[k]`` for item ``k``. Elsewhere ``items`` is
-    empty. The additions of covered constraints come last: nodes, and steps, which are actions of cost 0.
-    ``forbidden`` are the units that constraints remove, and ``limits`` their limits. Without objectives, all
-    costs are 0.
+    With the objective ``kitchen``, no node is initial. Each item ``k`` then has an additional achiever
+    without preconditions and of cost 1: the action ``items[k]``. Otherwise, ``items`` is empty. The nodes and
+    steps of covered constraints come last; a step is an action of cost 0. ``forbidden`` are the units that
+    constraints remove, and ``limits`` are the limits of constraints. Without objectives, all costs are 0.
     """
 
     def __init__(self, problem: Problem, objectives: Sequence[Objective], covered: Coverage) -> None:
+        """Number the actions, compute their costs, and compile the covered rules into the graph."""
         network = problem.network
         self.problem, self.objectives = problem, tuple(objectives)
         self.rates = sorted({r for r in self._rates() if r != 1}) if Objective.SUCCESS in objectives else []
@@ -71,7 +71,7 @@ class Arrays:
 
     @cached_property
     def multiples(self) -> list[Fraction]:
-        """For each coordinate the greatest common divisor of all costs; 0 for rates and measures."""
+        """For each coordinate the greatest common divisor of all costs; 0 for rates and for measures."""
         multiples: list[Fraction] = []
         all_costs = set(self.costs)
         for objective in self.objectives:
@@ -92,7 +92,7 @@ class Arrays:
         self.ruled.limits[self._of_rules + len(self.own_limits)] = ruled.Limit(*limit)
 
     def exceeded(self, derivation: frozenset[int]) -> Limit | None:
-        """Return a limit by user rules that a derivation exceeds; ``None`` where it keeps to them."""
+        """Return a limit by user rules that a derivation exceeds, and add it; ``None`` without one."""
         limit = self._own and self._own.exceeded(self._units(derivation))
         if limit:
             self._admit(limit)
@@ -100,7 +100,7 @@ class Arrays:
 
     @property
     def asks(self) -> bool:
-        """Whether derivations are checked against limits by user rules during the proof."""
+        """Whether the proof has to check its derivations against limits by user rules."""
         return self._own is not None
 
     @property
@@ -111,14 +111,17 @@ class Arrays:
         }
 
     def bars(self, used: frozenset[int], without: frozenset[int]) -> dict[int, frozenset[int]]:
-        """Return by constraint the barred units.
+        """Return the barred units of each constraint, by its number.
 
-        No tree with the used actions and none of ``without`` has a barred unit.
+        No tree with all used actions and none of ``without`` has a barred unit.
         """
         return self.ruled.bars(self._units(used), without)
 
     def breaking(self, derivation: frozenset[int]) -> list[int]:
-        """Return an irreducible set of units of a derivation that break a constraint, barred units first."""
+        """Return units of a derivation that together break a constraint, barred units first; else none.
+
+        The set is irreducible: the constraint bars no unit of a smaller set.
+        """
         chosen = self._units(derivation)
         for barred in self.ruled.barred.values():
             if broken := chosen & barred(chosen, self.forbidden):
@@ -137,7 +140,7 @@ class Arrays:
         return len(self.rates) if multiplies(objective) else 1
 
     def actions(self, units: Iterable[int]) -> list[int]:
-        """Return the actions of a tree: units, the taking of the kitchen items that they need, and steps."""
+        """Return the actions of a tree: its units, its steps, and the taking of needed kitchen items."""
         units = list(units)
         needed = {o for unit in units for o in self.problem.needs[unit]}
         steps = self.ruled.used(frozenset(units)).difference(units)
@@ -147,7 +150,7 @@ class Arrays:
     def cases(self, cases: Cases) -> Cases:
         """Return the branching cases of an answer, renumbered as actions; ``None`` for unknown cases.
 
-        In answers, the action that takes an item is numbered by its object, after all units.
+        In an answer, the action that takes an item has the number of units plus the item's id.
         """
         if cases is None:
             return None

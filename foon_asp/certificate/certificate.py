@@ -33,8 +33,8 @@ class NotBestError(Exception):
 class Certificate(NamedTuple):
     """A verified certificate with its claim.
 
-    ``claim`` is ``optimal``, ``bound`` or ``infeasible``. ``certified`` are the objectives, from the first
-    on, that it speaks about; those after them are only the solver's.
+    ``claim`` is ``optimal``, ``bound`` or ``infeasible``. ``certified`` are the first objectives, as many as
+    the certificate proves; the other objectives rest on the solver alone.
     """
 
     content: dict[str, Any]
@@ -131,8 +131,7 @@ def certify_infeasible(
 ) -> Certificate | None:
     """Return a certificate that there is no tree; ``subject`` is as for :func:`certify`.
 
-    ``None`` where a tree exists without the constraints that are not covered, and where no proof is found
-    before time is up.
+    ``None`` where some tree satisfies all covered constraints, and where no proof is found before time is up.
     """
     if covered.rules and problem.own_rates:
         return None
@@ -170,7 +169,7 @@ def _write(
 ) -> Certificate | None:
     """Return the certificate of a claim, in which each cut and each limit has a number.
 
-    ``None`` where the numbers of its proof are too long for certificates.
+    ``None`` where the numbers in the proof are too long for certificates.
     """
     problem, network = arrays.problem, arrays.problem.network
     subject = subject or subject_of(problem)
@@ -231,7 +230,7 @@ def _write(
 
 
 class Claimed(NamedTuple):
-    """What a certificate claims; ``units`` are a tree or plan, and ``bound`` is as certificates state it."""
+    """The claim of a certificate; ``units`` are a tree or plan, and ``bound`` is written as JSON."""
 
     claim: str
     objectives: tuple[Objective, ...]
@@ -251,7 +250,7 @@ def write(
 ) -> Certificate | None:
     """Return a sealed and verified certificate; ``None`` where it is beyond the limits of the verifier.
 
-    Of measures it states only the costs of units that the proof looks at.
+    For a measure, the certificate states only the costs of the units that the proof looks at.
     """
     network, (claim, objectives, units, bound) = problem.network, claimed
     try:

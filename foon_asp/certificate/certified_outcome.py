@@ -25,12 +25,14 @@ def certify_outcome(
 ) -> tuple[Outcome, Certificate | None]:
     """Return an answer marked as certified, and the certificate; ``None`` where no certificate is found.
 
-    With a certificate of the whole claim, the proof of the answer is ``certificate``, and a plan that was
-    found at a limit becomes optimal. A certificate of only the first objectives marks these as certified. The
-    answer stays unchanged where only a bound is proved, or where user rules are taken on trust. Raises
-    :class:`BugError` when a tree that the solver called optimal is not, and when answer and certificate
-    cannot both be true. ``subject`` is the whole network, of which that of the answer is a part, as for
-    :func:`~foon_asp.certificate.certify`.
+    If the certificate proves the whole claim, ``certificate`` becomes the kind of proof of the answer, and a
+    plan that was found at a limit becomes optimal. If it proves only the first objectives, these are marked
+    as certified. The answer stays unchanged where only a bound is proved, or where user rules are taken on
+    trust.
+
+    Raises :class:`BugError` when a tree that the solver called optimal is not, and when answer and
+    certificate contradict each other. ``subject`` is the whole network if the network of the answer is a part
+    of it, as for :func:`~foon_asp.certificate.certify`.
     """
     began = time.perf_counter()
     covered = coverage(settings)
@@ -99,10 +101,10 @@ def _certified_plan(outcome: Outcome, covered: Coverage, expired: Callable[[], b
 
 
 def _at_odds(outcome: Outcome, certificate: Certificate, covered: Coverage) -> str | None:
-    """Return why an answer and a certificate cannot both be true; ``None`` where they can.
+    """Return why an answer and a certificate contradict each other; ``None`` where they do not.
 
-    The verifier has accepted the certificate, but does not know the answer: here its goals, rules and claim
-    are compared with those of the answer.
+    The verifier has accepted the certificate, but does not know the answer. So this compares goals, rules and
+    claim of the certificate with those of the answer.
     """
     problem, content = outcome.problem, certificate.content
     goals = tuple(goal["id"] for goal in content["goals"])
@@ -121,7 +123,7 @@ def _at_odds(outcome: Outcome, certificate: Certificate, covered: Coverage) -> s
 def _costs_at_odds(
     outcome: Outcome, units: Sequence[int], certificate: Certificate, covered: Coverage
 ) -> str | None:
-    """Return why a tree cannot cost what a certificate proves; ``None`` where it can."""
+    """Return why the costs of a tree contradict a certificate; ``None`` where they do not."""
     problem, content = outcome.problem, certificate.content
     arrays = Arrays(problem, certificate.certified, covered)
     cost = arrays.order.total(arrays.costs[a] for a in arrays.actions(units))
@@ -167,7 +169,7 @@ def _contradiction(outcome: Outcome, settings: Settings, why: str) -> BugError:
 
 
 def _tree(outcome: Outcome, units: Sequence[int]) -> str:
-    """Return a text that describes a tree and its costs."""
+    """Return a text that describes a tree and its costs, for the message about a contradiction."""
     return f"the units {list(units)} ({_figures(outcome.problem, units)})"
 
 

@@ -27,11 +27,14 @@ _UNSET = frozenset(("", '""', "#sup", "#inf"))
 
 
 class Coverage(NamedTuple):
-    """The constraints on trees: the ``rules`` that a certificate covers, and those that it does not.
+    """The constraints of a question: the ``rules`` that a certificate covers, and the others.
 
-    Each rule is one of :data:`foon_asp.proof.rule_meaning.LIBRARY` with its values. ``not_covered`` names
-    rules, by their text or by file, with a digest, and the constants that were set. ``limits`` are those of
-    user rules, which are found one by one.
+    Attributes:
+        rules: Rules from :data:`foon_asp.proof.rule_meaning.LIBRARY` with their values, and claims about user
+            rules.
+        not_covered: Texts: names of other rules with digests, other constants with values, replaced
+            encodings.
+        limits: The search for limits that follow from user rules; ``None`` where it is not needed.
     """
 
     rules: tuple[Rule, ...] = ()
@@ -64,8 +67,8 @@ def coverage(settings: Settings) -> Coverage:
     """Return the constraints of a question, divided into those that a certificate covers and the others.
 
     Ready-made constraints are covered, with the values that were set. Other rules only exclude trees, so a
-    bound without them still holds; a replaced encoding may do anything, and is named as not covered. With it,
-    only rules that remove units are covered.
+    bound without them still holds. A replaced encoding may do anything, and is named as not covered. Under a
+    replaced encoding, only rules that remove units are covered.
     """
     constants = dict(setting.partition("=")[::2] for setting in settings.constants)
     uses: list[tuple[str, Mapping[str, str]]] = []
@@ -115,14 +118,17 @@ def coverage(settings: Settings) -> Coverage:
 
 
 def _value(written: str, kind: type) -> Any:
-    """Return a value of a constraint, ``None`` where it is not set."""
+    """Return a value of a constraint, as a number or text; ``None`` for a number that is not set."""
     if kind is int:
         return None if written in _UNSET else int(written)
     return string_constant(written)
 
 
 def _facts(constraint: Constraint, among_others: bool = False) -> dict[str, set[str]]:
-    """Return the values that rules list as facts, by predicate; empty where the rules are not only facts."""
+    """Return the values that rules list as facts, by predicate.
+
+    If the rules also have other statements, the result is empty, unless ``among_others`` is set.
+    """
     from foon_asp.encoding import encoding  # noqa: PLC0415 - they load clingo
     from foon_asp.rules import stating  # noqa: PLC0415 - they load clingo
 
@@ -151,10 +157,10 @@ def _digest(content: bytes) -> str:
 
 
 def needed(rules: Iterable[Rule], members: Iterable[int], limits: Iterable[Limit] = ()) -> tuple[Rule, ...]:
-    """Return the coverage with only those claims of user rules that a proof uses.
+    """Return the rules, with only those claims about user rules that a proof uses.
 
-    A claim that units are removed is kept if all of them are ``members`` of cuts. Other claims are kept.
-    ``limits`` are the limits that the proof uses.
+    A claim that units are removed is used if all these units are ``members`` of cuts. All other claims
+    remain. ``limits`` are the limits that the proof uses.
     """
     kept, stated = set(members), [_stated(*limit) for limit in limits]
     return tuple(
@@ -178,5 +184,5 @@ def _stated(amounts: Mapping[int, Fraction], max_sum: Fraction) -> list[Any]:
 
 
 def _printable(name: str) -> str:
-    """Escape the letters of a file's name or of a constant that cannot be printed: a line end, for one."""
+    """Return a name with escapes for characters that cannot be printed, such as line ends."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in name)

@@ -17,10 +17,10 @@ from foon_asp.rules.rules import Rules
 
 
 class OwnLimits:
-    """Limits that follow from antimonotone user rules; ``found_limits`` are those found so far.
+    """Search for limits that follow from antimonotone user rules; ``found_limits`` are those found so far.
 
-    At first they are the sums that rules limit. Further limits come from minimal sets of units that break a
-    rule: a tree lacks at least one unit of each set.
+    At first, these are the sums that rules limit. Each minimal set of units that breaks a rule gives another
+    limit: a tree lacks at least one unit of the set.
     """
 
     def __init__(

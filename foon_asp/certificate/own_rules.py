@@ -33,7 +33,7 @@ def with_own_rules(covered: Coverage, problem: Problem, settings: Settings) -> C
     """Return the coverage with user rules as claims about removed and required units.
 
     Claims that follow from covered rules are left out, since they need no trust. Limits by antimonotone rules
-    are found during the proof. ``None`` where the meaning of the rules is not known.
+    are found later, during the proof. ``None`` where the meaning of the user rules is not known.
     """
     rules = assemble(settings, lambda _: None).understood
     if rules is None:
@@ -91,7 +91,7 @@ def check_with_clingo(
 
 
 def _some_tree(content: Mapping[str, Any], problem: Problem, settings: Settings, rules: str) -> bool:
-    """Return whether clingo finds any tree, of all executable units, that keeps to additional rules."""
+    """Return whether clingo finds a tree of executable units that keeps to the additional ``rules``."""
     ours = set(Objective)
     objectives = tuple(Objective(name) for name in content["objective"] if name in ours)
     try:

@@ -59,8 +59,9 @@ def certify_plan(
 ) -> Certificate | None:
     """Certify that a plan is optimal, by as many of the first objectives as are proved, or certify a bound.
 
-    ``plan`` lists units in the order of execution. ``None`` where nothing is proved before time is up, and
-    for objectives that need rates where a rate is 0 or is not that of a motion.
+    ``plan`` lists unit ids in the order of execution. Return ``None`` where nothing is proved before time is
+    up, and where an objective needs rates of units that differ from those of their motions. An objective that
+    needs rates is not proved if a rate is 0.
     """
     if problem.own_rates and (covered.rules or any(o.row.needs is Known.RATES for o in objectives)):
         return None
@@ -96,11 +97,15 @@ def certify_no_plan(
 
 
 class _Question:
-    """A question about plans as arrays; its actions are the relevant units, by their index."""
+    """A question about plans as arrays; its actions are the relevant units, by their position among them.
+
+    It collects the cuts, balances and rounded conditions that proofs use, and then writes the certificate.
+    """
 
     def __init__(
         self, problem: Problem, covered: Coverage, plan: Sequence[int], expired: Callable[[], bool]
     ) -> None:
+        """Compute the reachable nodes, the relevant units, and the limits of rules in integers."""
         self._problem, self._covered, self._plan, self._expired = problem, covered, plan, expired
         self._ruled = ruled = covered.ruled(problem)
         self.proofs: list[Any] = []
@@ -128,8 +133,8 @@ class _Question:
     def prove(self, objective: Objective, before: Sequence[Objective]) -> tuple[Any, Vector | None] | None:
         """Return a proof that no plan as good by earlier objectives costs less than the incumbent.
 
-        The second value is the bound, where only a smaller bound is proved (for the first objective), and
-        otherwise ``None``. Return ``None`` without a proof.
+        For the first objective, a smaller bound may be proved instead. The second value is then this bound,
+        and otherwise ``None``. Return ``None`` if nothing is proved.
         """
         kept = [self._level(earlier) for earlier in before]
         if any(level is None for level in kept):
@@ -204,7 +209,10 @@ class _Question:
         return Claim(order, [(f,) for f in figures], (Fraction(objective.row.item),), (cost,), parts, caps)
 
     def _level(self, objective: Objective) -> tuple[Level, int] | None:
-        """Return the level of the incumbent by an objective in whole numbers, and its scale."""
+        """Return the level of the incumbent by an objective, in integers, and the scale of these integers.
+
+        ``None`` where the integers would be too long.
+        """
         figures = self._figures(objective)
         if multiplies(objective):
             costs = [_fine(rate, up=False) for rate in figures]
@@ -248,7 +256,7 @@ class _Question:
         return len(self._rounded) - 1
 
     def of_counts(self, condition: Condition) -> tuple[str, int, Fraction]:
-        """Return the kind and number of a condition on counts alone, and the factor of its weight."""
+        """Return kind and number of a condition on counts alone, and the factor to scale its weight by."""
         if isinstance(condition, Balance):
             return "balance", self.balance(condition.object), Fraction(1)
         if isinstance(condition, Sum):
@@ -262,14 +270,15 @@ class _Question:
         return self._units[action]
 
     def limit(self, number: int) -> tuple[int, int]:
-        """Return the number of the rule of a limit, and its scale."""
+        """Return the number of a limit in the certificate, and the scale by which its sum was multiplied."""
         rule_number, _, scale = self._limits[number]
         return rule_number, scale
 
     def _unreached(self) -> list[int]:
-        """Return unreachable nodes, which prove that some irrelevant units are executed by no plan.
+        """Return unreachable nodes, which prove that no plan executes certain irrelevant units.
 
-        These units could cross a cut or achieve a balanced node; each has one of the nodes as a precondition.
+        These are the units that could cross a cut or achieve a balanced node, and the achievers of the
+        returned nodes. Each has one of the returned nodes as a precondition.
         """
         flows, units, removed = self._problem.flows, set(self._units), self._ruled.removed
         touched = {o for cut in self._cuts for o in cut} | self._balanced

@@ -17,9 +17,9 @@ from foon_asp.text.json_value import Json, json_line
 
 
 def read_comparison(row: Json) -> Comparison:
-    """Return the comparison of a row.
+    """Return the comparison in a row.
 
-    Raises one of the errors of :class:`RowForm` for a value that is not the row of a comparison.
+    If the value is no row of a comparison, raises one of the errors that :class:`RowForm` lists.
     """
     searches = [
         search | {name: _by_objective(search[name]) for name in ("measures", "ratios")}

@@ -59,5 +59,6 @@ def _compare(
     rules: Settings | None,
     numbered: tuple[int, int],
 ) -> Comparison:
+    """Compare the searches on one goal, which is the second number of ``numbered``."""
     _, goal = numbered
     return compare(replace(problem, goals=(goal,)), searches, settings, time_limit, rules)

@@ -36,9 +36,9 @@ class RowForm(NamedTuple, Generic[Row]):
 class RowsFile(Generic[Row]):
     """A file to which one process at a time appends rows.
 
-    The first line is the question (data and settings); every line has its kind and version. Each row is
+    The first line is the question (data and settings); every line states its kind and version. Each row is
     written to the disk at once; an incomplete last line, from an interruption, is dropped. ``done`` are the
-    rows by key, and ``twice`` has a warning for each row with the key of an earlier one. The file is locked
+    rows by key. ``twice`` has a warning for each row that has the key of an earlier row. The file is locked
     until it is closed or the process ends.
 
     Raises :class:`UserError`, and leaves the file unchanged, where another run writes it, where it was begun
@@ -46,6 +46,7 @@ class RowsFile(Generic[Row]):
     """
 
     def __init__(self, path: Path, form: RowForm[Row], question: Json) -> None:
+        """Open and lock the file, read its rows into ``done``, and write the first line of a new file."""
         self.path, self._form, self._schema = path, form, schema_name(form.kind)
         self.done: dict[object, Row] = {}
         self.twice: list[str] = []
@@ -141,6 +142,7 @@ class RowsFile(Generic[Row]):
         return json_line({"schema": self._schema, **row}).encode() + b"\n"
 
     def _write(self, content: bytes) -> None:
+        """Write lines at the end, and wait until they are on the disk."""
         self._file.write(content)
         self._file.flush()
         os.fsync(self._file.fileno())
@@ -157,7 +159,7 @@ class RowsFile(Generic[Row]):
 def _lock(file: IO[bytes]) -> bool:
     """Lock an open file until it is closed; return ``False`` where another process has locked it.
 
-    On a file system without locks, the result is ``True``.
+    Return ``True``, without a lock, on a file system that has no locks.
     """
     try:
         if sys.platform == "win32":

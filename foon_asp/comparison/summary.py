@@ -13,9 +13,10 @@ from foon_asp.problem import Objective, multiplies
 class Distance(NamedTuple):
     """Statistics of the ratio to the optimum, over the trees that execute and break no rule; 1 is optimal.
 
-    The ratio is cost over optimum, but optimum over ``success``, so that a higher ratio is always worse.
-    ``share`` is the fraction of trees that are optimal, ``worst_goal`` the goal of the worst ratio. The 90th
-    percentile is the least ratio that at least nine tenths of the trees do not exceed.
+    The ratio is the cost divided by the optimum. For ``success`` it is the optimum divided by the rate, so
+    that a higher ratio is always worse. ``share`` is the fraction of trees that are optimal, and
+    ``worst_goal`` is the goal with the worst ratio. The 90th percentile is the least ratio that at least nine
+    tenths of the trees do not exceed.
     """
 
     share: Fraction

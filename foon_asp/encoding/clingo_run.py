@@ -37,11 +37,20 @@ def run(
 ) -> Run:
     """Ground the files and facts and search for the best answer.
 
-    ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (stop at the first answer).
-    ``predicates``, by name and arity, are those whose atoms are returned besides ``use``; these begin with a
-    number. ``products`` is the number of products of rates in the facts, ``endless`` says that grounding may
-    not terminate. At a limit or ctrl-C, the run has the last answer. Raises the error of
-    :func:`foon_asp.encoding.encoding.fault` where clingo refuses the program.
+    Parameters:
+        files: The encodings and rules.
+        facts: The facts, as text.
+        arguments: Options of clingo.
+        deadline: The limits. At a limit or ctrl-C, the run has the last answer.
+        opt_mode: As in clasp: ``opt``, ``opt,BOUND,...`` or ``ignore`` (stop at the first answer).
+        on_tree: Is called with the units of each answer.
+        on_bound: Is called with each new lower bound.
+        predicates: Predicates (name and arity) whose atoms are returned, in addition to ``use``. The first
+            argument of their atoms is a number.
+        products: The number of products of rates in the facts.
+        endless: Whether grounding may not terminate.
+
+    Raises the error of :func:`foon_asp.encoding.encoding.fault` where clingo refuses the program.
     """
     began = time.perf_counter()
     try:

@@ -20,7 +20,7 @@ Value = int | str | Term
 
 
 def derive(text: str, name: str, arity: int) -> list[tuple[Value, ...]]:
-    """Ground a program and return the arguments of all atoms of a predicate.
+    """Ground a stratified program and return the arguments of each atom of a predicate.
 
     Raises :class:`ProgramError` for statements or instances that clingo refuses or drops.
     """

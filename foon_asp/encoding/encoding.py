@@ -70,13 +70,20 @@ _IDENTIFIER = re.compile(r"[a-z][A-Za-z0-9_]*")
 class Encoding:
     """A parsed file or text of rules: the predicates that it defines and uses, and its constants.
 
-    ``defined`` holds the signatures of atoms in heads, ``used`` those in bodies and ``declared`` those under
-    ``#defined``, with the place of each first occurrence; the name of a negated atom (``-p``) begins with a
-    minus. ``names`` are those of constants and functions in terms. ``constants`` maps the names of ``#const``
-    statements to their values as written, ``constant_sources`` to their places. ``special`` are statements
-    and atoms other than plain rules, by type. ``assigns`` says that a variable may get its value
-    from an aggregate (``N = #count {...}``). ``text`` is every statement as clingo prints it, and
-    ``statements`` are these, in order. Places in rules without a file have the name of the rules as file.
+    The name of a negated atom (``-p``) begins with a minus. Places are those of first occurrences; for rules
+    without a file, their name stands in place of the file.
+
+    Attributes:
+        defined: Signatures of atoms in heads, with places.
+        declared: Signatures under ``#defined``, with places.
+        used: Signatures of atoms in bodies, with places.
+        names: Names of constants and functions in terms, with places.
+        constants: Values of ``#const`` statements by name, as written.
+        constant_sources: Places of ``#const`` statements by name.
+        special: Types of statements and atoms other than plain rules, with places.
+        assigns: Whether a variable may get its value from an aggregate (``N = #count {...}``).
+        text: All statements as clingo prints them.
+        statements: All statements, in order.
     """
 
     rules: Loaded
@@ -125,9 +132,9 @@ def _is_atom(node: AST) -> bool:
 
 
 def read_encoding(rules: Loaded) -> Encoding:
-    """Parse an encoding, the files it includes with it; raises :class:`InputError` for a syntax error.
+    """Parse an encoding and the files that it includes; raises :class:`InputError` for a syntax error.
 
-    Raises as :func:`foon_asp.encoding.encoding_file.included_files` and ``check_text`` there do, too.
+    Also raises as :func:`foon_asp.encoding.encoding_file.included_files` and ``check_text`` in that module.
     """
     encoding = Encoding(rules)
     collector = _Collector(encoding)
@@ -271,11 +278,11 @@ def check_encodings(
 ) -> list[Diagnostic]:
     """Check the user's files: the constraints ``added``, and files in ``base`` that are not built-in.
 
-    ``others`` are further built-in files that are loaded. Returns warnings about undefined atoms, with the
-    most similar defined predicate, and about terms that are compared with numbers but never are numbers.
-    Raises :class:`InputError` for statements that would change the set of trees or their order, or that
-    clingo would ignore silently: rules for built-in predicates, reserved names, and statements other than
-    rules.
+    ``others`` are further built-in files that are loaded. Returns warnings about undefined atoms, each with
+    the most similar defined predicate. It also returns warnings about terms that are compared with numbers
+    and can never be numbers. Raises :class:`InputError` for statements that would change the set of trees or
+    their order, or that clingo would ignore silently. These are rules for built-in predicates, reserved
+    names, and statements other than rules.
     """
     errors: list[Diagnostic] = []
     defined = set(PUBLIC)
@@ -313,9 +320,9 @@ def check_encodings(
 
 
 def no_numbers(statements: Iterable[AST], constants: Collection[str]) -> Iterator[tuple[AST, str]]:
-    """Return the terms that compare above every number because they are no numbers, each with a message.
+    """Yield the terms that compare above every number because they are no numbers, each with a message.
 
-    These are names that no ``#const`` sets, and texts as guards of a count or sum.
+    They are names that no ``#const`` sets, and texts as guards of a count or sum.
     """
     for node in (node for statement in statements for node in nodes(statement)):
         terms: list[AST] = []
@@ -442,11 +449,11 @@ def undefined(signature: Signature, defined: set[Signature]) -> str:
 
 
 def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) -> list[str]:
-    """Return ``NAME=VALUE`` settings as arguments of clingo, typed after the ``#const`` they set.
+    """Return ``NAME=VALUE`` settings as arguments of clingo, of the type of the default in their ``#const``.
 
-    Where the default value is a string, the setting becomes a string, with or without quotes. Where the
-    default is a number, the setting has to be a whole number that fits 32 bits. Raises :class:`UserError` for
-    an unknown name, and for a constant that only a ready-made constraint with values of its own has.
+    Where the default is a string, the setting becomes a string, with or without quotes. Where the default is
+    a number, the setting has to be an integer of 32 bits. Raises :class:`UserError` for an unknown name, and
+    for a constant that only a ready-made constraint with its own values has.
     """
     defaults = {
         name: value
@@ -487,10 +494,10 @@ def constant_value(name: str, default: str, value: str) -> str:
 
 
 def unset_constants(added: Sequence[Encoding], constants: Sequence[str]) -> list[str]:
-    """Return warnings for constants without effect until they are set: their default is "", #sup or #inf.
+    """Return warnings for constants that are not set and have no effect with their default: "", #sup or #inf.
 
-    A constant that adds one fact to a predicate has an effect where other rules add facts to it, such as
-    ``allergen("milk").``
+    There is no warning where a rule derives a fact with the constant as argument, and another encoding
+    derives facts of the same predicate, such as ``allergen("milk").``
     """
     settings_given = {setting.partition("=")[0] for setting in constants}
     warnings = []
@@ -532,7 +539,8 @@ def _fits(value: str) -> bool:
 def fault(messages: Sequence[str], otherwise: str, files: Sequence[Loaded] = ()) -> InputError | UserError:
     """Return clingo's messages about a program as one error with places and source lines.
 
-    ``files`` are the files and texts of the program; the texts are needed for their lines.
+    ``files`` are the files and texts of the program. A source line of a text is found only there.
+    ``otherwise`` is the message of the error if clingo has given none.
     """
     errors: dict[Source, Diagnostic] = {}
     for message in messages:

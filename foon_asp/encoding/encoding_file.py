@@ -102,13 +102,14 @@ def _check_file(file: Path, errors: list[Diagnostic]) -> list[Path]:
 
 
 def _check_content(text: str, origin: str, file: Path | None, errors: list[Diagnostic]) -> list[Path]:
-    """Append the errors of a text to ``errors``.
+    """Append the errors of a text to ``errors``; return the files that it includes.
 
-    Return the files that it includes, where it has a ``file``.
+    ``file`` is the file that has the text; a text without a file may include nothing.
     """
     lines = text.split("\n")
 
     def error(code: str, message: str, start: int) -> None:
+        """Append an error at an offset of the text (``start``), with its line."""
         line = text.count("\n", 0, start) + 1
         column = start - text.rfind("\n", 0, start)
         shown = lines[line - 1].rstrip("\r")
@@ -188,9 +189,9 @@ def _tokens(text: str) -> Iterator[_Token]:
 
 
 def string_constant(value: str) -> str:
-    """Return the text of a setting of a string constant, with or without quotes.
+    """Return the text that a setting of a string constant means; quotes around it may be omitted.
 
-    Raises :class:`UserError` for a quote at the beginning without a string of clingo.
+    Raises :class:`UserError` for a setting that begins with a quote and is no string of clingo.
     """
     if not value.startswith('"'):
         return value

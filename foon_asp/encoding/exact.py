@@ -1,4 +1,4 @@
-"""Exact evaluation of arithmetic terms, to find those beyond clingo's numbers of 32 bits."""
+"""Exact evaluation of arithmetic terms, to find values beyond clingo's integers of 32 bits."""
 
 from collections.abc import Callable, Sequence
 from typing import Final
@@ -18,6 +18,7 @@ def _divided(a: int, b: int) -> int:
 
 
 def _power(a: int, b: int) -> int:
+    """Return a power; raise for a negative exponent, where clingo returns wrong values."""
     if b < 0 and a:
         raise _BeyondError  # for clingo 2**(-1) is 0, and so is 1**(-1)
     power: int = a ** (b if abs(a) < 2 else min(b, 32))
@@ -39,9 +40,9 @@ _UNARY: Final[dict[str, Callable[[int], int]]] = {"neg": lambda a: -a, "abs": ab
 
 
 def is_beyond(text: str, values: Sequence[int]) -> bool:
-    """Whether the value of a term or of a subterm is outside clingo's numbers.
+    """Return whether the value of a term or of a subterm is outside clingo's numbers.
 
-    ``text`` is the term in postfix notation, with indices into ``values``: ``0 1 + 0 *``.
+    ``text`` is the term in postfix notation, as in ``0 1 + 0 *``; a number in it is an index into ``values``.
     """
     stack: list[int] = []
     try:

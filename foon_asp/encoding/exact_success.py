@@ -1,8 +1,9 @@
 """Success rates as integer weights for clingo, and as exact exponents where rounding could decide.
 
-The logarithm of a product of rates is the sum of their logarithms; clingo adds integers, so each
-rate p has the weight ``floor(S * -ln p)``. Rounding down loses less than 1 per unit, which bounds its error:
-see ``docs/dev/exact-success.md`` for the argument and ``foon_asp/asp/solver.py`` for its use.
+The logarithm of a product of rates is the sum of their logarithms. clingo adds integers, so each rate p has
+the weight ``floor(S * -ln p)``. Rounding down changes the weight of a unit by less than 1, so the error of a
+sum is below the number of units. ``docs/dev/exact-success.md`` has the argument, and
+``foon_asp/asp/solver.py`` uses it.
 """
 
 import math
@@ -49,7 +50,7 @@ class RateScale(NamedTuple):
     def success_bound(self, weight: int) -> Fraction:
         """Return an upper bound on the success of trees whose weights sum up to at least ``weight``.
 
-        Since rounding went down, such a tree has ``-ln(success) >= weight / scale``.
+        Weights are rounded down, so such a tree has ``-ln(success) >= weight / scale``.
         """
         value = _CONTEXT.exp(_CONTEXT.divide(Decimal(-weight), Decimal(self.scale)))
         places = _CONTEXT.scaleb(Decimal(1), value.adjusted() - 17)
@@ -60,8 +61,8 @@ class RateScale(NamedTuple):
 def rate_scale(rates: Collection[Fraction]) -> RateScale:
     """Return the finest useful scale of rates in (0, 1] within clingo's 32-bit integers.
 
-    It is at most 10^8, except where a rate next to 1 would weigh almost 0. Raises ``ValueError`` for other
-    rates.
+    The scale is at most 10^8, except where a rate next to 1 would weigh almost 0. Raises ``ValueError`` for a
+    rate outside of (0, 1].
     """
     if not all(0 < rate <= 1 for rate in rates):
         raise ValueError("expected success rates above 0 and at most 1")
@@ -108,7 +109,7 @@ def _minus_log(rate: Fraction, digits: int) -> Decimal:
 def _weight(rate: Fraction, scale: int) -> int:
     """Return ``floor(scale * -ln rate)``, exactly.
 
-    The logarithm of a rational number other than 1 is irrational, so enough digits always settle the floor.
+    The logarithm of a rational number other than 1 is irrational, so with enough digits the floor is certain.
     """
     lost = scale * (1 - rate)
     low, high = lost, lost / rate  # bounds of -ln rate, precise enough next to 1

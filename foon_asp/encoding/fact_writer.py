@@ -78,10 +78,10 @@ def write_facts(
 ) -> str:
     """Return the facts about units of a problem, their object nodes, the kitchen and the goals.
 
-    One line per unit and per object node, with public numbers. ``scales`` have the weights of ``risk/2`` and
-    ``cost/3``; without them these facts are omitted. ``looked_at`` are the predicates that user rules read:
-    unless it is ``None``, sources, videos and prices of units are added. Raises :class:`UserError` where a
-    price that they read is no whole number of hundredths.
+    There is one line per unit and per object node, with public numbers. ``scales`` have the weights of
+    ``risk/2`` and ``cost/3``; without scales, these facts are omitted. ``looked_at`` are the predicates that
+    user rules read. Unless it is ``None``, facts about sources, videos and prices of units are added. Raises
+    :class:`UserError` where user rules read prices and a price is no whole number of hundredths.
     """
     name = problem.network.object_number
     nodes = described(problem, units)
@@ -155,9 +155,9 @@ def _other_lines(problem: Problem, nodes: Sequence[int]) -> Iterator[str]:
 def write_worlds(
     problem: Problem, units: Iterable[int], predicates: Collection[str], world: str
 ) -> Iterator[str]:
-    """Yield facts about units and their object nodes by predicates, each unit in a world of its own.
+    """Yield facts about units and their object nodes by predicates, each unit in a separate world.
 
-    A world lets rules see each unit separately; ``world`` is the predicate of worlds.
+    In a separate world, rules see no other unit. ``world`` is the predicate of worlds.
     """
     network = problem.network
     sees_nodes = not OBJECT_FACTS.isdisjoint(predicates)
@@ -201,9 +201,9 @@ def _unit_atoms(
     prices: Mapping[int, int] | None,
     read: Collection[str] = FACT_PREDICATES,
 ) -> list[_Atom]:
-    """Return the facts about a unit without ``unit/1``, by predicates in ``read`` and maybe a few others.
+    """Return the facts about a unit, except ``unit/1``, by the predicates in ``read`` and maybe a few others.
 
-    With ``prices``, also facts that only user rules read.
+    With ``prices``, the facts that only user rules read are included, too.
     """
     network = problem.network
     inputs, name = network.inputs[unit], network.object_number
@@ -246,8 +246,8 @@ def hundredths(
 ) -> dict[int, int]:
     """Return the price of each unit that has one, in hundredths.
 
-    Empty where a price is no whole number of hundredths, or their sum overflows; raises :class:`UserError`
-    instead if rules read prices.
+    The result is empty where a price is no whole number of hundredths, or where the sum overflows. If rules
+    read prices, :class:`UserError` is raised instead.
     """
     if problem.unit_prices is None:
         if _PRICE in looked_at:
@@ -325,7 +325,7 @@ def write_objectives(objectives: Sequence[Objective]) -> str:
 
 
 def write_exponents(problem: Problem, scales: Scales) -> str:
-    """Return facts of the vector of every unit by the rounded objective; see :meth:`Scales.vector`."""
+    """Return facts of the :meth:`Scales.vector` of each unit, by the objective that is rounded."""
     return "".join(
         f"_exponent({problem.network.unit_number(unit)},{factor},{_check(number)}).\n"
         for unit, vector in scales.unit_vectors().items()
@@ -344,17 +344,20 @@ def write_seen(numbers: Iterable[int]) -> str:
 
 
 def write_fewer(units: Mapping[int, int]) -> str:
-    """Return facts that allow excluded products of rates, by number, to trees of fewer units."""
+    """Return facts that allow small trees to have products of rates that are otherwise excluded.
+
+    ``units`` maps the number of a product to N: trees of fewer than N units may have this product.
+    """
     return "".join(f"_fewer({number},{count}).\n" for number, count in units.items())
 
 
 def write_wanted(number: int) -> str:
-    """Return the fact that requires the product of rates of a number."""
+    """Return the fact that a tree has to have the product of rates with a number."""
     return f"_wanted({number}).\n"
 
 
 def write_for_sale(prices: Mapping[int, int], second_choices: Iterable[int]) -> str:
-    """Return facts of object nodes for sale, with integer prices, and which are bought only if necessary."""
+    """Return facts of object nodes for sale: their integer prices, and which are bought only if necessary."""
     facts = [f"_for_sale({o},{_check(price)}).\n" for o, price in prices.items()]
     return "".join([*facts, *(f"_second_choice({o}).\n" for o in second_choices)])
 
@@ -418,7 +421,11 @@ def write_below(below: Iterable[Mapping[Objective, int | Fraction]], scales: Sca
 
 
 def write_assisted(twins: Mapping[int, int], max_assisted: int) -> str:
-    """Return facts that pair each unit of a person with that of the robot, and bound a person's units."""
+    """Return facts that pair each unit done by a person with the same unit done by the robot.
+
+    ``twins`` maps the number of a person's unit to that of the robot's unit. The facts also limit the
+    person's units in a tree to ``max_assisted``.
+    """
     facts = [f"_takes_over({_check(ours)},{theirs}).\n" for ours, theirs in twins.items()]
     return "".join([*facts, f"_at_most_assisted({_check(max_assisted)}).\n"])
 
@@ -432,7 +439,7 @@ def write_required(sets: Sequence[Iterable[int]]) -> str:
 
 
 def write_known(numbers: Iterable[int]) -> str:
-    """Return facts of the units, by number, whose achievers are all present; other units may lack inputs."""
+    """Return facts of the units, by number, whose inputs have all their achievers in the facts."""
     return "".join(f"_known({_check(number)}).\n" for number in numbers)
 
 
@@ -442,22 +449,28 @@ def write_tree(units: Collection[int]) -> str:
 
 
 def write_avoided(number: int, units: Iterable[int]) -> str:
-    """Return facts that exclude a tree, by the numbers of its units, and all trees that contain it."""
+    """Return facts that exclude a tree and all trees that contain it.
+
+    ``number`` is a number for the tree; ``units`` are the numbers of its units.
+    """
     return "".join(f"_avoid({number},{_check(unit)}).\n" for unit in units)
 
 
 def write_unseen(units: Iterable[int]) -> str:
-    """Return facts that ask for a tree with at least one of some units, by their numbers."""
+    """Return facts that require a tree with at least one of some units, by their numbers."""
     return "".join(f"_unseen({_check(unit)}).\n" for unit in units)
 
 
 def write_in_all(units: Iterable[int]) -> str:
-    """Return facts that ask for a tree that lacks at least one of some units, by their numbers."""
+    """Return facts that require a tree without at least one of some units, by their numbers."""
     return "".join(f"_in_all({_check(unit)}).\n" for unit in units)
 
 
 def write_beside(plans: Sequence[Mapping[int, int]]) -> str:
-    """Return facts that exclude plans with at least the executions of a known plan, by unit number."""
+    """Return facts that exclude plans which execute each unit at least as often as a known plan.
+
+    ``plans`` are the known plans: the number of executions by unit number.
+    """
     return "".join(
         f"_avoid({number},{_check(unit)},{count}).\n"
         for number, plan in enumerate(plans)
@@ -488,7 +501,7 @@ def write_exactly_alike(numbers: Sequence[int]) -> str:
 
 
 def write_distances(trees: Sequence[Collection[Hashable]], chosen: int) -> str:
-    """Return facts of the distances between trees, of which ``chosen`` are to be chosen.
+    """Return facts of the distances between trees, and of the number of trees to choose (``chosen``).
 
     The trees are sets of units or of executions.
     """
@@ -507,7 +520,14 @@ def write_tool_order(
     after: Iterable[Iterable[int]],
     may_lack: bool,
 ) -> str:
-    """Return facts of the tools of each kind, their uses by steps, and the order of steps."""
+    """Return facts of tools, their uses, and the order of steps; kinds of tools and steps are numbers.
+
+    Parameters:
+        tools: The number of tools of each kind.
+        uses: For each use of a tool, its kind and the steps during which the tool is in use.
+        after: For each step, the steps that have to be done before.
+        may_lack: Whether tools may be lacking.
+    """
     facts = [f"_tools({kind},{_check(count)}).\n" for kind, count in enumerate(tools)]
     facts += [f"_may_lack({kind}).\n" for kind in range(len(tools)) if may_lack]
     for use, (kind, steps) in enumerate(uses):

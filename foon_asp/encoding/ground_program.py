@@ -1,6 +1,6 @@
 """A program that clingo grounds and searches, independent of the question.
 
-Arguments and results are plain values, so that it may be in another process.
+Arguments and results are plain values, so that the program may be in another process.
 """
 
 from collections import Counter
@@ -21,8 +21,8 @@ from foon_asp.errors import UserError
 class GroundProgram:
     """Ground program of files and text; raises :class:`ProgramError` where clingo refuses it.
 
-    Instances that clingo drops with a mere message are an error, too. ``products`` is the number of products
-    of rates in the text. A search ends at the ``deadline``, if any.
+    A rule instance that clingo drops with only a message is an error, too. ``products`` is the number of
+    products of rates in the text. A search ends at the ``deadline``, if any.
     """
 
     deadline: Deadline | None = None
@@ -30,6 +30,7 @@ class GroundProgram:
     def __init__(
         self, files: Sequence[str | Stated], text: str, arguments: Sequence[str], products: int = 0
     ) -> None:
+        """Load files and text into clingo, and ground them."""
         self._messages: list[str] = []
         self._statistics = asks_for_statistics(arguments)
         with refusing(self._messages):
@@ -55,6 +56,7 @@ class GroundProgram:
                 self._control.load(file)
 
     def _ground(self, parts: Sequence[tuple[str, Sequence[Symbol]]]) -> None:
+        """Ground parts of the program, and record messages about overflows."""
         try:
             self._control.ground(parts, Exact())
         finally:
@@ -63,7 +65,7 @@ class GroundProgram:
     def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
         """Return the arguments of all atoms of each predicate, by name and arity; all arguments are numbers.
 
-        Only for stratified rules, whose atoms grounding alone derives.
+        The rules have to be stratified, so that grounding alone derives all atoms.
         """
         atoms = self._control.symbolic_atoms
         return [
@@ -83,10 +85,15 @@ class GroundProgram:
     ) -> Ended:
         """Search for the best answer, and return how the search ended; any thread may report trees.
 
-        ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (stop at the first answer).
-        ``predicates``, by name and arity, are those whose atoms are reported besides ``use``; these begin
-        with a number. Raises :class:`UserError` for an option that clasp refuses and for invalid answers, and
-        whatever ``on_tree`` raises.
+        Parameters:
+            opt_mode: As in clasp: ``opt``, ``opt,BOUND,...`` or ``ignore`` (stop at the first answer).
+            predicates: Predicates (name and arity) whose atoms are reported, in addition to ``use``. The
+                first argument of their atoms is a number.
+            on_tree: Is called with each answer.
+            on_bound: Is called with each new lower bound.
+
+        Raises :class:`UserError` for an option that clasp refuses and for invalid answers, and any error that
+        ``on_tree`` raises.
         """
         # overrides the options: a proof needs the whole search space
         models = 1 if opt_mode == "ignore" else 0

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 class Grounded:
     """Ground program of files and text.
 
-    With ``endless`` (grounding may not terminate), with much text, and with limited memory, the program is in
-    a worker process, which is killed at the limits and at ctrl-C. ``doing`` names the phase in messages about
+    It is in a worker process if grounding may not terminate (``endless``), if the text is long, or if memory
+    is limited. A worker is killed at the limits and at ctrl-C. ``doing`` names the phase in messages about
     limits. Raises :class:`foon_asp.encoding.run.ProgramError` where clingo refuses the program, and
     :class:`LimitError`.
     """
@@ -33,6 +33,7 @@ class Grounded:
         endless: bool,
         doing: str = "grounding",
     ) -> None:
+        """Ground the files and the text, in this process or in a worker."""
         deadline.doing = doing
         deadline.check()
         names = [str(file) if isinstance(file, Path) else file for file in files]
@@ -59,9 +60,15 @@ class Grounded:
     ) -> Run:
         """Return the run of a search for the best answer; at a limit or ctrl-C, with the last answer.
 
-        ``opt_mode`` is clasp's: ``opt``, ``opt,BOUND,...`` or ``ignore`` (stop at the first answer).
-        ``predicates``, by name and arity, are those whose atoms are returned besides ``use``; these begin
-        with a number. Raises whatever ``on_tree`` raises, and :class:`UserError` for invalid answers.
+        Parameters:
+            deadline: The limits of the search.
+            opt_mode: As in clasp: ``opt``, ``opt,BOUND,...`` or ``ignore`` (stop at the first answer).
+            on_tree: Is called with the units of each answer.
+            on_bound: Is called with each new lower bound.
+            predicates: Predicates (name and arity) whose atoms are returned, in addition to ``use``. The
+                first argument of their atoms is a number.
+
+        Raises any error that ``on_tree`` raises, and :class:`UserError` for invalid answers.
         """
         result = Run()
         began = time.perf_counter()
@@ -89,6 +96,7 @@ class Grounded:
         self._program.close()
 
     def _begin(self, doing: str, deadline: Deadline) -> None:
+        """Begin a phase, which has a name and a deadline."""
         deadline.doing = doing
         deadline.check()
         self._program.deadline = deadline

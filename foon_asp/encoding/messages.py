@@ -19,7 +19,7 @@ NO_LIMIT = INT32_MAX  # clingo's limit of messages: beyond a lower one, a releva
 def listener(messages: list[str], max_kept: int = 1000) -> Callable[[MessageCode, str], None]:
     """Return a logger for clingo that collects messages about dropped statements or instances.
 
-    Of more than ``max_kept`` messages, only those of statements are kept.
+    After ``max_kept`` messages, it collects only those about statements.
     """
 
     def hear(code: MessageCode, text: str) -> None:
@@ -33,7 +33,7 @@ def listener(messages: list[str], max_kept: int = 1000) -> Callable[[MessageCode
 
 @contextmanager
 def refusing(messages: list[str]) -> Iterator[None]:
-    """Raise :class:`ProgramError` where clingo stops, and where there are messages in the end."""
+    """Raise :class:`ProgramError` where clingo stops, or where ``messages`` is not empty after the block."""
     try:
         yield
     except RuntimeError as error:

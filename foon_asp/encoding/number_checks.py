@@ -1,7 +1,7 @@
 """Overflow checks: rules that find arithmetic beyond clingo's numbers, which wraps silently.
 
-They derive ``_beyond(File,Line,Column,Term)``, and call ``@_exact(Text,...)`` with a term in the notation of
-:func:`foon_asp.encoding.exact.is_beyond`, and its values.
+These rules derive ``_beyond(File,Line,Column,Term)``. They call ``@_exact(Text,...)`` with a term, in the
+notation of :func:`foon_asp.encoding.exact.is_beyond`, and the values in the term.
 """
 
 from collections.abc import Callable, Iterator
@@ -20,6 +20,7 @@ class Exact:
     """The functions that rules may call: ``@_exact`` alone."""
 
     def __getattribute__(self, name: str) -> Callable[..., Symbol]:
+        """Return the function ``@_exact``; raise ``RuntimeError`` for any other name."""
         if name != "_exact":
             raise RuntimeError(
                 f"no function is called, and {name!r} is one"
@@ -28,6 +29,7 @@ class Exact:
 
 
 def _exact(text: Symbol, *values: Symbol) -> Symbol:
+    """Return whether a term is beyond clingo's numbers, as 1 or 0."""
     if any(value.type is not SymbolType.Number for value in values):
         return Number(0)  # reported by clingo
     return Number(is_beyond(text.string, [value.number for value in values]))

@@ -1,7 +1,7 @@
 """Recognition of unchanged built-in encodings, which cuts and certificates rely on.
 
-``encodings/SHA256SUMS`` holds the digest of each, with the line ends of Unix. A built-in encoding that the
-user changed still runs, but counts as an encoding of the user.
+``encodings/SHA256SUMS`` has the digest of each built-in encoding, with the line ends of Unix. A built-in
+encoding that the user changed still runs, but counts as an encoding of the user.
 """
 
 import hashlib

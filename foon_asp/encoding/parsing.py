@@ -44,6 +44,7 @@ def nodes(piece: AST) -> Iterator[AST]:
 
 
 def _set_place(statement: AST, place: str) -> None:
+    """Replace the file name in the locations of a statement by a place."""
     for node in nodes(statement):
         if "location" in node.keys():  # noqa: SIM118 (it is no mapping)
             begin, end = node.location

@@ -23,7 +23,7 @@ def asks_for_statistics(options: Sequence[str]) -> bool:
 class FoundAnswer(NamedTuple):
     """An answer: the units in use, the cost vector, and counts of atoms by predicate and first argument.
 
-    ``rows`` has the arguments of atoms with numbers only, by predicate.
+    ``rows`` has, by predicate, the arguments of the atoms whose arguments are all numbers.
     """
 
     units: frozenset[int]
@@ -43,12 +43,16 @@ class Ended(NamedTuple):
 class Run:
     """The result of a run of clingo.
 
-    ``units`` is the last (best) answer, ``None`` without one, ``cost`` its cost vector as clingo reports it,
-    which wraps at 32 bits. ``exhausted`` says that the whole search space was searched, so that the answer is
-    optimal, or that none exists. ``lower`` holds the proved lower bound of each priority, highest first, as
-    far as known. ``atoms`` has for each requested predicate the number of its atoms in the answer by first
-    argument, and ``rows`` the arguments of atoms with numbers only. ``statistics`` are clingo's, as text,
-    where an option requests them.
+    Attributes:
+        units: The last (best) answer; ``None`` without one.
+        cost: The cost vector of the answer as clingo reports it; its numbers wrap at 32 bits.
+        exhausted: Whether the whole search space was searched, so that the answer is optimal, or none exists.
+        lower: The proved lower bound of each priority, highest first, as far as known.
+        atoms: By requested predicate, the number of its atoms in the answer for each first argument.
+        rows: By requested predicate, the arguments of its atoms whose arguments are all numbers.
+        ground_seconds: The time of grounding.
+        solve_seconds: The time of the search.
+        statistics: Statistics of clingo as text, where an option requests them.
     """
 
     units: frozenset[int] | None = None

@@ -26,7 +26,10 @@ class CostScale(NamedTuple):
 
 
 def cost_scale(costs: Iterable[Fraction]) -> CostScale:
-    """Return the exact scale of costs, or where that overflows, the finest useful one."""
+    """Return the scale by which all costs become integers of 32 bits.
+
+    If no such scale exists, return the finest useful scale, by which weights are rounded down.
+    """
     costs = list(costs)
     different = sorted(set(costs))
     greatest = max(different, default=Fraction(0))
@@ -41,7 +44,7 @@ def cost_scale(costs: Iterable[Fraction]) -> CostScale:
 def require_one_rounded(problem: Problem, objectives: Iterable[Objective]) -> None:
     """Raise :class:`UserError` where two of the objectives have to be rounded.
 
-    All units of the network count, so that the error does not depend on the units that matter for the goals.
+    All units of the network are taken into account, so that the error does not depend on the goals.
     """
     fractions = [objective for objective in objectives if multiplies(objective) or not objective.row.whole]
     if len(fractions) < 2:
@@ -70,9 +73,11 @@ def too_many_rounded(objectives: Iterable[Objective]) -> UserError:
 class Scales:
     """Scales of the units of a question in clingo, by objective.
 
-    ``rates`` is the scale of success rates, ``None`` where none are known; ``costs`` are the scales of
-    objectives that add up fractions. ``facts`` are the objectives whose costs are facts per unit.
-    ``rounded`` is the one objective whose weights are rounded, ``None`` where none is.
+    Attributes:
+        rates: The scale of success rates; ``None`` where no rates are known.
+        costs: The scales of objectives whose costs are fractions and add up.
+        facts: The objectives whose costs are facts, one for each unit.
+        rounded: The only objective whose weights are rounded; ``None`` where none is.
     """
 
     def __init__(self, problem: Problem, units: Iterable[int], objectives: Iterable[Objective] = ()) -> None:
@@ -109,10 +114,10 @@ class Scales:
         return int(sum(problem.figure(objective, unit) for unit in units)) + objective.row.item * len(items)
 
     def cost_weight(self, objective: Objective, cost: int | Fraction) -> int:
-        """Return the weight of a cost that is an upper bound.
+        """Return the weight in clingo of an upper bound on the cost by an objective.
 
         Raises :class:`UserError` for an objective that is rounded, and where the weight of all units
-        overflows, since then clingo ignores the bound.
+        overflows, since clingo ignores the bound then.
         """
         if objective.row.whole:
             return int(cost)
@@ -130,10 +135,7 @@ class Scales:
         return int(scale.scale * cost)
 
     def doubt(self, units: Iterable[int]) -> int:
-        """Return the number of units that weigh less than they cost by the rounded objective.
-
-        The error is below that number.
-        """
+        """Return how many units have a weight that was rounded down; each adds an error below 1."""
         assert self.rounded is not None
         costs = (self._problem.figure(self.rounded, unit) for unit in units)
         if multiplies(self.rounded):
@@ -142,9 +144,10 @@ class Scales:
         return sum(scale * cost != weights[Fraction(cost)] for cost in costs)
 
     def vector(self, units: Iterable[int]) -> dict[int, int]:
-        """Return the vector that identifies a total by the rounded objective exactly, by index.
+        """Return a vector, by index, from which the exact total by the rounded objective follows.
 
-        Where rates multiply, it has the exponents of coprime factors, else the number of units of each cost.
+        For success rates, it has the exponents of coprime factors; otherwise, the number of units of each
+        cost.
         """
         assert self.rounded is not None
         if multiplies(self.rounded):
@@ -175,7 +178,7 @@ class Scales:
         return weight / self.costs[objective].scale if objective in self.costs else weight
 
     def allows(self, objective: Objective, weight: int, figure: int | Fraction) -> bool:
-        """Whether units of a weight can have a cost by an objective.
+        """Return whether units of a total ``weight`` can have the cost ``figure`` by an objective.
 
         Without rounding, only one cost has that weight.
         """
@@ -185,6 +188,7 @@ class Scales:
         return figure <= bound if multiplies(objective) else figure >= bound
 
     def _rounds(self, objective: Objective) -> bool:
+        """Return whether weights of an objective are rounded down."""
         if multiplies(objective):
             # a weight of 0 may be a rate below 1
             return self.rates is not None and any(rate != 1 for rate in self.rates.weights)

@@ -36,6 +36,7 @@ class WorkerProgram:
         products: int,
         deadline: Deadline,
     ) -> None:
+        """Take a worker process, and wait until it has grounded the files and the text."""
         self._worker = take(_KEY, _start)
         self._give_back = weakref.finalize(self, _forget, self._worker)
         command = "ground", _folder(), list(files), text, list(arguments), products, _memory(deadline)
@@ -96,6 +97,7 @@ def prepare() -> None:
 
 
 def _start() -> Worker:
+    """Start a worker process."""
     return Worker(_KEY, "rules of yours are grounded", "-S", stderr=subprocess.DEVNULL)
 
 
@@ -125,7 +127,7 @@ def _ask(worker: Worker, deadline: Deadline, *command: object, handlers: _Handle
 
 
 def _cause(code: int, has_spoken: bool, deadline: Deadline) -> UserError | LimitError:
-    """Return the error for a process that died, mostly since memory ran out, else because of the rules."""
+    """Return the error for a process that died: memory ran out, or else the rules made it stop."""
     if code in _OF_MEMORY or (deadline.memory is not None and code == -signal.SIGSEGV):
         deadline.out_of_memory()
         return LimitError(deadline)

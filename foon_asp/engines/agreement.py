@@ -46,9 +46,11 @@ def find_engines() -> tuple[Engine, ...]:
 class Check(NamedTuple):
     """The verdict of an engine: it agrees, or has not checked the answer; disagreement is an exception.
 
-    ``objectives`` are those by which it finds our tree optimal, the most important first. ``reason`` says
-    why it has checked nothing, and is ``None`` where it agrees. ``seconds`` is the time that it took.
-    ``refuted`` is a wrong claim of an engine of another ``package``, and otherwise ``None``.
+    Attributes:
+        objectives: The objectives by which the engine finds our tree optimal, the most important first.
+        reason: Why the engine has checked nothing; ``None`` where it agrees.
+        seconds: The time that the engine took.
+        refuted: A wrong claim of an engine of another ``package``; ``None`` otherwise.
     """
 
     engine: str
@@ -65,11 +67,12 @@ def cross_check(
     """Have every engine check an answer, each for at most ``seconds``; return a verdict of each.
 
     Without ``seconds``, the remaining time of the question is divided among the engines; without a time
-    limit, each has a minute. Bare clingo checks answers under any rules, ``engines`` only where all rules
-    are ours or forbid single units. After ctrl-C nothing else is checked.
+    limit, each has a minute. Bare clingo checks answers under any rules. The other ``engines`` check answers
+    only if all rules are built-in or forbid single units. After ctrl-C, no other engine is asked.
 
-    Raises :class:`DisagreementError` for the first engine whose answer differs; for one of another package
-    only where its tree is valid and better than ours, since otherwise that engine is wrong.
+    Raises :class:`DisagreementError` for the first engine whose answer differs. If the engine is of another
+    package, this error is raised only if the engine's tree is valid and better than ours; otherwise that
+    engine is wrong.
     """
     if seconds is None:
         remaining = claim.settings.begun.left
@@ -135,8 +138,8 @@ def agree(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
     """Return the objectives by which an engine finds our tree optimal, the most important first.
 
     Costs are computed anew from the units, as rational numbers. An engine that works in floats may call a
-    tree optimal whose cost differs from ours by less than its precision: then neither this objective nor any
-    less important one counts as checked.
+    tree optimal although its cost differs from ours by less than the engine's precision. Then neither this
+    objective nor any less important one counts as checked.
 
     Raises :class:`DisagreementError` where both answers cannot be right, and :class:`NotCheckedError` where
     the engine's answer implies nothing about ours.
@@ -169,8 +172,9 @@ def agree(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
 def _is_close(objective: Objective, ours: Costs, theirs: Costs) -> bool:
     """Return whether an engine that computes in floats may not distinguish the costs of two trees.
 
-    Costs count as equal whose difference, relative to them, is at most two millionths for each unit, since an
-    engine may round logarithms to millionths. More would hide wrong answers, less report rounding as a bug.
+    Costs count as equal if their relative difference is at most two millionths for each unit, since an engine
+    may round logarithms to millionths. A greater tolerance would hide wrong answers; a smaller one would
+    report rounding as a bug.
     """
     our_cost, their_cost = Fraction(ours.measure(objective)), Fraction(theirs.measure(objective))
     tolerance = 2e-6 * (1 + ours.units + theirs.units)

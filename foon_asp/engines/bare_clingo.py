@@ -1,14 +1,14 @@
-"""Check of an answer by stock clingo, in a process of its own, on the text that ``foon-asp facts`` prints.
+"""Check of an answer by stock clingo, in a separate process, on the text that ``foon-asp facts`` prints.
 
-clingo reads constraints, soft files, constants and encodings unchanged. The problem is not reduced, nothing
-is reused from earlier questions, and clingo does not know our answer while it searches, with other options
-than ours. The answers are compared in exact numbers: the costs that clingo adds up have to be those of its
+clingo reads constraints, soft files, constants and encodings unchanged. The problem is not reduced, and
+nothing is reused from earlier questions. clingo searches with other options than ours and does not know our
+answer. The answers are compared in exact numbers: the costs that clingo adds up have to be the costs of its
 units, its tree has to execute in our simulation, and our tree has to keep to the rules in clingo.
 
-Objectives with fractions, such as ``success``, have rounded weights in the facts, so that clingo's optimum
-need not be the true one. Every tree at least as good as ours has a rounded weight below a bound that is
-computed here anew (docs/dev/certificates.md). clingo enumerates the trees below it, and their costs are
-compared as fractions.
+Objectives with fractions, such as ``success``, have rounded weights in the facts, so clingo's optimum may not
+be the true one. Every tree at least as good as ours has a rounded weight up to a bound that is computed here
+anew (docs/dev/certificates.md). clingo enumerates the trees up to this bound, and their costs are compared as
+fractions.
 """
 
 import contextlib
@@ -67,9 +67,14 @@ class ClingoAnswer(NamedTuple):
 
 
 class Clingo:
-    """Runs of clingo on one program: ``seconds`` at most in all, and ``memory`` bytes each, of up to 4 GB."""
+    """Runs of clingo on one program.
+
+    ``seconds`` limits the time of all runs together. ``memory`` limits the memory of each run, in bytes; the
+    limit is 4 GB at most.
+    """
 
     def __init__(self, program: BareProgram, seconds: float, memory: int | None) -> None:
+        """Start the time of all runs."""
         self._program, self._seconds = program, seconds
         self._end = time.monotonic() + seconds
         max_memory = 4 * 2**30
@@ -78,7 +83,8 @@ class Clingo:
     def best(self, extra_facts: str = "", with_second_opinion: bool = True) -> ClingoAnswer | None:
         """Return an optimal answer, or ``None`` where no answer exists.
 
-        ``extra_facts`` are for the encoding of the second opinion, or without it for the program itself.
+        ``extra_facts`` go to the second-opinion encoding if ``with_second_opinion``, else to the program
+        itself.
         """
         options = ("--opt-mode=opt", "--models=0", "--quiet=1")
         result, _, answers = self._run(extra_facts, options, bool(extra_facts) and with_second_opinion)
@@ -89,7 +95,10 @@ class Clingo:
         return answers[-1]
 
     def all_kinds(self, extra_facts: str, bounds: Sequence[int]) -> list[ClingoAnswer]:
-        """Return one answer for each distinct count of equal units, with costs up to ``bounds``."""
+        """Return one answer of each kind with costs up to ``bounds``.
+
+        Answers are of one kind if they have the same number of units of each cost by the rounded objective.
+        """
         mode = ",".join(["--opt-mode=enum", *map(str, bounds)])
         options = (mode, f"--models={MAX_KINDS + 1}", "--project=project")
         result, exhausted, answers = self._run(extra_facts, options, True)
@@ -163,6 +172,7 @@ class _Check:
     """
 
     def __init__(self, claim: Asked, program: BareProgram, clingo: Clingo) -> None:
+        """Read the weights of units from the facts of the program."""
         self.claim, self.clingo = claim, clingo
         self.outcome, self.problem = claim.outcome, claim.outcome.problem
         self.levels = levels(self.outcome.objectives)
@@ -216,7 +226,7 @@ class _Check:
         return ours
 
     def _has_standard_costs(self, answer: ClingoAnswer) -> bool:
-        """Return whether clingo adds up the costs of the units; replaced encodings may count others.
+        """Return whether clingo adds up the costs of the units; a replaced encoding may add other numbers.
 
         The penalty of soft constraints is not compared.
         """
@@ -245,7 +255,7 @@ class _Check:
             )
 
     def _compare(self, answer: ClingoAnswer, objectives: Iterable[Objective]) -> None:
-        """Raise :class:`DisagreementError` where the penalty or an objective differs from our tree's."""
+        """Raise :class:`DisagreementError` where the penalty, or an objective, differs from our tree."""
         compared = self._answer(answer)
         if self.claim.soft and self.claim.penalty != answer.costs[0]:
             raise differing("penalty", self.claim.penalty or 0, answer.costs[0], compared)
@@ -274,9 +284,9 @@ class _Check:
     ) -> None:
         """Compare lexicographically where one objective is ``rounded`` in the facts.
 
-        Trees with the same number of units of each cost are one kind. clingo enumerates the kinds up to a
-        bound on the weight of that objective, and their costs are compared in fractions. Among the kinds as
-        good as our tree, clingo minimizes the less important objectives.
+        Trees with the same number of units of each cost are of one kind. clingo enumerates the kinds up to a
+        bound on the weight of the rounded objective, and their costs are compared as fractions. Among the
+        kinds that are as good as our tree, clingo minimizes the less important objectives.
         """
         index = self.levels.index(rounded)
         before, after, weights = self.levels[:index], self.levels[index:], self.weights[rounded]
@@ -332,6 +342,7 @@ class _Check:
         return self.problem.costs(map(self._unit, answer.times)).key(objectives)
 
     def _unit(self, number: int) -> int:
+        """Return the id of the unit with a public number; raise if there is no such unit."""
         unit = self.problem.network.unit_of_number(number)
         if unit is None:
             raise self._disagreement(f"clingo uses a unit number {number}, which there is not", None)
@@ -357,10 +368,11 @@ def greatest_weight(
     """Return an upper bound on the sum of weights of a tree that is at least as good as ours.
 
     ``weights`` are the distinct pairs of a unit's cost and its weight; ``our_costs`` are the costs of our
-    units. Costs are rates where the objective ``multiplies``. Nothing is assumed of how the weights were
-    rounded. Let L(c) = c for a cost, L(p) = -ln p for a rate, and S the maximum of w / L(c) over all units
-    with a cost. Then w <= S * L(c) for every unit, so the weights of any tree T add up to at most S * L(T),
-    where L(T) is the sum of its costs; and L(T) is at most that of our tree.
+    units. Where the objective ``multiplies``, costs are rates. The weights may have been rounded in any way.
+
+    Let L(c) = c for a cost, L(p) = -ln p for a rate, and S the maximum of w / L(c) over all units with a
+    cost. Then w <= S * L(c) for every unit, so the weights of any tree T add up to at most S * L(T), where
+    L(T) is the sum over its units. A tree as good as ours has an L(T) of at most that of our tree.
 
     Raises :class:`NotCheckedError` for a unit without a cost that has a weight, since no such S exists then,
     and for rates without a logarithm.
@@ -383,6 +395,7 @@ def _minus_log(rate: Fraction) -> tuple[Fraction, Fraction]:
     context = Context(prec=100)  # digits, of which at most 50 cancel in the difference of two logarithms
 
     def enclosed(number: int) -> tuple[Fraction, Fraction]:
+        """Return an interval that contains the logarithm of an integer."""
         logarithm = context.ln(Decimal(number))  # correctly rounded: the exact one is between its neighbours
         if not logarithm:
             return Fraction(0), Fraction(0)
@@ -393,7 +406,7 @@ def _minus_log(rate: Fraction) -> tuple[Fraction, Fraction]:
 
 
 def _limit(process: int, seconds: float, memory: int) -> None:
-    """Limit the memory, in bytes, and the time of a process, where the system can: grounding may not end."""
+    """Limit the memory (bytes) and the time of a process, if the system can; grounding may not end."""
     with contextlib.suppress(ImportError, AttributeError, OSError, ValueError):
         import resource  # noqa: PLC0415 (not everywhere)
 

@@ -1,7 +1,8 @@
-"""Check of plans in which items are used up by stock clingo, as in :mod:`foon_asp.engines.bare_clingo`.
+"""Check by stock clingo of plans in which items are used up, as in :mod:`foon_asp.engines.bare_clingo`.
 
-clingo needs an upper bound on the executions of each unit, or its grounding would not end. These bounds hold
-for every plan as good as ours by the first objective, and are all that clingo gets from our search.
+clingo needs an upper bound on the executions of each unit, since its grounding would not end otherwise. The
+bounds hold for every plan that is as good as ours by the first objective. Nothing else is passed to clingo
+from our search.
 """
 
 from itertools import takewhile
@@ -17,10 +18,10 @@ from foon_asp.proof.replay import replay_for
 
 
 def check_plan_with_bare_clingo(claim: Asked, seconds: float) -> tuple[Objective, ...]:
-    """Compare a plan with clingo's own; return the objectives by which they agree: those in whole numbers.
+    """Compare a plan with clingo's own; return the objectives by which they agree, all in whole numbers.
 
-    Raises :class:`DisagreementError` where both cannot be right, and :class:`NotCheckedError` where clingo's
-    answer implies nothing about ours, or did not come within ``seconds``.
+    Raises :class:`DisagreementError` where both cannot be right. Raises :class:`NotCheckedError` where
+    clingo's answer implies nothing about ours, or did not come within ``seconds``.
     """
     outcome, problem = claim.outcome, claim.outcome.problem
     if outcome.units is None or outcome.costs is None or outcome.status is not Status.OPTIMAL:

@@ -14,8 +14,8 @@ from foon_asp.rules.passed_constraint import Constraint
 class Asked(NamedTuple):
     """An answer to be checked: the outcome, and the settings under which it was found.
 
-    ``soft`` are the weights of soft constraints, and ``penalty`` is the claimed sum of the weights that the
-    tree of the outcome violates; ``None`` without soft constraints.
+    ``soft`` are the weights of soft constraints. ``penalty`` is the claimed sum of the weights of the soft
+    constraints that the tree of the outcome violates; ``None`` without soft constraints.
     """
 
     outcome: Outcome
@@ -51,7 +51,8 @@ class Solve(Protocol):
     ) -> EngineAnswer:
         """Search for a lexicographically optimal tree without the forbidden units.
 
-        An engine may optimize only the first objectives, and then returns these. It stops after ``seconds``.
+        An engine may optimize only the first objectives; its answer then names only these. The engine stops
+        after ``seconds``.
 
         Raises :class:`NotCheckedError` for a problem or objective that the engine does not support.
         """
@@ -120,7 +121,10 @@ class Scope(NamedTuple):
 
 
 def scope_of(problem: Problem, forbidden: frozenset[int]) -> Scope:
-    """Return what backward reachability from the goals visits, through all units that are not forbidden."""
+    """Return the units, nodes and goals that backward reachability from the goals visits.
+
+    It passes through all units that are not forbidden.
+    """
     allowed = frozenset(range(len(problem.network))) - forbidden
     units, objects = backwards(problem.goals, problem.makers, problem.needs, problem.kitchen, allowed)
     return Scope(sorted(units), sorted(objects), [goal for goal in problem.goals if goal in objects])

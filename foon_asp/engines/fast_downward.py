@@ -1,8 +1,9 @@
 """Fast Downward as a second engine: A* with the landmark-cut heuristic (Helmert & Domshlak 2009).
 
-It comes with the extra ``cross-check`` (GPL, so it is never installed otherwise) and runs as a program of
-its own. The task is written in its translator's format: a binary variable for each node that would have to be
-made, an operator for each unit, and an operator that takes each kitchen item, if the objective counts items.
+Fast Downward is installed only with the extra ``cross-check``, since it is under the GPL, and runs as a
+separate program. The task is written in the format of its translator. It has a binary variable for each node
+that has to be made, and an operator for each unit. If the objective counts kitchen items, it also has an
+operator that takes each item.
 """
 
 import importlib.util
@@ -70,9 +71,10 @@ def solve_with_fast_downward(
 
 
 def _task(problem: Problem, objective: Objective, forbidden: frozenset[int]) -> str:
-    """Return the text of the planning task; a variable is 0 once its node is available.
+    """Return the planning task as text, in the format of Fast Downward's translator.
 
-    Raises :class:`NotCheckedError` where costs are too large for Fast Downward.
+    Each node that has to be made, or taken at a cost, is a binary variable, which is 0 once the node is
+    available. Raises :class:`NotCheckedError` where costs are too large for Fast Downward.
     """
     scope = scope_of(problem, forbidden)
     items = kitchen_items(problem, scope.units) if objective.row.item else []

@@ -48,6 +48,7 @@ class _Program:
     """The mixed integer program of a problem."""
 
     def __init__(self, problem: Problem, forbidden: frozenset[int]) -> None:
+        """Add the variables and rows for all units that are relevant and not forbidden."""
         self._library, self._numpy = libraries()
         self._problem, self._highs = problem, silent_highs()
         for option, value in _HIGHS_OPTIONS.items():

@@ -27,10 +27,11 @@ def _solve(
     forbidden: frozenset[int],
     seconds: float,
 ) -> EngineAnswer:
-    """Run an offered engine, as :class:`Solve` does; stopped at the end of its time, it is not finished.
+    """Run an offered engine, as :class:`Solve` does.
 
-    Raises :class:`NotCheckedError` where the engine raises it, and :class:`UserError` where the engine raises
-    anything else, or returns no valid answer.
+    ``finished`` is false in the answer if the engine was stopped at the end of its time. Raises
+    :class:`NotCheckedError` where the engine raises it, and :class:`UserError` where the engine raises
+    another error or returns no valid answer.
     """
     try:
         reply = ask_offered(offer, Deadline(seconds), problem.plain, objectives, forbidden, seconds)

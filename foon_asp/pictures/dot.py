@@ -40,7 +40,7 @@ _POINT_DEFAULTS = f"""\
 
 
 def dot_text(drawing: Drawing) -> str:
-    """Return a drawing as DOT, from top to bottom; a network of many units as :func:`graph_text`."""
+    """Return a drawing as DOT, from top to bottom; the graph of a large network as by :func:`graph_text`."""
     if drawing.graph and drawing.units > BOXED_UNITS:
         return graph_text(drawing)
     labels = (_node(box, (*box.head, *box.details), _ROLE_ATTRIBUTES[box.role]) for box in drawing.boxes)
@@ -50,8 +50,8 @@ def dot_text(drawing: Drawing) -> str:
 def graph_text(drawing: Drawing, max_names: int = 24) -> str:
     """Return a network in DOT as squares and circles, for a force-directed layout.
 
-    The whole text of a node is its tooltip; the object nodes of the highest degree show their names, at most
-    ``max_names``: more would overlap.
+    The full text of a node is its tooltip. Only the ``max_names`` object nodes of the highest degree show
+    their names, since more names would overlap.
     """
     degrees = Counter(name for arrow in drawing.arrows for name in arrow)
     objects = [box for box in drawing.boxes if box.node is not None]

@@ -61,7 +61,7 @@ class Drawing(NamedTuple):
 
     @property
     def units(self) -> int:
-        """The number of functional units, each of which is one motion."""
+        """The number of functional units; each has one box, its motion."""
         return sum(box.role is Role.MOTION for box in self.boxes)
 
 
@@ -75,11 +75,11 @@ def draw_tree(
     """Return the drawing of a task tree, in which arrows lead from the achiever of a node to its consumers.
 
     Units are numbered in the order of ``units``. ``add_effects`` are the outputs that each unit makes under
-    the container rule; all, if ``None``.
+    the container rule; ``None`` stands for all outputs.
 
     A kitchen item is a separate box at every use, since one shared box of the knife would connect everything.
-    A by-product is a separate box, too. By-products are outputs that are neither a goal nor an input of a
-    unit, that the kitchen has, that an earlier step has made, or that the container rule does not count as
+    A by-product is a separate box, too. An output is a by-product if it is neither a goal nor an input of a
+    unit, if the kitchen has it, if an earlier step has made it, or if the container rule does not count it as
     made.
     """
     achievers: dict[ObjectNode, int] = {}
@@ -104,9 +104,9 @@ def draw_plan(
 ) -> Drawing:
     """Return the drawing of a plan in which items are used up: a copy that a later step takes is one box.
 
-    A copy is identified by its node and the step that made it, from 0, or ``None`` for the kitchen.
-    ``sources`` are these steps for the inputs of each unit, and ``goal_sources`` for the goals. Other copies
-    are boxes of their own.
+    A copy is identified by its node and the position of the step that made it, from 0; the position is
+    ``None`` for the kitchen. ``sources`` are these positions for the inputs of each unit, and
+    ``goal_sources`` for the goals. Other copies have boxes of their own.
     """
     canvas = _Canvas(kitchen, goal_sources.keys())
     consumed = {copy for step in (*sources, goal_sources) for copy in step.items()}
@@ -179,5 +179,5 @@ def _lines(text: str, width: int) -> tuple[str, ...]:
 
 
 def printable(text: str) -> str:
-    """Return a text with replacements for invisible or misleading characters, and those that XML forbids."""
+    """Return a text in which characters that are invisible, misleading or forbidden in XML are replaced."""
     return _NONCHARACTERS.sub("\ufffd", UNSAFE.sub("\ufffd", text))

@@ -32,10 +32,10 @@ class Plotted(NamedTuple):
 def write_front_chart(front: Plotted, file: Path) -> None:
     """Write the chart of a front with at least one point, as SVG or PNG by the file's suffix.
 
-    Two objectives are the axes, ``success`` on the vertical one. Of three, the additive objective with the
-    fewest values makes series: the points of a series have this value, and its line is the front of all
-    points with at most this value. An incomplete front has no lines, since they claim that no tree is beyond
-    them. Raises :class:`UserError` as :func:`foon_asp.pictures.chart.write_chart`.
+    Two objectives are the axes, ``success`` on the vertical one. Of three objectives, the additive one with
+    the fewest values makes a series for each value. The points of a series have this value; its line is the
+    front of all points with at most this value. An incomplete front has no lines, since a line claims that no
+    tree is beyond it. Raises :class:`UserError` as :func:`foon_asp.pictures.chart.write_chart`.
     """
     columns = dict(zip(front.objectives, zip(*front.points, strict=True), strict=True))
     additive = [objective for objective in front.objectives if not multiplies(objective)]

@@ -40,6 +40,7 @@ def _lines(drawing: Drawing) -> Iterator[str]:
 
 
 def _node(box: Box) -> str:
+    """Return the text of a box in a flowchart."""
     opening, closing, _ = _ROLE_STYLES[box.role]
     head = "<br/>".join(map(_escaped, box.head))
     label = "<br/>".join((f"<b>{head}</b>", *map(_escaped, box.details)))

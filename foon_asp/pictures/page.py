@@ -1,7 +1,7 @@
 """A self-contained page of HTML: data, scripts and styles in one file, which makes no requests.
 
-Its parts are in the folder ``web``. Its content security policy allows only the scripts and styles in it, by
-their digests, so that no name in the data is ever executed as code.
+The folder ``web`` has the parts of the page. The content security policy of the page allows only its scripts
+and styles, by their digests, so that no name in the data is ever executed as code.
 """
 
 import base64

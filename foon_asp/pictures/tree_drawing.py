@@ -33,7 +33,7 @@ def tree_drawing(
     network: Network,
     claim: Iterable[str] = (),
 ) -> Drawing:
-    """Return the drawing of a tree; the lines of ``claim``, on what is proved of it, are its caption.
+    """Return the drawing of a tree; its caption is ``claim``, lines that say what is proved about the tree.
 
     Without a claim, the units are numbered in an executable order if one exists, and the caption says so.
     """

@@ -25,7 +25,7 @@ def two_columns(
 ) -> str:
     """Return the page: a table of figures, then units under headings, with differences marked.
 
-    ``names`` are those of the two networks. ``figures`` are rows of cells, the first one the header.
+    ``names`` are the names of the two networks. ``figures`` are rows of cells; the first row is the header.
     """
     style = web("light.css") + web("dark.css") + web("two_columns.css")
     head, *rows = figures
@@ -77,10 +77,7 @@ def _difference(difference: UnitDifference) -> str:
 
 
 def _unit(unit: Unit | None, marked: set[tuple[str, str | None]]) -> str:
-    """Return the HTML of a unit, with some kinds and names in bold (``marked``).
-
-    An empty cell for ``None``.
-    """
+    """Return the HTML of a unit, with the kinds and names in ``marked`` bold; an empty cell for ``None``."""
     if unit is None:
         return '<section class="none"></section>'
     motion = f"<b>{_text(unit.motion)}</b>" if ("motion", unit.motion) in marked else _text(unit.motion)

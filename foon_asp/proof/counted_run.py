@@ -12,8 +12,8 @@ from foon_asp.proof.execution import Executions
 class CountedRun(NamedTuple):
     """The result of an execution by numbers.
 
-    ``lacking`` is the node of which copies were missing, ``None`` where the plan runs. ``stock`` maps each
-    node with a finite stock to the number of copies that the plan needs.
+    ``lacking`` is the node that has too few copies, ``None`` where the plan runs. ``stock`` maps each node
+    with a finite stock to the number of copies that the plan needs.
     """
 
     lacking: ObjectNode | None

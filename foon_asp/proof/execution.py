@@ -14,8 +14,8 @@ _NO_AMOUNTS = UnitAmounts()
 class Execution(NamedTuple):
     """One execution of a unit: the numbers of copies of object nodes that it needs, uses up and adds.
 
-    ``consumes`` are the ``preconditions`` that are used up. ``adds`` are outputs; of an output that is an
-    input as well, only the surplus over the input.
+    ``consumes`` are the ``preconditions`` that are used up. ``adds`` are the outputs. If an output is also an
+    input, only its surplus over the input is added.
     """
 
     preconditions: Mapping[ObjectNode, int]
@@ -26,8 +26,8 @@ class Execution(NamedTuple):
 class Executions:
     """Executions of units from the kitchen of a problem.
 
-    Items are used up as the problem says. Where they last in the problem, the rule of docs/plans.md decides,
-    and every amount is 1.
+    If the items of the problem are used up, the problem says which inputs of a unit stay. If its items last,
+    the rule of docs/plans.md decides this, and every amount is 1.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -41,7 +41,7 @@ class Executions:
         return {node: self._items.wanted.get(node, 1) for node in self._problem.goal_nodes}
 
     def is_endless(self, node: ObjectNode) -> bool:
-        """Return whether a node is not consumable: it is in the kitchen, and the stock does not count it."""
+        """Return whether a node never runs out: it is in the kitchen and not counted by the stock."""
         return self._problem.at_hand(node) and node not in self._items.stock
 
     def stock(self) -> Counter[ObjectNode]:
@@ -58,7 +58,7 @@ def _execution_of(
 ) -> Callable[[FunctionalUnit], Execution]:
     """Return a cached function from a unit to its execution.
 
-    ``network`` is that of the units, where its level is below 3.
+    ``network`` is the network of the units if its level is below 3, and ``None`` otherwise.
     """
     if items is None and network is None:
         return _by_the_rule(rule, utensils)
@@ -67,7 +67,7 @@ def _execution_of(
 
 @lru_cache(maxsize=4)
 def _by_the_rule(rule: ContainerRule, utensils: frozenset[str]) -> Callable[[FunctionalUnit], Execution]:
-    """Return the execution function under the plain rule of docs/plans.md, one for all checked trees."""
+    """Return the execution function under the plain rule of docs/plans.md; all trees share its cache."""
     return lru_cache(maxsize=10_000)(partial(_execution, UsedUp(), rule, utensils, None, {}))
 
 

@@ -1,7 +1,8 @@
-"""The checker of certificates that is proved in Coq: a program of its own, built from ``verified/``.
+"""The checker of certificates that is proved in Coq: a separate program, built from ``verified/``.
 
-It shares no line with ``verify``: both are given the same data, and the proved checker computes members of
-cuts, costs and the meanings of constraints by definitions about which a theorem is proved (docs/proofs.md).
+It shares no code with ``verify``. From the same data, it computes landmarks, costs and the meanings of
+constraints by definitions of its own. docs/proofs.md states the theorem that is proved about these
+definitions.
 """
 
 import json
@@ -21,7 +22,7 @@ _BUILT = Path(__file__).resolve().parents[2] / "verified" / "build" / _PROGRAM
 
 
 def program() -> Path | None:
-    """Return the proved checker: as it is built in a checkout, or on PATH; ``None`` where it is not built."""
+    """Return the path of the proved checker, from a build in a checkout or on PATH; ``None`` without one."""
     if _BUILT.is_file():
         return _BUILT
     installed = shutil.which(_PROGRAM)
@@ -50,10 +51,10 @@ def ask(certificate: Mapping[str, Any], subject: Subject) -> str:
     """Check a certificate that :func:`verify` accepts with the proved checker.
 
     Returns:
-        ``accepted``, or else why it is not checked, in words.
+        ``accepted``, or the reason why the checker did not check the certificate, in words.
 
     Raises:
-        RefusedError: for a certificate that it refuses.
+        RefusedError: if the proved checker refuses the certificate.
     """
     checker = program()
     if checker is None:

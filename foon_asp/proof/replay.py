@@ -22,10 +22,11 @@ class Copy(NamedTuple):
 
 
 class Shortage(NamedTuple):
-    """The copies that are missing: of ``node``, at the position ``step`` (from 0), or at the end if ``None``.
+    """A shortage: ``node`` has fewer copies than are needed at a step or at the end.
 
-    ``consumers`` are the positions of the steps that used up the copies, in order; empty if no step
-    did. ``amount`` is how many are needed.
+    ``step`` is the position of the step that lacks copies, from 0; ``None`` if the goals lack copies at the
+    end. ``consumers`` are the positions of the steps that used up copies of the node, in order. ``amount`` is
+    the number of copies needed.
     """
 
     step: int | None
@@ -35,7 +36,7 @@ class Shortage(NamedTuple):
 
 
 class Step(NamedTuple):
-    """A step that ran, with the copies that it uses up, those that it reads, and those that it makes."""
+    """A step that ran, with the copies that it used up (``gone``), read (``stayed``) and made (``came``)."""
 
     unit: FunctionalUnit
     gone: tuple[Copy, ...]
@@ -46,8 +47,8 @@ class Step(NamedTuple):
 class Replay(NamedTuple):
     """The result of a replay: the ``steps`` that ran, and the ``shortage`` that stopped it, if one did.
 
-    ``left`` are the copies after the last step that were made or remain of the stock; nodes that are not
-    consumable are omitted. ``stock`` maps each node with a finite stock to the number of copies
+    ``left`` are the copies that exist after the last step, made by steps or remaining from the stock; nodes
+    that are not consumable are omitted. ``stock`` maps each node with a finite stock to the number of copies
     that the plan needs.
     """
 
@@ -66,7 +67,11 @@ def replay_for(problem: Problem, plan: Iterable[FunctionalUnit]) -> Replay:
 
 
 def replayable(problem: Problem, plan: Iterable[FunctionalUnit]) -> Problem:
-    """Return a problem in which a plan can be replayed: if items last, everything in the plan stays."""
+    """Return a problem in which a plan can be replayed.
+
+    This is the problem itself if its items are used up. If its items last, return a copy whose items can be
+    used up, but in which every input of the plan stays.
+    """
     if problem.items is not None:
         return problem
     stays: dict[str | ObjectNode, bool] = {node.label: True for unit in plan for node in unit.inputs}
@@ -76,8 +81,8 @@ def replayable(problem: Problem, plan: Iterable[FunctionalUnit]) -> Problem:
 def waits(replay: Replay) -> Iterator[set[int]]:
     """Yield for each step, in order, the positions of the steps that have to be done before it.
 
-    An earlier step has to be done before if it made a copy that the step needs, or read a copy that the step
-    uses up. Nodes that are not consumable always have another copy.
+    These are the earlier steps that made a copy that the step needs, or that read a copy that the step uses
+    up. Nodes that are not consumable always have another copy.
     """
     readers: dict[tuple[Copy, int], set[int]] = {}
     spent: Counter[Copy] = Counter()  # how often a copy like this was used up: those of a stock are alike
@@ -95,8 +100,8 @@ def waits(replay: Replay) -> Iterator[set[int]]:
 def readers(replay: Replay, is_free: Callable[[str], bool]) -> list[tuple[int, ...]]:
     """Return, for each copy that several steps need and do not use up, the positions of the steps.
 
-    Only copies that a step made, or that are in the stock, count: of other nodes, and of labels that
-    ``is_free`` accepts, there is always another copy.
+    Copies that neither a step made nor the stock counts are omitted, since they never run out. Nodes whose
+    label ``is_free`` accepts are omitted, too, since each step can have another copy.
     """
     reading: dict[tuple[Copy, int], list[int]] = {}
     spent: Counter[Copy] = Counter()  # as in waits
@@ -109,7 +114,11 @@ def readers(replay: Replay, is_free: Callable[[str], bool]) -> list[tuple[int, .
 
 
 def _read(step: Step, spent: Counter[Copy]) -> Iterator[tuple[Copy, int]]:
-    """Yield the copies that a step reads, each with the number of equal copies used up before."""
+    """Yield each copy that a step reads, with the copy's number among the copies of equal node and maker.
+
+    ``spent`` counts the copies that earlier steps used up; they come first in the numbering, then those that
+    this step uses up.
+    """
     before = spent + Counter(step.gone)
     for copy in step.stayed:
         yield copy, before[copy]
@@ -146,7 +155,7 @@ class _Kitchen:
         return Replay(tuple(steps), shortage, remaining, self._least)
 
     def _step(self, position: int, unit: FunctionalUnit) -> Step:
-        """Execute a unit whose preconditions are there; the oldest copies are taken first."""
+        """Execute a unit whose preconditions are available; it takes the oldest copies first."""
         preconditions, consumes, adds = self._executions.of(unit)
         gone, stayed, came = list[Copy](), list[Copy](), list[Copy]()
         for node, amount in preconditions.items():
@@ -167,7 +176,7 @@ class _Kitchen:
         return Copy(node, None) if self._executions.is_endless(node) else None
 
     def _has(self, node: ObjectNode, amount: int) -> bool:
-        """Return whether there are copies of a node, and note that the plan needs them."""
+        """Return whether there are ``amount`` copies of a node, and record that the plan needs them."""
         if self._endless(node):
             return True
         if node in self._least:

@@ -21,8 +21,8 @@ Barred = Callable[[Units, Units], Units]
 class Question(NamedTuple):
     """The data that constraints depend on.
 
-    ``rate`` and ``price`` return the success rate and the price of a unit, ``None`` where it is not known,
-    ``needs`` and ``gives`` its preconditions and add effects.
+    Four fields are functions of a unit id: ``rate`` and ``price`` return its success rate and price, ``None``
+    where unknown; ``needs`` and ``gives`` return its preconditions and add effects.
     """
 
     network: Network
@@ -67,14 +67,15 @@ class Meaning(NamedTuple):
 
     Attributes:
         removed: Units that the tree does not have.
-        wanted: Each entry lists alternatives, which are lists of sets. For one alternative of each entry, the
-            tree has a unit of each set.
+        wanted: Requirements. Each is a list of alternatives, of which the tree has to satisfy one. An
+            alternative is a list of sets of units, and the tree has to have a unit of each set.
         things: Sets of units, each with an amount from 0; the tree uses a thing if it has one of its units.
-        max_sum: The amounts of the things that the tree uses add up to this at most.
-        never: No tree satisfies the constraint.
+        max_sum: The greatest sum of the amounts of the things that a tree may use; ``None`` is no limit.
+        never: Whether no tree satisfies the constraint.
         barred: A function of two sets of units. It returns units that are in no tree with all of the first
             set and none of the second.
-        limits: Each entry has amounts of units, from 0, and the greatest sum that a tree may have.
+        limits: Further limits, each as the amounts of units, from 0, and the greatest sum that a tree may
+            have.
     """
 
     removed: Units = frozenset()
@@ -89,8 +90,8 @@ class Meaning(NamedTuple):
 class Constraint(NamedTuple):
     """A ready-made constraint: the types of its values by name (``list`` is of texts), and its meaning.
 
-    ``removes`` says that it only removes units. ``places`` returns what the constraint reads of the sources
-    of a unit; ``None`` where it reads no sources.
+    ``removes`` says that the constraint only removes units. ``places`` returns the parts of a unit's sources
+    that the constraint reads; it is ``None`` where the constraint reads no sources.
     """
 
     values: Mapping[str, type]
@@ -100,7 +101,11 @@ class Constraint(NamedTuple):
 
 
 def meaning(rule: Rule, question: Question) -> Meaning:
-    """Return the meaning of a constraint with its values, of the claims about user rules, or of steps."""
+    """Return the meaning of a rule of a certificate.
+
+    A rule is a ready-made constraint with its values, claims about user rules (:data:`OWN`), or units that
+    every tree has (:data:`ALL_STEPS`).
+    """
     if rule["rule"] == OWN:
         return own(rule)
     if rule["rule"] == ALL_STEPS:
@@ -109,7 +114,7 @@ def meaning(rule: Rule, question: Question) -> Meaning:
 
 
 def looked_at(rule: Rule, network: Network) -> list[list[str]] | None:
-    """Return the sources of each unit that a constraint reads; ``None`` where it reads no sources."""
+    """Return for each unit the sources that a constraint reads; ``None`` where it reads no sources."""
     places = None if rule["rule"] in {OWN, ALL_STEPS} else LIBRARY[rule["rule"]].places
     if places is None:
         return None
@@ -165,10 +170,12 @@ def _at_least_videos(question: Question, least_videos: int) -> Meaning:
 
 
 def _motion_only_with(question: Question, tied_motion: str, tied_utensil: str) -> Meaning:
+    """Remove the units with the motion that do not touch the utensil."""
     return Meaning(question.with_motion(tied_motion) - question.touching(question.labelled(tied_utensil)))
 
 
 def _never_heated(question: Question, unheated_ingredient: str, heats: list[str]) -> Meaning:
+    """Remove the units with a motion of ``heats`` that have the ingredient in one of their inputs."""
     network, hot = question.network, frozenset(heats)
     tainted = frozenset(question.made_with([unheated_ingredient]))
     heating = (unit for unit, motion in enumerate(network.motions) if motion in hot)
@@ -244,11 +251,11 @@ def _not_both_motions(question: Question, one_motion: str, other_motion: str) ->
 
 
 def _before(question: Question, earlier_motion: str, later_motion: str) -> Meaning:
-    """Forbid a unit with the later motion to run on anything made without the earlier motion.
+    """Forbid units with the later motion that need no node made with or after the earlier motion.
 
-    The nodes that a tree's certain units can make without the earlier motion are *early*. Any other node
-    becomes late only through a possible unit that makes it, and that either has the earlier motion or needs
-    a late node; the order of execution decides.
+    On a branch, the nodes that the used units can make without the earlier motion are *early*. Any other node
+    becomes late only through a unit that makes it, is not excluded, and either has the earlier motion or
+    needs a late node. A unit with the later motion is barred if it needs no late node.
     """
     network, needs, gives = question.network, question.needs, question.gives
     first = question.with_motion(earlier_motion)
@@ -264,6 +271,7 @@ def _before(question: Question, earlier_motion: str, later_motion: str) -> Meani
         return available
 
     def barred(used: Units, without: Units) -> Units:
+        """Return the units with the later motion that need no late node."""
         available = early(used)
         late: set[int | None] = set()
         stack = list(first - without)
@@ -282,10 +290,10 @@ OWN = "own"  # in place of a constraint's name: user rules
 
 
 def own(rule: Rule) -> Meaning:
-    """Return the meaning of claims about user rules: no tree has all units of a set and none of another.
+    """Return the meaning of claims about user rules: no tree has all units of one set and none of another.
 
-    Limits are claims, too. On a branch, unit propagation applies: where all units of the first set but one
-    are used and the units of the second set are excluded, that one is barred.
+    Limits are claims, too. On a branch, unit propagation bars a unit: it is the only unit of the first set
+    that is not used, and all units of the second set are excluded.
     """
     claims = [(frozenset(used), frozenset(without)) for used, without in rule["claims"]]
     removed = [used for used, without in claims if len(used) == 1 and not without]

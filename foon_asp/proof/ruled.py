@@ -21,18 +21,19 @@ class Limit(NamedTuple):
 class Ruled:
     """Constraints as nodes, steps and limits, numbered after the nodes and the units of a network.
 
-    Units make the nodes in ``gives``, and need those in ``needs``, in addition to their own. A step makes its
-    node once all nodes that it needs are there, and costs nothing; ``steps`` maps it to its needs and its
-    node. It is used where a unit needs its node, or the node is a goal. ``makers`` are the units and steps
-    that make each node.
+    ``gives`` and ``needs`` map a unit to the additional nodes that it makes and needs. A step makes its node
+    once all nodes that it needs are available, and costs nothing; ``steps`` maps it to its preconditions and
+    its node. A tree uses a step if one of its units needs the step's node, or if this node is a goal.
+    ``makers`` maps each additional node to the units and steps that make it.
 
     A tree that keeps to the constraints has no unit of ``removed``, reaches the nodes ``goals``, and stays
-    within each of the ``limits``. Where ``never`` is not empty, there is no such tree. ``barred`` tells
-    further units that no tree has (:class:`Meaning`). A limit has the number of its constraint; limits of
-    constraints that may have several are numbered after all constraints.
+    within each of the ``limits``. If ``never`` is not empty, there is no such tree. ``barred`` has functions
+    that find further units that no tree has (:class:`Meaning`). A limit has the number of its constraint;
+    limits of constraints that may have several are numbered after all constraints.
     """
 
     def __init__(self, meanings: Sequence[Meaning], first_node: int, first_step: int) -> None:
+        """Compile the meanings of constraints into new nodes, steps and limits."""
         self.removed: Units = frozenset().union(*(meaning.removed for meaning in meanings))
         self.never = {index for index, meaning in enumerate(meanings) if meaning.never}
         self.barred: dict[int, Barred] = {p: m.barred for p, m in enumerate(meanings) if m.barred}
@@ -63,9 +64,9 @@ class Ruled:
         self.limits.update((len(meanings) + number, Limit(*limit)) for number, limit in enumerate(several))
 
     def bars(self, used: Units, without: Units) -> dict[int, Units]:
-        """Return by constraint the barred units.
+        """Return the barred units of each constraint, by its number.
 
-        No tree with the used units and none of ``without`` has a barred unit.
+        No tree with all used units and none of ``without`` has a barred unit.
         """
         return {number: barred(used, without) for number, barred in self.barred.items()}
 
@@ -92,11 +93,13 @@ class Ruled:
         return units.union(steps)
 
     def _node(self) -> int:
+        """Add a node, and return its number."""
         node = self._first_node + len(self.makers)
         self.makers[node] = []
         return node
 
     def _step(self, needs: Sequence[int], node: int) -> int:
+        """Add a step that makes a node from others, and return its number."""
         step = self._first_step + len(self.steps)
         self.steps[step] = needs, node
         self.makers[node].append(step)
@@ -108,9 +111,9 @@ class Ruled:
             self.makers[node].append(unit)
 
     def _thing(self, units: Units) -> int:
-        """Return the member that counts for a set of units.
+        """Return the member that counts once for a set of units.
 
-        The only unit, or a new step that all of them need.
+        It is the only unit of the set, or a new step that all units of the set need.
         """
         if len(units) == 1:
             (only,) = units

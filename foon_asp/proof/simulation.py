@@ -26,10 +26,10 @@ class Obstacle(NamedTuple):
     """Why a tree does not execute: the position of a unit in the tree (from 0) and an input it lacks.
 
     ``unit`` is ``None`` when every unit runs and a goal is still missing; ``missing`` is then the goal.
-    ``cycle`` has the positions of a cycle of units that ``unit`` waits for: each of them waits for an output
-    of the next, and the last for one of the first. If it is empty, ``unit`` needs, perhaps through other
-    units, an input that no unit of the tree makes. ``used_up_by`` are the positions of the steps of a plan
-    that use up the copies there are, and ``amount`` is how many copies are needed.
+    ``cycle`` has the positions of a cycle of units that ``unit`` waits for: each waits for an output of the
+    next one, and the last for an output of the first. If the cycle is empty, ``unit`` needs, perhaps through
+    other units, an input that no unit of the tree makes. In a plan, ``used_up_by`` are the positions of the
+    steps that used up copies of ``missing``, and ``amount`` is the number of copies needed.
     """
 
     unit: int | None
@@ -42,9 +42,9 @@ class Obstacle(NamedTuple):
 class Simulation(NamedTuple):
     """The result of a simulation of a tree.
 
-    ``verdict`` tells how the tree executes. ``order`` has positions in the tree, in an order that executes,
-    as far as one does. ``as_listed`` is what stops the listed order, ``obstacle`` what stops every order;
-    each is ``None`` if nothing does.
+    ``verdict`` tells how the tree executes. ``order`` has positions in the tree, in an executable order;
+    units that cannot run are omitted. ``as_listed`` is the obstacle of the listed order, and ``obstacle``
+    that of every order; ``None`` without an obstacle.
 
     Example:
         >>> problem = foon_asp.load().problem("macaroni")
@@ -78,8 +78,9 @@ def simulate(
 ) -> Simulation:
     """Execute the units of a tree from the kitchen, first as listed, then in any order that works.
 
-    Items are not consumed. The tree executes when all of its units do and all goals are then available. Below
-    level 3 the ``network`` gives the units that each unit stands for, and so its preconditions and effects.
+    Items are not consumed. The tree executes if all its units run and all goals are then available. Below
+    level 3, a unit stands for several units of the ``network`` of level 3, which decide its preconditions and
+    add effects.
     """
     needs = [needed_inputs(unit, containers, utensils, network) for unit in tree]
     gives = [given_outputs(unit, containers, utensils, network) for unit in tree]
@@ -120,6 +121,7 @@ def simulate(
 
 
 def _missing_goal(goals: tuple[ObjectNode, ...], available: set[ObjectNode]) -> Obstacle | None:
+    """Return the first goal that is not available as an obstacle; ``None`` if all are available."""
     missing = next((goal for goal in goals if goal not in available), None)
     return None if missing is None else Obstacle(None, missing)
 
@@ -130,7 +132,7 @@ def _cycle(
     waiting: Sequence[int],
     available: set[ObjectNode],
 ) -> tuple[int, ...]:
-    """Return a cycle of units that the first waiting one waits for, by depth-first search; else empty."""
+    """Return the positions of a cycle of units that the first waiting unit waits for; empty without one."""
     makers: dict[ObjectNode, list[int]] = {}
     for position in waiting:
         for node in gives[position]:

@@ -1,4 +1,4 @@
-"""Check, for certificates, that the stand-ins of a network are those of its table.
+"""Check, for certificates, that a network has the stand-ins of its table.
 
 docs/stand-ins.md has the definition, and the argument why no other stand-in can be in a best tree. The code
 that makes stand-ins is not used here: the prices are computed anew.
@@ -24,9 +24,10 @@ class Makes(NamedTuple):
 
 
 class Claim(NamedTuple):
-    """The claim about stand-ins: whether dissimilarity comes first, and a lower bound on it.
+    """The part of a claim that concerns stand-ins.
 
-    ``bound`` is ``None`` where there is no tree, or the claim does not bound dissimilarity.
+    It says whether dissimilarity is the first objective, and has a lower bound on dissimilarity. ``bound`` is
+    ``None`` where there is no tree, or where the claim does not bound dissimilarity.
     """
 
     by_dissimilarity: bool
@@ -46,7 +47,10 @@ def stand_in_prices(table: StandInTable) -> list[list[str]]:
 
 
 def price_of(table: StandInTable, serving: ObjectNode, served: ObjectNode) -> Fraction | None:
-    """Return the price of a stand-in, ``None`` where the table has none; all edits are priced one by one."""
+    """Return the price of using ``serving`` in place of ``served``; ``None`` where the table forbids it.
+
+    The price is the table's price of the pair of nodes, or else the sum of the prices of all differences.
+    """
     if (serving, served) in table.pairs:
         return table.pairs[serving, served]
     prices: list[Fraction | None] = []
@@ -78,12 +82,12 @@ def price_of(table: StandInTable, serving: ObjectNode, served: ObjectNode) -> Fr
 def stand_in_fault(
     network: Network, table: StandInTable, makes: Makes, goals: Sequence[int], claim: Claim
 ) -> str | None:
-    """Return what is wrong with the stand-ins of a network; ``None`` if they are those of its table.
+    """Return the first fault of the stand-ins of a network; ``None`` if they agree with its table.
 
     Each stand-in has to have a price, and to serve a node that cannot be made without stand-ins. No stand-in
-    may be missing, with two exceptions where ``claim`` is by dissimilarity: those that cost more than a free
-    node in the same place, and those that lead to more than ``claim.bound``. ``goals`` are all nodes that
-    every tree makes or takes.
+    may be missing. If ``claim`` is by dissimilarity, two kinds may be missing: stand-ins that cost more than
+    a free node in the same place, and stand-ins that lead to more than ``claim.bound``. A free node can be
+    made without stand-ins. ``goals`` are all nodes that every tree makes or takes.
     """
     objects = network.objects
     listed: set[tuple[int, int]] = set()
@@ -126,9 +130,14 @@ def _bare(label: str) -> str:
 
 
 class _Servers:
-    """The nodes that stand in for others; with ``nearest``, only those no more expensive than a free node."""
+    """The nodes that may stand in for others, by a table.
+
+    ``free`` are the nodes that can be made without stand-ins. With ``nearest``, a node that costs more than
+    the cheapest free node is left out.
+    """
 
     def __init__(self, network: Network, table: StandInTable, free: Collection[int], nearest: bool) -> None:
+        """Index the nodes of the network by label and by spelling; prices are computed later."""
         self.free, self.nearest = free, nearest
         self._network, self._table = network, table
         self._by_label: dict[str, list[int]] = {}
@@ -140,7 +149,7 @@ class _Servers:
         self._of: dict[int, dict[int, Fraction]] = {}
 
     def of(self, served: int) -> dict[int, Fraction]:
-        """Return the serving nodes, by id, with their prices."""
+        """Return the nodes that may serve for a node, by id, with their prices."""
         if served not in self._of:
             objects = self._network.objects
             node = objects[served]
@@ -156,7 +165,7 @@ class _Servers:
         return self._of[served]
 
     def _candidates(self, node: ObjectNode) -> Iterator[int]:
-        """Yield what may be used in place of a node: nodes of its label, and those of pairs of the table."""
+        """Yield the nodes to be priced: those whose label is spelled alike, and those paired by the table."""
         yield from self._spelled[_bare(node.label)]
         for serving, served in self._table.pairs:
             if served == node.label and isinstance(serving, str):
@@ -168,7 +177,7 @@ class _Servers:
 
 
 def _least(network: Network, servers: _Servers, goals: Sequence[int], makes: Makes) -> dict[int, Fraction]:
-    """Return a lower bound on the dissimilarity of making each node; free nodes have none.
+    """Return a lower bound on the dissimilarity of making each node; 0 for nodes that need no stand-in.
 
     A unit costs at least as much as its most expensive input; a stand-in adds its price.
     """

@@ -15,7 +15,7 @@ ToolName = str | ObjectNode
 
 
 class Tool(NamedTuple):
-    """One tool or vessel: the ``number``-th, from 1, of its ``name``, a label or an object node."""
+    """One tool or vessel: the ``number``-th (from 1) of a ``name``, which is a label or an object node."""
 
     name: ToolName
     number: int
@@ -33,7 +33,7 @@ class TimedStep(NamedTuple):
     """A scheduled step: its times, its agent and its tools.
 
     ``start`` and ``end`` are in seconds. ``agent`` is a number from 1, ``None`` where nobody has to stand by.
-    ``tools`` are in use by it alone, in the order of the unit's objects.
+    ``tools`` are used only by this step while it runs; they are in the order of the unit's objects.
     """
 
     start: Fraction
@@ -45,8 +45,8 @@ class TimedStep(NamedTuple):
 class Means(NamedTuple):
     """The resources of a schedule.
 
-    ``durations`` are those of motions. ``tools`` maps some tools to their number, ``None`` for an unlimited
-    number. Of other utensils there is one each.
+    ``durations`` are those of motions. ``tools`` maps tools to their number, ``None`` for an unlimited
+    number. There is one of each utensil that ``tools`` omits.
     """
 
     durations: Mapping[str, Duration]
@@ -65,9 +65,10 @@ class Means(NamedTuple):
         return label in self.tools and self.tools[label] is None
 
     def name(self, node: ObjectNode, label: str) -> ToolName:
-        """Return the name by which a tool with a label, which is or contains a node, is counted.
+        """Return the name under which a tool is counted.
 
-        Tools with contents are counted by their contents.
+        ``label`` is the label of the tool, and ``node`` is the tool or an object in it. The name is the node
+        or the label if ``tools`` lists it. Otherwise, a tool with contents is named by its contents.
         """
         if node in self.tools:
             return node
@@ -105,7 +106,10 @@ class ToolNeed(NamedTuple):
 
 
 def tools_asked(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[str, ToolNeed]:
-    """Return the tools a unit needs by label: its utensils, and those that its objects are in, on or at."""
+    """Return the tools that a unit needs, by label.
+
+    They are its utensils, and the tools that its objects are in, on or at.
+    """
     needed, _, made = Executions(problem).of(unit)
     needs: dict[str, ToolNeed] = {}
     nodes = (*dict.fromkeys(unit.inputs), *unit.outputs)
@@ -128,11 +132,11 @@ def tools_asked(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[st
 def timetable_fault(
     problem: Problem, plan: Sequence[FunctionalUnit], steps: Sequence[TimedStep], means: Means
 ) -> str | None:
-    """Return what is wrong with a schedule of a plan, ``None`` where nothing is.
+    """Return the first fault of a schedule of a plan in words; ``None`` without one.
 
-    At each moment there has to be a copy for each step that takes one, nobody may do two things, and each
-    tool is at one step, in the state in which an earlier one left it or as the kitchen has it. The problem
-    has to be one whose plans can be replayed.
+    At each moment, there have to be enough copies for all running steps, and each agent and each tool may be
+    at only one step. A tool has to be in the state in which an earlier step left it, or as the kitchen has
+    it. Items of the problem have to be used up (:func:`foon_asp.proof.replay.replayable`).
     """
     if len(steps) != len(plan):
         return f"there are {len(plan)} steps, and times for {len(steps)}"
@@ -164,7 +168,7 @@ class _Run:
     def fault(self) -> str | None:
         """Return the first fault of the schedule in words; ``None`` without one.
 
-        Steps that end at a time end before others start at it.
+        At the same time, ends of steps come before starts of steps.
         """
         events = [(step.end, False, number) for number, step in enumerate(self._steps)]
         events += [(step.start, True, number) for number, step in enumerate(self._steps)]
@@ -198,7 +202,7 @@ class _Run:
         self._working.update(dict.fromkeys(hands, number))
 
     def _end(self, number: int) -> None:
-        """End a step: what it adds is there, and its tools are free again."""
+        """End a step: add its outputs, and release its tools and its agent."""
         unit, step = self._plan[number], self._steps[number]
         needed, consumes, made = self._executions.of(unit)
         for node, amount in needed.items():
@@ -211,7 +215,7 @@ class _Run:
             self._working.pop(hand, None)
 
     def _wrong_tools(self, unit: FunctionalUnit, tools: Sequence[Tool]) -> Iterator[str]:
-        """Yield the faults of the tools of a step at its start."""
+        """Yield each fault of the tools with which a step starts."""
         problem, means = self._problem, self._means
         needs, needed = tools_asked(problem, means, unit), self._executions.of(unit).preconditions
         brought = Counter(tool.label for tool in tools)
@@ -238,5 +242,5 @@ class _Run:
 
 
 def _hands(step: TimedStep) -> list[int | Tool]:
-    """Return the resources that a step occupies: its tools and its agent."""
+    """Return the resources that a step occupies: its tools, and its agent as a number."""
     return [*step.tools] + ([] if step.agent is None else [step.agent])

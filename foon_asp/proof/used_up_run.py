@@ -1,8 +1,8 @@
 """Search for an order in which a tree with consumable items runs, each of its steps once.
 
 Whether each of a multiset of steps can be done once is a question about the firing sequences of a Petri net.
-Where some node is used up more often than it is made, there is no such sequence; otherwise it is searched
-for, depth first.
+If more copies of some node are used up than exist and are made, there is no such sequence. Otherwise, the
+sequence is searched for, depth first.
 """
 
 from collections import Counter
@@ -18,9 +18,9 @@ from foon_asp.proof.replay import Shortage
 class UsedUpRun(NamedTuple):
     """The result of a search for an order of a tree with consumable items.
 
-    ``order`` has positions in the tree, from 0, in an order that runs: the listed order, if it runs. ``None``
-    where no order runs, which is then ``proved``, or where the search was given up. ``shortage`` is then the
-    copy that is missing.
+    ``order`` has the positions of the units in the tree, from 0, in an order that runs; it is the listed
+    order if this runs. ``order`` is ``None`` if no order runs (``proved`` is true), or if the search was
+    given up (``proved`` is false). ``shortage`` is then the copy that is missing.
     """
 
     order: tuple[int, ...] | None
@@ -36,9 +36,9 @@ class UsedUpRun(NamedTuple):
 def used_up_run(problem: Problem, tree: Iterable[FunctionalUnit]) -> UsedUpRun:
     """Return an order in which each step of a tree runs once, from the kitchen to the goals.
 
-    Items are used up as the problem says. Where its items last, the rule of docs/plans.md decides, and
-    kitchen items never run out. A unit that is listed several times is as many steps. Below level 3 nothing
-    is searched, since consumption depends on contents.
+    Items are used up as the problem says. In a problem whose items last, the rule of docs/plans.md says what
+    is used up, and kitchen items never run out. A unit that is listed several times is executed as many
+    times. Below level 3 nothing is searched, since consumption depends on contents.
 
     Parameters:
         problem: The problem that the tree is for.
@@ -77,6 +77,7 @@ def _shortage_as_listed(
     copies, consumers = dict(stock), dict[ObjectNode, list[int]]()
 
     def missing(step: int | None, required: Mapping[ObjectNode, int]) -> Shortage | None:
+        """Return the shortage of a step or, for ``None``, of the goals; ``None`` if nothing is missing."""
         for node, amount in required.items():
             if copies.get(node, 0) < amount:
                 return Shortage(step, node, tuple(consumers.get(node, ())), amount)
@@ -97,7 +98,7 @@ def _shortage_as_listed(
 def _overdrawn(
     steps: Sequence[Execution], stock: Mapping[ObjectNode, int], goals: Mapping[ObjectNode, int]
 ) -> Shortage | None:
-    """Return the first copy that is missing in every order, because more are used up than there ever are."""
+    """Return the first copy that is missing in every order: more copies are used up than exist in total."""
     copies = dict(stock)
     for step in steps:
         for node, amount in step.adds.items():
@@ -118,13 +119,14 @@ def _overdrawn(
 class _OrderSearch:
     """A depth-first search for an order of steps, the earliest listed step first.
 
-    ``looks_left`` is the remaining budget of steps looked at; at 0 the search was given up. ``dead_end`` is
-    the copy missing after the longest partial order.
+    ``looks_left`` is the number of steps that the search may still examine; at 0, the search is given up.
+    ``dead_end`` is the copy that was missing after the longest partial order.
     """
 
     def __init__(
         self, steps: Sequence[Execution], copies: Counter[ObjectNode], goals: Mapping[ObjectNode, int]
     ) -> None:
+        """Make all steps wait, and count how many copies of each node they use up and read."""
         self._steps, self._copies, self._goals = steps, copies, goals
         self.looks_left = 100_000  # some 50 ms; no tree of the corpus takes 1,000
         self.dead_end: Shortage | None = None
@@ -142,7 +144,7 @@ class _OrderSearch:
                 self._most_read[node] = max(self._most_read[node], read)
 
     def order(self) -> tuple[int, ...] | None:
-        """Return an order that runs, where no node is overdrawn; ``None`` where none is found."""
+        """Return an order that runs; ``None`` where none is found. No node may be overdrawn."""
         done: list[int] = []
         dead: set[int] = set()  # what was done where no order of the others was found
         choices, longest = [self._ready(dead)], -1
@@ -166,7 +168,11 @@ class _OrderSearch:
         return None
 
     def _ready(self, dead: set[int]) -> Iterator[int]:
-        """Yield the steps that can be next, up to one that leaves enough copies for all waiting steps."""
+        """Yield the waiting steps that can be next.
+
+        Stop after a step that leaves enough copies for all waiting steps: if no order continues with this
+        step, none continues with another one.
+        """
         end = len(self._steps)
         step = end if self._done in dead else self._next[end]
         while step != end and self.looks_left > 0:
@@ -221,7 +227,7 @@ class _OrderSearch:
 
 
 def _reads(step: Execution) -> Iterator[tuple[ObjectNode, int]]:
-    """Yield the nodes of which a step leaves copies that it needs, with their number."""
+    """Yield each node of which a step needs more copies than it uses up, with the difference."""
     for node, amount in step.preconditions.items():
         if amount > step.consumes.get(node, 0):
             yield node, amount - step.consumes.get(node, 0)

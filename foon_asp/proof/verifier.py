@@ -2,15 +2,15 @@
 
 docs/dev/certificates.md describes certificates and proves that what passes here is true. In short: take a set
 T of object nodes with a goal in it (a *cut*). The first unit of a tree that makes a node of T needs no node
-of T, so every tree uses one of the units that make a node of T and need none: the *members* of T. Positive
-weights on cuts that overload no unit (those of its cuts add up to at most its cost) therefore add up to a
-lower bound on every tree's cost. A cut without members shows that there is no tree.
+of T. So every tree uses one of the *members* of T: the units that make a node of T and need no node of T. Now
+give each cut a positive weight such that for every unit, the weights of the cuts that it is a member of add
+up to at most its cost. Then the sum of all weights is a lower bound on every tree's cost. A cut without
+members shows that there is no tree.
 
 Weights and costs have one part for each objective and are compared objective by objective, like words. The
-part for ``success`` is a sum of ``e * -log(rate)`` with rational ``e``; its sign is found by bounds of the
-logarithms, and where these are too close, by comparing the product of ``rate ** e`` with 1 in whole
-numbers. This module imports the standard library and the plain network, and nothing of the rest of the
-package.
+part for ``success`` is a sum of ``e * -log(rate)`` with rational ``e``. Its sign is found by bounds of the
+logarithms. Where these are too close, the product of ``rate ** e`` is compared with 1 in whole numbers. This
+module imports the standard library and the plain network, and nothing of the rest of the package.
 """
 
 import hashlib
@@ -58,14 +58,19 @@ _SURROGATE = re.compile("[\ud800-\udfff]")
 
 
 class CertificateLimits(NamedTuple):
-    """Limits beyond which a certificate, which may come from a stranger, is refused rather than checked.
+    """Limits on certificates, which may come from strangers; a certificate beyond a limit is refused.
 
-    ``letters``, ``brackets``: characters of the file, and lists and objects in it.
-    ``steps``: a look at a unit is one; adding and comparing numbers takes more.
-    ``steps_each``: additional steps for each unit and object node of the network.
-    ``rules`` of a claim. ``rule_steps``: for each unit and object node that a rule is checked against.
-    ``digits`` of a fraction that is read. ``sum_bits`` of a sum of fractions. ``product_bits`` of a product
-    of rates. ``written_bits`` of what a tree costs: Python writes numbers of up to 4,300 digits.
+    Attributes:
+        letters: Characters of the file.
+        brackets: Lists and objects in the file.
+        steps: Steps of the check. A look at a unit is one step; arithmetic takes more.
+        steps_each: Additional steps for each unit and object node of the network.
+        rules: Rules of a claim.
+        rule_steps: Steps for each unit and object node that a rule is checked against.
+        digits: Digits of a fraction that is read.
+        sum_bits: Bits of a sum of fractions.
+        product_bits: Bits of a product of rates.
+        written_bits: Bits of the cost of a tree; Python writes numbers of up to 4,300 digits.
     """
 
     letters: int = 16_000_000
@@ -100,9 +105,9 @@ TREE_FORM = Form("foon-asp certificate", 5, CERTIFICATE_KEYS)
 class Subject(NamedTuple):
     """The data that a certificate is about; ``kitchen`` are object node ids.
 
-    ``stated`` are digests by name that are not computed from the other fields; those named in ``trusted``
-    were never computed. ``stand_ins`` is the table of the stand-ins that the network has, ``None`` without.
-    ``amounts`` count in plans, whose certificates state them.
+    ``stated`` has digests by name that replace those computed from the other fields. ``trusted`` names those
+    stated digests that nobody computed. ``stand_ins`` is the table by which stand-ins were added to the
+    network, ``None`` without stand-ins. ``amounts`` matter only for plans.
     """
 
     network: Network
@@ -118,8 +123,8 @@ class Subject(NamedTuple):
     def digests(self, rules: Iterable[Rule] = ()) -> dict[str, str]:
         """Return the SHA-256 digests of the data, by name, as a certificate states them.
 
-        Digests in ``stated`` are not computed. The digest of sources covers only the places that the rules
-        look at.
+        A digest in ``stated`` is returned as it is. The digest of sources covers only the parts of sources
+        that the rules read.
         """
         return {
             name: self.stated.get(name) or _digest(value()) for name, value in self._described(rules).items()
@@ -169,7 +174,7 @@ class LimitError(RefusedError):
 class Trusted(NamedTuple):
     """A statement taken on trust: the costs of units by a user measure.
 
-    The ``rules`` are stated to give these ``costs`` of units, by id, and no negative cost of any unit;
+    The statement is that the ``rules`` give the units these ``costs``, by id, and no unit a negative cost.
     ``sha256`` is the digest of the rules.
     """
 
@@ -183,8 +188,8 @@ class UsedUp(NamedTuple):
     """The statements about consumable items in a claim about plans.
 
     ``stock`` maps consumable kitchen items, by id, to their copies. ``stays`` maps labels, and object nodes
-    by id, to whether they stay when used, which overrides the rule. ``wanted`` maps goals to the copies that
-    are wanted, where that is not one.
+    by id, to whether they stay when used, which overrides the rule. ``wanted`` maps goals to the number of
+    copies wanted, if above 1.
     """
 
     stock: Mapping[int, int]
@@ -218,9 +223,9 @@ class Verified(NamedTuple):
 
 
 def load_certificate(file: Path) -> Any:
-    """Return the content of a certificate file, reading no more than a certificate may have.
+    """Return the content of a certificate file; no more than the greatest length of certificates is read.
 
-    Raises ``OSError`` and ``UnicodeDecodeError`` where it cannot be read, and else as
+    Raises ``OSError`` and ``UnicodeDecodeError`` where the file cannot be read, and otherwise as
     :func:`read_certificate`.
     """
     with file.open("rb") as stream:
@@ -270,10 +275,10 @@ def refusing_depth() -> Iterator[None]:
 
 @refusing_depth()
 def verify(certificate: Any, subject: Subject) -> Verified:
-    """Check a certificate of a tree against the data it speaks about.
+    """Check a certificate of a tree against its data.
 
     The time is linear in the number of cuts times the size of the network. Raises :class:`LimitError` where
-    it would be more than a few seconds longer than that of the digest of the network. Raises
+    the check would take more than a few seconds beyond the time for the digest of the network. Raises
     :class:`RefusedError` with the first fault that is found.
     """
     rules = read_frame(certificate, TREE_FORM, subject)
@@ -281,7 +286,7 @@ def verify(certificate: Any, subject: Subject) -> Verified:
 
 
 def read_frame(certificate: Any, form: Form, subject: Subject) -> tuple[Rule, ...]:
-    """Check that a certificate has a form, was not changed and is about the data; return its rules."""
+    """Check the form, the seal and the digests of a certificate; return its rules."""
     require(isinstance(certificate, dict), "expected an object with the keys of a certificate")
     require(certificate.get("format") == form.name, f"expected the format {form.name!r}")
     version = certificate.get("version")
@@ -302,12 +307,13 @@ def read_frame(certificate: Any, form: Form, subject: Subject) -> tuple[Rule, ..
 class Check:
     """One certificate, checked against its network.
 
-    A *member* is a unit, by its id, a kitchen item ``k``, by the number of units plus ``k``, or a step of a
-    constraint, numbered from the number of units and nodes on. Items are members only where the objective
-    ``kitchen`` counts them.
+    A *member* is a unit, a kitchen item or a step of a constraint. A unit has its id as number; item ``k``
+    has the number of units plus ``k``; steps are numbered from the number of units and nodes on. Items are
+    members only where the objective ``kitchen`` counts them.
     """
 
     def __init__(self, certificate: dict[str, Any], rules: tuple[Rule, ...], subject: Subject) -> None:
+        """Read objectives, costs, goals, rules and cuts of a certificate; its proof is read later."""
         network, kitchen, rates, utensils, prices = subject[:5]
         self.allowed = ALLOWED.steps + ALLOWED.steps_each * (len(network) + len(network.objects))
         self.steps = self.allowed  # that are left
@@ -363,7 +369,7 @@ class Check:
     def _check_stand_ins(self, least: Fraction | None) -> None:
         """Check the stand-ins of the network against their table.
 
-        ``least`` is the dissimilarity that no tree is claimed to fall below, ``None`` where no tree exists.
+        ``least`` is the claimed lower bound on the dissimilarity of trees, ``None`` where no tree exists.
         """
         if self.stand_ins is None:
             return
@@ -431,7 +437,11 @@ class Check:
         return self._complete(prices, len(self.network), "prices")
 
     def _each_price(self, unit_prices: UnitPrices | None) -> Sequence[Fraction | None]:
-        """Return the prices of units, their own or those of their motions; below level 3 the least."""
+        """Return the price of each unit: its own, or else that of its motion; ``None`` without a price.
+
+        Below level 3, it is the least price of the units of level 3 that the unit stands for; ``None`` if one
+        of them has no price.
+        """
         network = self.network
         if unit_prices is None:
             return [None] * len(network)
@@ -450,7 +460,7 @@ class Check:
         return prices
 
     def _complete(self, values: Sequence[Fraction | None] | None, count: int, what: str) -> list[Fraction]:
-        """Return the values, after checking that none is missing or below 0."""
+        """Return the values of ``count`` units; refuse missing values and values below 0."""
         require(values is not None, f"a claim needs {what}, but none are given")
         present = [value for value in values or () if value is not None]
         require(len(present) == count, f"a unit has none of the {what} that a claim needs")
@@ -542,7 +552,7 @@ class Check:
         return costs
 
     def _keep(self, units: frozenset[int]) -> None:
-        """Check a tree against the rules."""
+        """Refuse a tree that does not keep to the rules."""
         self._spend(len(self.ruled.makers) + len(self.network) * len(self.ruled.barred))
         self._spend(len(units) * len(self.ruled.limits))
         others = frozenset(range(len(self.network))) - units if self.rules else frozenset[int]()
@@ -550,7 +560,7 @@ class Check:
         require(fault is None, f"the tree {fault}")
 
     def _barred(self, number: int, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
-        """Return the units that a rule excludes from trees with the used members and none of ``without``."""
+        """Return the units barred by a rule: no tree with all ``used`` and none of ``without`` has them."""
         self._spend(len(self.network) + 5 * self.claimed)
         units = frozenset(member for member in used if member < len(self.network))
         return self.ruled.barred[number](units, without)
@@ -558,8 +568,8 @@ class Check:
     def _prove(self, proof: Any, least: Amount | None) -> None:
         """Check a proof, with its branches, that every tree costs at least ``least``.
 
-        ``None`` stands for a proof that no tree exists: all costs are 0 then, so weights that add up to
-        more than 0 are a contradiction.
+        If ``least`` is ``None``, the proof is that no tree exists. All costs are then 0, so weights that add
+        up to more than 0 are a contradiction.
         """
         nobody: frozenset[int] = frozenset()
         waiting: list[tuple[Any, frozenset[int], frozenset[int]]] = [(proof, nobody, self.ruled.removed)]
@@ -610,7 +620,7 @@ class Check:
         return actions
 
     def _enough(self, bound: Iterable[Amount], least: Amount | None) -> bool:
-        """Return whether a bound is at least ``least``; ``None`` asks for a bound above 0."""
+        """Return whether a bound is at least ``least``; if ``least`` is ``None``, whether it is above 0."""
         if least is None:
             return self.sign(self.sum(bound)) > 0
         return self.sign(self.sum([*bound, negative(least)])) >= 0
@@ -618,11 +628,11 @@ class Check:
     def _packed(
         self, weights: Any, limits: Any, used: frozenset[int], without: frozenset[int]
     ) -> tuple[Amount, Callable[[int], Amount]]:
-        """Return the sum of a cost partition, after checking it, and the reduced cost of each member.
+        """Check a cost partition; return its sum and a function that returns the reduced cost of a member.
 
-        A member that consumes from a limit may carry the weight of the limit for each unit it consumes; the
-        weight of the whole limit, less the amounts of used members, is then taken from the bound. Trees with
-        a member cost at least the sum and the reduced cost of the member.
+        A tree with a member costs at least the sum plus the reduced cost of the member. A limit may have a
+        weight, too. A member then carries this weight for each unit that it consumes from the limit. In
+        return, the weight of the remaining limit, after the used members, is subtracted from the sum.
         """
         total: Amount = {}
         carried: list[tuple[Amount, Mapping[int, Fraction]]] = []
@@ -649,9 +659,11 @@ class Check:
                     load[member] += scaled
 
         def load_of(member: int) -> Amount:
+            """Return the sum of the weights of a member's cuts."""
             return {key: Fraction(load.get(member, 0), scales[key]) for key, load in loads.items()}
 
         def allowed(member: int) -> Amount:
+            """Return the greatest load of a member: its cost, and the weights of limits that it carries."""
             # a member that is used anyway was paid for, and can carry nothing more
             capacity = {} if member in used else self.cost(member)
             if carried and member not in used:
@@ -684,8 +696,8 @@ class Check:
     def _rounded(self, amount: Amount, stated: Any) -> Amount:
         """Round up a bound to a stated common divisor of all costs.
 
-        It is rounded at the first objective whose stated divisor does not divide it. The parts after this
-        objective become 0, since no cost is below 0.
+        It is rounded at the first objective whose part is no multiple of the stated divisor. The parts after
+        this objective become 0, since no cost is below 0.
         """
         multiples = {name: read_rational(multiple) for name, multiple in read_object(stated).items()}
         require(multiples.keys() <= set(self.objectives), "a multiple is stated for another objective")
@@ -744,7 +756,7 @@ class Check:
                         yield unit
 
     def _preconditions(self, member: int) -> frozenset[int | None]:
-        """Return the preconditions of a unit or a step, with those by rules; an item has none."""
+        """Return the preconditions of a unit or a step, including those by rules; an item has none."""
         if member in self.ruled.steps:
             return frozenset(self.ruled.steps[member][0])
         if member >= len(self.network):
@@ -753,17 +765,23 @@ class Check:
         return self.needs(member).union(own) if own else self.needs(member)
 
     def _needs(self, unit: int) -> frozenset[int | None]:
-        """Return the preconditions of a unit; below level 3, those common to all units that it stands for."""
+        """Return the preconditions of a unit.
+
+        Below level 3, they are the common preconditions of all units of level 3 that the unit stands for.
+        """
         return frozenset.intersection(*(needed for needed, _ in self._details(unit)))
 
     def _gives(self, unit: int) -> frozenset[int | None]:
-        """Return the add effects of a unit; below level 3 those of any unit that it stands for."""
+        """Return the add effects of a unit.
+
+        Below level 3, they are the add effects of all units of level 3 that the unit stands for.
+        """
         return frozenset.union(*(made for _, made in self._details(unit)))
 
     def _details(self, unit: int) -> Iterator[tuple[frozenset[int | None], frozenset[int | None]]]:
-        """Yield preconditions and add effects of each unit that a unit stands for, at level 3 of itself.
+        """Yield preconditions and add effects of each unit of level 3 that a unit stands for.
 
-        Containers that a unit may skip are neither.
+        A unit of level 3 stands for itself. Containers that a unit may skip are omitted.
         """
         network = self.network
         whole = network.detailed or network
@@ -775,7 +793,8 @@ class Check:
     def _skipped(self, whole: Network, inputs: set[int]) -> set[int]:
         """Return the inputs of a unit that the rule ``implied`` takes as given.
 
-        These are utensils with exactly one ingredient that, located in the utensil, is another input.
+        An input is taken as given if it is a utensil with exactly one ingredient, and this ingredient,
+        located in the utensil, is another input.
         """
         nodes = [(o, whole.objects[o]) for o in inputs]
         return {
@@ -815,9 +834,9 @@ class Check:
         return cost
 
     def _cost_by(self, level: int, member: int) -> Fraction | None:
-        """Return the cost of a unit or an item by an objective, ``None`` if it is not counted.
+        """Return the cost of a unit or an item by an objective, ``None`` if the objective does not count it.
 
-        By ``success`` it is the exponent of a unit's rate.
+        By ``success``, it is the exponent of the unit's rate.
         """
         network, objective = self.network, self.objectives[level]
         item = member >= len(network)
@@ -877,7 +896,7 @@ class Check:
     ) -> Iterator[tuple[list[int], Amount]]:
         """Read the weights under a key of a proof.
 
-        The first ``numbers`` entries of each list name what is weighted.
+        The first ``numbers`` entries of each row are the numbers of the weighted condition.
         """
         for name, value in self.read_named(key, stated, numbers):
             weight = read(value)
@@ -951,8 +970,8 @@ class Check:
         """Return bounds of ``-log(rate)`` from below and above.
 
         Python's decimal logarithm is correctly rounded, so it is off by less than one unit of its last digit.
-        For a rate near 1, the logarithms of denominator and numerator share their first digits. So more are
-        computed: one for each three bits that are shared.
+        For a rate near 1, the logarithms of denominator and numerator share their first digits. So one more
+        digit is computed for each three bits that they share.
         """
         shared = (rate.denominator.bit_length() - (rate.denominator - rate.numerator).bit_length()) // 3
         precise = Context(prec=50 + min(shared, 400))
@@ -994,7 +1013,7 @@ class Check:
 
 
 def bit_length(value: Fraction) -> int:
-    """Return the length of a fraction."""
+    """Return the number of bits of a fraction, numerator and denominator together."""
     return value.numerator.bit_length() + value.denominator.bit_length()
 
 
@@ -1014,7 +1033,7 @@ def _described(network: Network) -> list[Any]:
 
 
 def _stated(prices: UnitPrices, network: Network) -> list[list[Any]]:
-    """Return the prices by motion, and those of single units by their id at level 3."""
+    """Return the prices by motion, and the prices of single units by their id at level 3."""
     ids = ((network.unit_id(unit), price) for unit, price in prices.units.items())
     single = sorted([unit, str(price)] for unit, price in ids if unit is not None)
     return [sorted([motion, str(price)] for motion, price in prices.motions.items()), single]
@@ -1064,6 +1083,7 @@ def read_number(value: Any, allowed: Container[int], what: str) -> int:
 
 
 def _names(value: Any) -> tuple[str, ...]:
+    """Read a list of different names, in order and without half letters."""
     names = read_list(value)
     require(all(isinstance(name, str) for name in names), "expected names")
     require(names == sorted(set(names)), "expected names in order, each of them once")
@@ -1081,6 +1101,7 @@ def read_numbers(value: Any, below: int, ascending: bool = True) -> list[int]:
 
 
 def _goal(value: Any, network: Network) -> int:
+    """Read a goal, given as id and text; return its id."""
     goal = read_object(value, ("id", "node"))
     (node,) = read_numbers([goal["id"]], len(network.objects))
     require(str(network.objects[node]) == goal["node"], "a goal is not the node of its id")
@@ -1116,7 +1137,7 @@ def read_rules(value: Any, units: int) -> tuple[Rule, ...]:
 def _own(rule: Rule, units: int) -> None:
     """Check the form of claims about user rules; the claims themselves are taken on trust.
 
-    A claim has the texts of the rules, their digests, and sets of units.
+    The claims consist of the texts of the rules, their digests, and sets of units.
     """
     read_object(rule, ("rule", "claims", "constants", "files", "library", "limits"))
     for key in ("constants", "library"):

@@ -1,13 +1,14 @@
 """Is a certificate of a plan right, where items are used up? Without a solver, a linear program or floats.
 
 docs/dev/certificates.md describes these certificates and proves that what passes here is true. In short: how
-often a plan executes each unit satisfies conditions that can be read from the network. Of every node no more
-copies are used up than come (its *balance*), and each cut before a goal, or before a unit that is executed,
-is crossed. As counts are whole, sums of balances can be rounded. A Farkas combination of these conditions,
-with weights from 0, bounds the cost of every plan: the right-hand sides, plus for each unit the least of its
-reduced cost over all the counts that it may have.
+often a plan executes each unit satisfies conditions that can be read from the network. No more copies of a
+node are used up than are initial or added (the *balance* of the node). For each cut before a goal, or before
+a unit that is executed, a member is executed. Counts are integers, so sums of balances can be rounded. A
+Farkas combination of these conditions, with weights from 0, bounds the cost of every plan. The bound is the
+sum of the right-hand sides plus, for each unit, the least of its reduced cost over all the counts that it may
+have.
 
-What becomes of the inputs of a unit, and whether a plan runs, is worked out here anew from the plain network.
+Which inputs a unit uses up, and whether a plan runs, is computed here anew from the plain network.
 """
 
 import math
@@ -56,7 +57,7 @@ _LEAF = {"weights", "before", "supply", "balance", "limits", "levels", "rounded"
 
 
 class Flow(NamedTuple):
-    """The preconditions of a unit, the nodes that it consumes and those that it adds, with their copies."""
+    """The object nodes that a unit needs, consumes and adds, each with the number of copies."""
 
     asks: Mapping[int, int]
     uses: Mapping[int, int]
@@ -68,7 +69,10 @@ Row: TypeAlias = tuple[Mapping[int, int | Fraction], int | Fraction]
 
 
 class Node(NamedTuple):
-    """A node of the branching, with its proof: bounds on the counts of units, and of items taken."""
+    """A node of the branching: its proof, and the least and greatest counts of its members, by member.
+
+    The count of an item is the number of its copies that are taken.
+    """
 
     proof: Any
     min_counts: Mapping[int, int]
@@ -107,6 +111,7 @@ class PlanCheck(Check):
     """
 
     def __init__(self, certificate: dict[str, Any], rules: tuple[Rule, ...], subject: Subject) -> None:
+        """Read the items of a certificate, and the parts that :class:`Check` reads; then its rounded sums."""
         items = read_object(certificate["items"], ("stock", "stays", "wanted", "amounts"))
         self.stock = _stock(items["stock"], subject.kitchen)
         self.stays_stated = _stays_stated(items["stays"], len(subject.network.objects))
@@ -123,7 +128,7 @@ class PlanCheck(Check):
     # --- what units do
 
     def _flow(self, unit: int) -> Flow:
-        """Return preconditions, consumption and add effects of a unit; inputs are never add effects."""
+        """Return preconditions, consumption and add effects of a unit; an input adds only its surplus."""
         network, inputs = self.network, self.network.inputs[unit]
         input_amounts, output_amounts = self.amounts.get(unit, ({}, {}))
         asks = {o: input_amounts.get(o, 1) for o in self.needs(unit) if o is not None}
@@ -145,6 +150,7 @@ class PlanCheck(Check):
         return frozenset(o for o, n in self.flow(unit).asks.items() if self._is_lacking(o, n))
 
     def _is_lacking(self, o: int, copies: int) -> bool:
+        """Return whether initial copies do not satisfy the need for a number of copies of a node."""
         if "kitchen" in self.objectives:
             return True
         return o not in self.endless and copies > self.stock.get(o, 0)
@@ -154,10 +160,11 @@ class PlanCheck(Check):
         return self.wanted_stated.get(goal, 1)
 
     def _kept(self, unit: int, o: int, amount: int, made: int) -> int:
-        """Return how many of the copies of an input stay when a unit has run.
+        """Return how many of the ``amount`` copies of an input remain after a unit has run.
 
-        The certificate may state it. Else, if an output has the label of the input, as many copies stay as
-        are made of the same node. Else, the rule for utensils and places decides.
+        The certificate may state this. Otherwise, an output with the label of the input decides: the copies
+        that the unit makes of the same node remain, at most ``amount``. Without such an output, the rule for
+        utensils and places decides.
         """
         objects, network = self.network.objects, self.network
         node = objects[o]
@@ -170,7 +177,7 @@ class PlanCheck(Check):
         return amount if self._stays(unit, node, outputs) else 0
 
     def _stays(self, unit: int, node: ObjectNode, outputs: Sequence[ObjectNode]) -> bool:
-        """Return whether an input of which no output has the label stays by the rule."""
+        """Return whether an input stays by the rule for utensils and places; no output has its label."""
         objects, network = self.network.objects, self.network
         if node.label in self.utensils:
             holds = any(contents.ingredients for contents in node.contents)
@@ -184,7 +191,8 @@ class PlanCheck(Check):
     def idle(self) -> frozenset[int]:
         """The units that no plan executes: removed by a rule, or with an unreachable precondition.
 
-        No node of ``unreached`` is initial, and every achiever of one has another as a precondition.
+        This holds because no node of ``unreached`` is initial, and each achiever of such a node is removed or
+        has a node of ``unreached`` as a precondition.
         """
         network = self.network
         stated = self.certificate["unreached"]
@@ -222,7 +230,7 @@ class PlanCheck(Check):
     # --- conditions on counts alone
 
     def balance(self, o: int) -> tuple[dict[int, int], int]:
-        """Return by how much each unit changes the copies of a node, and how many are wanted in the end."""
+        """Return each unit's net effect on the copies of a node, and the copies wanted in the end."""
         network = self.network
         read_number(o, range(len(network.objects)), "the id of a node in a balance")
         require(o not in self.endless, "what never runs out has no balance")
@@ -313,7 +321,8 @@ class PlanCheck(Check):
     def _prove(self, proof: Any, least: Amount | None) -> None:
         """Check for each objective that plans as good by earlier objectives cost at least ``least``.
 
-        ``None`` claims that there is no plan: all costs are 0 then, and bounds have to be above 0.
+        If ``least`` is ``None``, the proof is that no plan exists. All costs are then 0, and bounds have to
+        be above 0.
         """
         proofs = read_list(proof)
         levels = range(max(1, len(self.objectives)))
@@ -356,10 +365,9 @@ class PlanCheck(Check):
         self._require_enough(bound, level)
 
     def _cheapest(self, member: int, level: int, node: Node, conditions: "_Conditions") -> Amount | None:
-        """Return the least of the reduced cost of a member over the counts that it may have.
+        """Return the least reduced cost of a member over all counts that are possible; ``None`` without any.
 
-        ``None`` where it may have no count. The cost is linear in the count from 1 on, so only the ends
-        matter.
+        From 1 on, the cost is linear in the count, so only 0 and the ends of the range from 1 on matter.
         """
         low, high = node.min_counts.get(member, 0), self._max_count(member, level, node)
         if high is not None and high < low:
@@ -397,16 +405,17 @@ class PlanCheck(Check):
         return min(bounds, default=None)
 
     def _allowed(self, unit: int) -> Iterator[int]:
-        """Yield the bounds on the count of a unit by limits without negative amounts."""
+        """Yield an upper bound on the count of a unit for each limit without negative amounts."""
         for limit in self.ruled.limits.values():
             amount = limit.amounts.get(unit, 0)
             if amount > 0 and min(limit.amounts.values()) >= 0:
                 yield max(0, math.floor(limit.max_sum / amount))
 
     def _cap(self, unit: int, level: int, less: bool) -> int | None:
-        """Return a bound on the count of a unit in plans that cost at most the incumbent.
+        """Return an upper bound on the count of a unit in plans that cost at most the incumbent.
 
-        With ``less``, in plans that cost less.
+        With ``less``, in plans that cost less. ``None`` if an execution costs nothing, so that there is no
+        bound.
         """
         per_execution, max_cost = self.kept(unit, level), self.limit(level)
         if per_execution == 0:
@@ -419,7 +428,10 @@ class PlanCheck(Check):
         return {key: value for key, value in self._cost(member).items() if key[0] == level}
 
     def kept(self, member: int, level: int) -> Fraction:
-        """Return the cost of a member by an objective as one number; by success rounded down."""
+        """Return a lower bound on the cost of a member by an objective, as one number.
+
+        It is the exact cost, except for ``success``: there -log of the rate is rounded down.
+        """
         if self.objectives[level] != "success":
             return self.cost_by(member, level).get((level, None), Fraction(0))
         if member >= len(self.network):
@@ -428,7 +440,7 @@ class PlanCheck(Check):
         return Fraction(math.floor(LOGARITHM_SCALE * self.minus_log(self.rate(member))[0]), LOGARITHM_SCALE)
 
     def limit(self, level: int) -> Fraction:
-        """Return the greatest cost of plans by an objective as one number; by success rounded up."""
+        """Return the claimed least cost of plans by an objective as one number; by ``success`` rounded up."""
         assert self.least is not None
         stated = {rate: value for (at, rate), value in self.least.items() if at == level}
         if self.objectives[level] != "success":
@@ -468,7 +480,7 @@ class PlanCheck(Check):
         require(enough, "the weights do not add up to enough")
 
     def _whole(self, level: int) -> int | None:
-        """Return the common denominator of the costs of units by an objective; ``None`` if not known."""
+        """Return the common denominator of unit costs by an objective; ``None`` by success or measures."""
         objective = self.objectives[level]
         if objective == "success" or objective in self.measures:
             return None
@@ -482,12 +494,13 @@ class PlanCheck(Check):
 class _Conditions:
     """A Farkas combination: conditions with weights from 0, added up.
 
-    ``executed`` and ``used`` have the coefficients of each member per execution (or copy taken) and for being
-    used at all, with the sign reversed. ``constant`` is the right-hand side, and ``levels`` are the weights
-    of earlier objectives.
+    ``executed`` maps each member to its coefficient per execution (or per copy taken). ``used`` maps each
+    member to its coefficient for being used at all. Both have the sign reversed. ``constant`` is the
+    right-hand side, and ``levels`` has the weights of earlier objectives, each after the objective's number.
     """
 
     def __init__(self, check: PlanCheck, level: int, proof: Mapping[str, Any]) -> None:
+        """Read the weighted conditions of a proof for one objective, and add them up."""
         self.check, self.level, self.proof = check, level, proof
         self.constant: Amount = {}
         self.executed: dict[int, Amount] = {}
@@ -527,7 +540,10 @@ class _Conditions:
         return self.check.read_weights(key, self.proof.get(key, []), read, numbers)
 
     def _cross(self, cut: int, weight: Amount, holds: bool) -> None:
-        """Add the condition of a cut: a member is used, or a copy of an item in it is taken."""
+        """Add the condition of a cut: a member is used, or a copy of an item in it is taken.
+
+        Refuse the cut unless it ``holds`` a goal, or a precondition of the unit that it is before.
+        """
         check = self.check
         require(holds, f"cut {cut} holds neither a goal nor what the unit asks for")
         check.met.add(cut)
@@ -536,16 +552,17 @@ class _Conditions:
             self._bring(self.used if member < len(check.network) else self.executed, member, weight, -1)
 
     def _balance(self, o: int, weight: Amount) -> None:
-        """Add the balance of a node: no more copies are consumed than there are, and a goal keeps one."""
+        """Add the balance of a node: no more copies are consumed than exist, and the wanted ones are left."""
         changes, wanted = self.check.balance(o)
         self._demand(weight, wanted - self._initial(o, weight))
         for unit, change in changes.items():
             self._bring(self.executed, unit, weight, -change)
 
     def _supply(self, o: int, supplied: int, weight: Amount) -> None:
-        """Add the supply of a unit: before it is executed, there are the copies of a node that it needs.
+        """Add the supply of a unit: the copies of a node that it needs exist before it is executed.
 
-        These copies are initial, or other units add them: the unit adds none before its first execution.
+        These copies are initial, or other units add them, since the unit adds none before its first
+        execution.
         """
         check, network = self.check, self.check.network
         read_number(o, range(len(network.objects)), "the id of a node in a supply")
@@ -557,7 +574,10 @@ class _Conditions:
                 self._bring(self.executed, unit, weight, -added)
 
     def _initial(self, o: int, weight: Amount) -> int:
-        """Return the initial copies of a node; if they have a price, they are brought as a member instead."""
+        """Return the initial copies of a node, as a constant.
+
+        With the objective ``kitchen``, taking them has a cost: then add the item as a member, and return 0.
+        """
         check = self.check
         initial = check.stock.get(o, 0)
         if "kitchen" in check.objectives and initial:
@@ -566,10 +586,11 @@ class _Conditions:
         return initial
 
     def _demand(self, weight: Amount, factor: int | Fraction) -> None:
-        """Add an amount to the right-hand side."""
+        """Add ``factor`` times a weight to the right-hand side."""
         self.constant = self._added(self.constant, weight, factor)
 
     def _bring(self, to: dict[int, Amount], member: int, weight: Amount, factor: int | Fraction) -> None:
+        """Add ``factor`` times a weight to the coefficient of a member."""
         to[member] = self._added(to.get(member, {}), weight, factor)
 
     def _added(self, amount: Amount, weight: Amount, factor: int | Fraction) -> Amount:
@@ -577,7 +598,10 @@ class _Conditions:
 
 
 def _round(coefficients: Mapping[int, Fraction], least: Fraction) -> Row:
-    """Return a sum that is rounded: counts are whole numbers from 0."""
+    """Return a condition rounded for counts that are integers from 0 (mixed-integer rounding).
+
+    It is the new coefficient of each unit, and the new lower bound on the sum, which was ``least``.
+    """
     fraction = least - math.floor(least)
     require(fraction > 0, "a sum is rounded that is whole")
 
@@ -606,7 +630,7 @@ def _stock(value: Any, kitchen: Collection[int]) -> dict[int, int]:
 
 
 def _amounts(value: Any, subject: Subject) -> dict[int, tuple[dict[int, int], dict[int, int]]]:
-    """Read the amounts of units by id, and of their inputs and outputs; they have to be those of the data."""
+    """Read the amounts of inputs and outputs by unit id; refuse amounts that differ from the data."""
     what = "units and the amounts of their inputs and outputs"
     stated: dict[int, tuple[dict[int, int], dict[int, int]]] = {}
     for row in read_list(value):

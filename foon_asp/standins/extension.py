@@ -21,8 +21,8 @@ def with_stand_ins(problem: Problem, table: StandInTable, everything: bool = Fal
     """Return a problem whose network also has stand-ins, each a unit with one input and one output.
 
     A stand-in uses one node in place of another that cannot be made from the kitchen. With ``everything``,
-    there is a stand-in for each such pair of nodes that the table has a price for. Otherwise there are only
-    those stand-ins that a tree of least dissimilarity can have (proof in docs/stand-ins.md).
+    each such pair of nodes with a price in the table has a stand-in. Otherwise, only the stand-ins that a
+    tree of least dissimilarity can have are added (proof in docs/stand-ins.md).
 
     Raises:
         UserError: below level 3, where items are used up, or if a unit has the motion of stand-ins.
@@ -53,7 +53,7 @@ def with_stand_ins(problem: Problem, table: StandInTable, everything: bool = Fal
 
 
 def _extended(network: Network, pairs: Sequence[Pair]) -> Network:
-    """Return a network with a unit after all others for each pair of a served and a serving node."""
+    """Append a stand-in unit per pair (served, serving); it makes the served node of the serving one."""
     keys = {
         (STAND_IN, frozenset((serving,)), frozenset((served,))): unit
         for unit, (served, serving) in enumerate(pairs, len(network))
@@ -71,7 +71,7 @@ def _extended(network: Network, pairs: Sequence[Pair]) -> Network:
 class _Nearest:
     """Search for the stand-ins that a tree of least dissimilarity can have.
 
-    ``available`` has a 1 for each node that can be made without stand-ins, by id.
+    ``available`` has an entry for each node, by id: 1 if the node can be made without stand-ins, else 0.
     """
 
     def __init__(self, problem: Problem, prices: NodePrices, available: bytearray) -> None:
@@ -95,7 +95,7 @@ class _Nearest:
         return [(served, serving) for served in needed for serving in self._servers[served]]
 
     def _of(self, served: int) -> dict[int, int]:
-        """Return the nodes that may serve for a node with their prices, up to the cheapest available node."""
+        """Return the nodes that may serve for a node, with prices up to the cheapest available node's."""
         servers = self._servers.get(served)
         if servers is None:
             priced = self._prices.of(served)
@@ -128,9 +128,9 @@ class _Nearest:
     ) -> "dict[int, _Step]":
         """Return the cheapest last step to each node; a unit costs the ``combined`` costs of its inputs.
 
-        Combined by ``max``, the cost is a lower bound on the dissimilarity of making a node (h_max; Bonet
-        and Geffner 2001); by ``sum``, the steps lead to a good tree (h_add). Computed by Knuth's
-        generalization of Dijkstra's algorithm (Information Processing Letters 6, 1977).
+        With ``max``, the cost of a node is a lower bound on the dissimilarity of making it (h_max; Bonet and
+        Geffner 2001). With ``sum``, the steps lead to a good tree (h_add). Computed by Knuth's generalization
+        of Dijkstra's algorithm (Information Processing Letters 6, 1977).
         """
         served_by: defaultdict[int, list[tuple[int, int]]] = defaultdict(list)
         consumers: defaultdict[int, list[int]] = defaultdict(list)
@@ -163,7 +163,7 @@ class _Nearest:
         return steps
 
     def _dissimilarity(self, goals: Iterable[int], steps: "Mapping[int, _Step]") -> int:
-        """Return the dissimilarity of the tree made of best last ``steps``; each stand-in counts once."""
+        """Return the dissimilarity of the tree of the best last ``steps``; each stand-in counts once."""
         total, met = 0, set(goals)
         stack = list(met)
         while stack:

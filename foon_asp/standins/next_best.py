@@ -12,8 +12,9 @@ from foon_asp.standins.node_prices import NodePrices
 class Used(NamedTuple):
     """A stand-in of a tree, by ids: the serving node is used in place of the served one.
 
-    ``next_best`` is the cheapest other node that may serve, with its dissimilarity, among the nodes that the
-    kitchen has or that the tree makes without this stand-in; ``None`` if there is none.
+    ``next_best`` is the cheapest other node that may serve, with its dissimilarity. It is chosen among the
+    nodes that the kitchen has or that the tree makes without this stand-in; ``None`` if none of them may
+    serve.
     """
 
     unit: int

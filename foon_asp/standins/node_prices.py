@@ -14,6 +14,7 @@ class NodePrices:
     """
 
     def __init__(self, network: Network, table: StandInTable) -> None:
+        """Scale the prices of the table to integers, and index its pairs and the spellings of labels."""
         prices = (*table.edits.values(), *table.words.values(), *table.pairs.values())
         self.scale = math.lcm(*(price.denominator for price in prices if price is not None))
         self._objects, self._by_label = network.objects, network.by_label
@@ -93,7 +94,10 @@ class NodePrices:
         return self._edits[edit] if price == -1 else price
 
     def _of_contents(self, ours: tuple[str, ...], theirs: tuple[str, ...]) -> int | None:
-        """Return the price of using contents with other ingredients or another word; ``None`` for never."""
+        """Return the price of the differences between two contents; ``None`` where the table forbids one.
+
+        The differences are in ingredients, or else in the word that relates the contents.
+        """
         if ours == theirs:
             return self._edits[Edit.WORD]
         total = 0
@@ -122,7 +126,10 @@ class NodePrices:
         return total
 
     def _of_relations(self, ours: frozenset[Relation], theirs: frozenset[Relation]) -> int | None:
-        """Return the price of the differences between two sets of relations; ``None`` for never."""
+        """Return the price of the differences between two sets of relations.
+
+        ``None`` where the table forbids one of them.
+        """
         surplus = Counter(relation.object for relation in ours - theirs)
         lacking = Counter(relation.object for relation in theirs - ours)
         same = (surplus & lacking).total()

@@ -20,9 +20,9 @@ from foon_asp.standins.extension import with_stand_ins
 class Repair:
     """The problem whose best tree is the cheapest repair of a tree.
 
-    ``posed`` is the problem to solve: in it, each step of the tree makes one more node, its own, which is a
-    goal. ``shown`` is the same problem without these nodes, with the same ids of units. ``steps`` are the
-    units of the tree, by id, in the order listed, each once.
+    ``posed`` is the problem to solve: in it, each step of the tree has one additional output, a node that
+    only this step makes and that is a goal. ``shown`` is the same problem without these nodes, with the same
+    ids of units. ``steps`` are the units of the tree, by id, in the order listed, each once.
     """
 
     posed: Problem
@@ -40,8 +40,8 @@ class Repair:
     ) -> "Repair":
         """Make the problem of a repair, over the network of a problem and the units of a tree.
 
-        Stand-ins in the network are left out.
-        ``is_available`` returns whether a node that the network lacks is in the kitchen.
+        Stand-ins in the network are left out. ``is_available`` returns whether the kitchen has a node that is
+        not in the network.
         """
         whole = problem.network
         builder = NetworkBuilder()
@@ -101,7 +101,7 @@ class Repair:
 
 
 def _marked(network: Network, steps: Sequence[int]) -> Network:
-    """Return a network in which each of the ``steps`` has one more output, a node of its own."""
+    """Return a network in which each of the ``steps`` has one more output, which only this step makes."""
     first = len(network.objects)
     markers = {unit: o for o, unit in enumerate(steps, first)}
     # no file has a label with a line end, so nothing stands in for these

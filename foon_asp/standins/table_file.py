@@ -24,9 +24,8 @@ def read_stand_ins(
 ) -> StandInTable:
     """Return the usual table with the changes of files; a later file takes precedence.
 
-    The lexicons ``similar`` are read before all ``files``. Their pairs with labels of ``utensils`` are left
-    out, since a tool or vessel stands in only where one of the ``files`` lists it. Raises
-    :class:`InputError`.
+    The lexicons ``similar`` are read before all ``files``. Pairs with a label of ``utensils`` in lexicons are
+    ignored: a tool or vessel stands in only where one of the ``files`` lists it. Raises :class:`InputError`.
     """
     table = StandInTable.usual()
     for file in similar:
@@ -70,7 +69,7 @@ def _row(name: str, value: str, column: int) -> tuple[Entry, Fraction | None]:
 
 
 def _edit(name: str) -> Edit | tuple[Edit, str]:
-    """Return the kind of edit that a name stands for, with the state or ingredient, if it names one."""
+    """Return the edit that the name of a row means, with its state or ingredient if the name has one."""
     kind, colon, word = (text.strip() for text in name.partition(":"))
     if kind not in (_NAMED if colon else _KINDS) or (colon and not word):
         kinds = ", ".join(_KINDS)
