@@ -127,7 +127,7 @@ def units_kept_apart(units: Iterable[FunctionalUnit]) -> list[NearUnits]:
     """Return the pairs of units in one list that have a single difference, which may be a slip.
 
     The difference is in the motion, a state or a relation, or it is between two names that are spelt almost
-    alike. Units that differ in other labels are not meant to be one.
+    alike. Units with other different labels are different on purpose.
     """
     listed = list(units)
     pairs = []

@@ -21,7 +21,8 @@ def schema_name(kind: str) -> str:
 def json_text(value: object) -> str:
     """Write plain values as a JSON text of their own; a list or an object that fits stands on one line.
 
-    An absolute path counts as long as its last part, so the lines are the same wherever the files lie.
+    Of an absolute path, only the last part counts for the length of a line, so that line breaks do not depend
+    on the folder of the files.
     """
     return _laid_out(value, "\n") + "\n"
 
