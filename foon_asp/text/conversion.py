@@ -88,7 +88,7 @@ class Converter:
         return Converted(converted, dialect, lost.found)
 
     def _lines(self, text: str, file: str, writer: TextWriter, lost: "_Tally") -> str:
-        """Rewrite line by line, so that comments and blank lines stay."""
+        """Return FOON text in another dialect, line by line, which keeps comments and blank lines."""
         losses_by_line: dict[str, list[Loss]] = {}
 
         def rewrite(line: Line, written: str) -> str:
