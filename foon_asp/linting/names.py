@@ -33,6 +33,7 @@ class Names:
     """Every name of every kind with its mentions, in order, and their number."""
 
     def __init__(self, files: LintedFiles) -> None:
+        """Collect the mentions of every name in the files, and count them."""
         self.files = files
         self.network = files.network
         self.mentions: dict[Kind, dict[str, list[Mention]]] = {kind: {} for kind in Kind}
