@@ -162,7 +162,7 @@ def data_options(command: Command) -> Command:
 
 
 def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
-    """Add the options for the limits of a command to it; they reach the command as its ``deadline``.
+    """Add the options for limits to a command, which is then called with the ``deadline`` that they set.
 
     If a limit stops the command, a message says what to do.
     """

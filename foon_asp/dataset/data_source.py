@@ -83,7 +83,7 @@ class Source:
         return self._network
 
     def touched(self) -> Network:
-        """Return the whole network, which a store reads on access."""
+        """Return the whole network; that of a store reads each unit and node on access."""
         return self._network
 
     def part(self, units: Iterable[int], objects: Iterable[int]) -> Network:

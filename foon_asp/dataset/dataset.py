@@ -236,9 +236,9 @@ class Dataset:
         return replace(self, kitchen=self.kitchen.changed(added, lacking))
 
     def goals(self, names: Sequence[str | ObjectNode]) -> tuple[int, ...]:
-        """Find the goals by name; without a name, the goals file has to hold exactly one.
+        """Return the ids of the goals with these names.
 
-        Without a file, all assumed goals are returned.
+        Without names, returns all assumed goals; if a file lists goals, it has to list exactly one.
         """
         if not names and self.goals_from and not self.listed:
             raise UserError(

@@ -53,10 +53,10 @@ def solve_nearby(
     """Solve a question to a large store by relaxation and refinement, reading only units that a proof needs.
 
     Each round solves the relaxation, in which open nodes are available. If its optimal tree uses none of
-    them, it is optimal in the whole network, too. Otherwise more units that lead to these nodes are read, in
-    the end all units. User rules have to be antimonotone: every part of a tree that keeps them keeps them.
-    For some rules, the units of the optimal tree without rules are read first, then those of the smallest
-    tree that keeps the rules.
+    them, this tree is optimal in the whole network, too. Otherwise more units that lead to these nodes are
+    read, in the end all units. User rules have to be antimonotone: if a tree keeps them, so does every part
+    of the tree. For some rules, the units of the optimal tree without rules are read first, then those of the
+    smallest tree that keeps the rules.
 
     Returns ``None`` if no tree exists even without rules: to explain this, all units that can lead to the
     goals are needed.
@@ -150,8 +150,8 @@ def _has_tree(nearby: "Nearby", deadline: Deadline) -> bool:
 def _read_smallest_tree(nearby: "Nearby", settings: Settings, units_of_rules: set[int]) -> list[int]:
     """Read and return the smallest tree that keeps the rules, by number in the whole network.
 
-    Counting units is faster than other objectives and shows infeasibility as well, and better trees mostly
-    use units near this tree. Empty where there is no tree, or at a limit.
+    The fewest units are searched for, since this is faster than other objectives and shows infeasibility as
+    well. Better trees mostly use units near this tree. Empty where there is no tree, or at a limit.
     """
     while True:
         outcome = solve(nearby.relaxed, (Objective.UNITS,), settings, mattered=units_of_rules)

@@ -85,8 +85,8 @@ class _Search:
     def result(self) -> Outcome | None:
         """Return the optimum, or the incumbent at a limit.
 
-        ``None`` if the rules look beyond a tree, or if distances of units are not known. Raises
-        :class:`LimitError`.
+        ``None`` if the rules look beyond a tree, or if the distances of units are not known. Raises
+        :class:`LimitError` at a limit while the store is read.
         """
         settings, nearby = self._settings, self._nearby
         rules = varying_available(settings)
@@ -150,9 +150,9 @@ class _Search:
     def _with_better_trees(
         self, tree: Outcome, distances: UnitDistances, kinds: Sequence[Mask] | None
     ) -> Problem | None:
-        """Return the question over all units that a tree as good as ``tree``, or a better one, can have.
+        """Return the question over all units of trees that are as good as ``tree`` or better.
 
-        ``None`` if these are too many.
+        ``None`` if these units are too many.
         """
         if tree.costs is None or tree.units is None:
             return None

@@ -47,9 +47,9 @@ class Chain:
         return {self.objects[node].label for node in nodes_by_side[side][self.units[position]]}
 
     def nearest(self, node: int, consumer: int) -> tuple[int, int] | None:
-        """Return the last unit before ``consumer`` that makes a similar node, by position, and this node.
+        """Return the last unit before ``consumer`` that makes a node similar to a needed node, and that node.
 
-        ``None`` if no unit makes a similar node that may be meant.
+        Units are positions in the chain. ``None`` if no unit makes a similar node that may be meant.
         """
         wanted = self.objects[node]
         for distance in range(1, min(consumer, MAX_DISTANCE) + 1):

@@ -51,7 +51,7 @@ class Names:
 
     @cached_property
     def loose(self) -> dict[Kind, set[str]]:
-        """Names by kind that do not occur both among the inputs and among the outputs of units."""
+        """Names by kind that are missing among the inputs, or among the outputs, of all units."""
         network = self.network
         input_names, output_names = (
             {
@@ -86,7 +86,7 @@ class Names:
         return endings
 
     def by_sheet(self, kind: Kind, name: str) -> Iterator[tuple[Sheet, int, int]]:
-        """Yield each sheet with a name, the index of its first line, and its mentions there."""
+        """Yield each sheet with a name, the index of the first line with it, and the number of mentions."""
         by_sheet: dict[int, tuple[int, int]] = {}
         for sheet, _, index, often in self.mentions[kind][name]:
             first, total = by_sheet.get(sheet, (index, 0))

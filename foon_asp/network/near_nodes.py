@@ -64,7 +64,7 @@ def nearest(node: ObjectNode, others: Iterable[ObjectNode], max_nodes: int) -> l
 def _parts(node: ObjectNode | NodePattern, loose: bool) -> Iterator[_NodePart]:
     """Yield the names of a node with their kinds.
 
-    If ``loose``, a container stands for each relation, by whatever word.
+    If ``loose``, the objects of relations are yielded as containers, without the words.
     """
     yield "label", node.label
     yield from (("state", state) for state in sorted(node.states))

@@ -46,6 +46,7 @@ class Envelope:
     """
 
     def __init__(self, problem: Problem, tree: tuple[int, ...], settings: Settings) -> None:
+        """Find the motions of possible trees, and by searches the rates that may rise to 1 without effect."""
         self._problem, self._tree, self._settings = problem, tree, settings
         self._holds = Postconditions(problem, levels(_SUCCESS), settings)
         reached = reach(problem)

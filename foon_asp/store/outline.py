@@ -118,9 +118,10 @@ class Outline:
     ) -> Distances:
         """Return for each unit its cost plus the largest distance of its inputs (``h_max``).
 
-        ``available`` nodes and ``free`` units cost nothing, and ``costs`` is by motion. A tree that has a
-        unit costs no less than its distance, since only one input of each unit counts. A distance above
-        ``max_distance`` is :data:`FAR`; ``limit`` returns a lower maximum from the distances found so far.
+        The distance of ``available`` nodes and ``free`` units is 0. The cost of another unit is that of its
+        motion in ``costs``. A tree costs no less than the distance of any of its units, since only one input
+        of each unit counts. A distance above ``max_distance`` becomes :data:`FAR`; ``limit`` returns a lower
+        maximum from the distances found so far.
         """
         node_distances = np.where(available, 0, FAR)
         distances = np.where(free, 0, FAR)

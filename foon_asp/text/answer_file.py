@@ -26,9 +26,9 @@ class ListedTree(NamedTuple):
 
     ``units``: the units in the order of the file, each with its source; ``None`` for an answer without a
     tree.
-    ``numbers``: of the output of clingo, the ids U in its atoms ``use(U)``; ``units`` is then empty.
+    ``numbers``: the ids U in the atoms ``use(U)`` of clingo's output, for which ``units`` is empty.
     ``goals``, ``status``, ``containers``, ``items``: the fields of an answer of foon-asp, else empty.
-    ``wanted``: how many copies of a goal are wanted, for goals of which the answer states this number.
+    ``wanted``: the number of copies of each goal for which the answer states this number.
     ``is_tree``: false for FOON without a mark of a task tree; the file may then be a network.
     ``amounts``: the amounts of the units.
     """

@@ -21,8 +21,7 @@ def schema_name(kind: str) -> str:
 def json_text(value: object) -> str:
     """Write plain values as a JSON text of their own; a list or an object that fits stands on one line.
 
-    Of an absolute path, only the last part counts for the length of a line, so that line breaks do not depend
-    on the folder of the files.
+    To be independent of folders, this counts only the last part of an absolute path.
     """
     return _laid_out(value, "\n") + "\n"
 

@@ -77,10 +77,8 @@ def find_goal(
 ) -> int:
     """Return the id of the object node that a goal names.
 
-    A name is tried as each of the following, in this order:
-    the one-line notation of a node, as ``str(node)`` returns it: ``sweet potato; chopped; in [cutting
-    board]``;
-    the label of an entry of the goals file ``listed``;
+    A name is tried as each of these, in this order: the one-line notation of a node (``sweet potato; chopped;
+    in [cutting board]``), as ``str(node)`` returns it; the label of an entry of the goals file ``listed``;
     the label of a single node.
 
     A text that is no notation, or the notation of no node, is also tried literally as a label. A label with a

@@ -161,7 +161,8 @@ class TextUnits:
     def _line_by_line(self, chunk: str, last: bool) -> Iterator[ListedUnit]:
         """Yield the units of a chunk, read line by line.
 
-        A ``//`` with blanks behind it separates units, too. ``last`` is true for the last chunk of a file.
+        Separators with blanks after ``//`` are recognised, too. ``last`` is true for the last chunk of a
+        file.
         """
         self._lines = lines = chunk.split("\n")
         start = 0
