@@ -45,7 +45,10 @@ def _constraint(text: str) -> Constraint:
 def _options_alone(
     context: click.Context, parameter: click.Parameter, value: tuple[str, ...]
 ) -> tuple[str, ...]:
-    """Return the arguments for another program, from the first option on; words before it are networks."""
+    """Return the arguments for another program: those from the first option on.
+
+    Words before the first option become the ``sources`` of the command, which are networks.
+    """
     words = list(itertools.takewhile(lambda word: not word.startswith("-"), value))
     context.params["sources"] = tuple(map(NamedPath, words))
     return value[len(words) :]

@@ -80,6 +80,8 @@ complete -o default -o filenames -F _foon_asp %(prog_name)s
 
 @add_completion_class
 class _Zsh(_Shell):
+    """Zsh, for which the script passes the line up to the cursor."""
+
     name = "zsh"
     source_template = """#compdef %(prog_name)s
 _foon_asp() {
@@ -93,6 +95,8 @@ compdef _foon_asp %(prog_name)s
 
 @add_completion_class
 class _Fish(_Shell):
+    """Fish, for which the script passes the line up to the cursor."""
+
     name = "fish"
     source_template = """function __foon_asp
     FOON_ASP_LINE=(commandline -cp | string collect) %(complete_var)s=fish_complete %(prog_name)s 2>/dev/null

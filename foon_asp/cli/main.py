@@ -50,6 +50,7 @@ class _Verbs(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Find the command of a verb; for an unknown verb, fail with the most similar one."""
         word = args[0]
         if word not in VERBS and not word.startswith("-") and not ctx.resilient_parsing:
             from difflib import get_close_matches
@@ -64,6 +65,7 @@ class _Verbs(click.Group):
         write_verbs(formatter, "Verbs that most people need", FIRST_VERBS)
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> "list[CompletionItem[str]]":
+        """Return the verbs with this beginning, except those for programs, and the options of the group."""
         from click.shell_completion import CompletionItem
 
         verbs = [verb for verb, entry in VERBS.items() if entry.group != FOR_PROGRAMS]

@@ -24,10 +24,11 @@ _SIGNS = {"→": "->", "≈": "~", "×": "x", "†": "+"}
 class SafeStream:
     """A text stream that escapes characters which a terminal or a log would hide or execute.
 
-    Characters that its encoding lacks are escaped as well. ``stream`` is ``None`` if it was closed from the
-    start. A failed write is an error, but is ignored if the stream is for ``remarks``: an answer is complete
-    without them. A ``styled`` stream keeps the codes of colours, so names must be escaped before. A
-    ``quiet`` stream drops text.
+    Characters that its encoding lacks are escaped as well.
+    ``stream``: the stream to write to; ``None`` if it was closed from the start.
+    ``remarks``: whether failed writes are ignored, since an answer is complete without remarks.
+    ``styled``: whether the codes of colours are kept; names must then be escaped before.
+    ``quiet``: whether text is dropped.
     """
 
     errors = "strict"

@@ -49,6 +49,7 @@ class Progress(Reporter):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        """End the thread that shows the line, and wait until the line is gone."""
         self._finished.put(None)
         if self._thread is not None:
             self._thread.ended(_DELAY_SECONDS)  # so that the line does not overwrite the answer

@@ -162,9 +162,9 @@ def data_options(command: Command) -> Command:
 
 
 def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
-    """Add the options for the limits of a whole command, which is then called with their ``deadline``.
+    """Add the options for limits to a command, which is then called with the ``deadline`` that they set.
 
-    At a limit, a message says what to do.
+    If a limit stops the command, a message says what to do.
     """
 
     @functools.wraps(command)

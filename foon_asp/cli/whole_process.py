@@ -16,7 +16,7 @@ _kept: list[object] = []
 def keep(*objects: object) -> None:
     """Keep objects until the next command, so that their memory is not freed after the answer.
 
-    To free a network of a million units takes seconds.
+    Freeing a network of a million units would take seconds.
     """
     _kept[:] = objects
 

@@ -29,11 +29,13 @@ if TYPE_CHECKING:  # text does without SQLite
 class Source:
     """A network in memory; the subclass :class:`~foon_asp.dataset.store_source.StoreSource` is a store.
 
-    Ids are those of the whole network. ``names`` looks up nodes and units, ``unit_count`` is the number of
-    units. ``seconds`` is the time that reading took so far, ``left_out`` counts lines that were not
-    understood. ``repeated`` are nodes that a unit lists twice, ``amounts`` the amounts of units. A store has
-    the ``kitchen`` and the ``prices`` that were imported, and states ``digests`` of the network, the kitchen
-    and the prices.
+    Ids are those of the whole network.
+    ``names``: looks up nodes and units.
+    ``unit_count``: the number of units.
+    ``seconds``: the time that reading took so far.
+    ``left_out``: the number of lines that were not understood.
+    ``repeated``: the nodes that a unit lists twice.
+    ``kitchen``, ``prices``: those that were imported into a store; ``None`` in memory.
     """
 
     kitchen: Collection[int] | None = None
@@ -59,7 +61,7 @@ class Source:
 
     @property
     def digests(self) -> Mapping[str, str]:
-        """The digests of network, kitchen and prices that are stated and not computed."""
+        """The digests of network, kitchen and prices that a store states, by name; empty in memory."""
         return MappingProxyType({})
 
     @property
@@ -73,7 +75,7 @@ class Source:
         return self._network.different_motions
 
     def motion_places(self) -> Iterable[tuple[str, Place]]:
-        """Return motions with places of their units; the first place of each motion is among these."""
+        """Return pairs of a motion and a place of a unit with it, among them each motion's first place."""
         return first_places(self._network)
 
     def whole(self) -> Network:
@@ -81,7 +83,7 @@ class Source:
         return self._network
 
     def touched(self) -> Network:
-        """Return the whole network, which a store reads on access."""
+        """Return the whole network; that of a store reads each unit and node on access."""
         return self._network
 
     def part(self, units: Iterable[int], objects: Iterable[int]) -> Network:
@@ -106,18 +108,21 @@ class Source:
         rates: Mapping[str, Fraction] | None,
         objective: Objective,
     ) -> "UnitDistances | None":
-        """Return the distance of each unit: a lower bound on the cost of trees with it.
+        """Return the distance of each unit by an objective: a lower bound on the cost of trees with the unit.
 
-        Units do not need the ``utensils``. ``None`` if the network is in memory.
+        Inputs that are ``utensils``, by label, are ignored. ``None`` if the network is in memory.
         """
         return None
 
     def true_digests(self) -> dict[str, str]:
-        """Compute the digests that are stated; raises :class:`UserError` if one is not true."""
+        """Compute the digests that a store states; raises :class:`UserError` if a stated digest is wrong."""
         return {}
 
     def unit_prices(self, network: Network, from_file: bool) -> Mapping[FunctionalUnit, Fraction] | None:
-        """Return the prices of single units of a network in a store; ``None`` without a store or prices."""
+        """Return the prices of single units of a network in a store; ``None`` without a store or prices.
+
+        If ``from_file``, the imported file of prices takes precedence over the prices that networks state.
+        """
         return None
 
     def unpriced(self, prices: DataPrices) -> Sequence[Unpriced]:

@@ -58,7 +58,11 @@ if TYPE_CHECKING:  # plain answers do not need it
 def ask(
     data: Data, goals: Sequence[int], containers: str, origin: "Dataset", items: UsedUp | None = None
 ) -> Problem:
-    """Return the problem of goals, by id in the network of ``data``, a part of the dataset ``origin``."""
+    """Return the problem of goals over ``data``, which is a part of the dataset ``origin``.
+
+    ``goals`` are ids in the network of ``data``. ``items`` says how items are used up; ``None`` if items
+    last.
+    """
     if items is not None and data.amounts.conflict:
         raise UserError(data.amounts.conflict)
     unrated = origin.unrated
@@ -83,15 +87,18 @@ def ask(
 class Dataset:
     """Data read from a ``source``: text, or a store, of which each problem reads only its part.
 
-    :attr:`data` is all of it. Ids are those of the whole network. ``listed`` are the entries of the goals
-    file, ``rates`` the success rates of motions, ``None`` without a file of rates. ``utensils`` are the
-    labels of utensils for the container rule ``implied``. ``kitchen_items`` are the entries of the kitchen
-    file, ``None`` if these are in the store. ``starting`` is true if the kitchen is the starting kitchen,
-    with or without changes. If no file lists goals, ``goals_from`` is the origin of the assumed goals.
-    ``remarks`` are the assumptions made while reading, in words, and ``brief`` is a summary of them;
-    ``has_kitchen`` is true if a kitchen was given, even an empty one. ``measures`` are user measures, by
-    name. ``stand_ins`` is the table of stand-ins, ``None`` where there are none. ``stock`` are the amounts
-    that the kitchen states; other items never run out.
+    :attr:`data` is all of it. Ids are those of the whole network.
+    ``listed``: the entries of the goals file, or the assumed goals.
+    ``rates``: the success rates of motions; ``None`` without a file of rates.
+    ``utensils``: the labels of utensils for the container rule ``implied``.
+    ``kitchen_items``: the entries of the kitchen file; ``None`` if these are in the store.
+    ``starting``: true if the kitchen is the starting kitchen, with or without changes.
+    ``goals_from``: the origin of the assumed goals; empty if a file lists goals.
+    ``remarks``: the assumptions made while reading, in words; ``brief`` is a summary of them.
+    ``has_kitchen``: true if a kitchen was given, even an empty one.
+    ``measures``: the user measures, by name.
+    ``stand_ins``: the table of stand-ins; ``None`` where nothing may stand in.
+    ``stock``: the amounts that the kitchen states; other items never run out.
     """
 
     source: Source
@@ -152,7 +159,7 @@ class Dataset:
 
     @cached_property
     def data(self) -> Data:
-        """All data; a store is read whole."""
+        """All data; from a store, everything is read."""
         network = self.source.whole()
         items = self.source.kitchen_items() if self.kitchen_items is None else self.kitchen_items
         return self._data(network, self.kitchen.ids)._replace(kitchen_items=items)
@@ -229,9 +236,9 @@ class Dataset:
         return replace(self, kitchen=self.kitchen.changed(added, lacking))
 
     def goals(self, names: Sequence[str | ObjectNode]) -> tuple[int, ...]:
-        """Find the goals by name; without a name, the goals file has to hold exactly one.
+        """Return the ids of the goals with these names.
 
-        Without a file, all assumed goals are returned.
+        Without names, returns all assumed goals; if a file lists goals, it has to list exactly one.
         """
         if not names and self.goals_from and not self.listed:
             raise UserError(
@@ -312,8 +319,8 @@ class Dataset:
     def with_stand_in_table(self, table: StandInTable | None) -> "Dataset":
         """Return the same data with stand-ins by a table, ``None`` for none.
 
-        With stand-ins, only the goals assumed from the first file stay goals; the other files help to make
-        these.
+        With a table, only those assumed goals that are of the first file stay goals; the other files help to
+        make them.
         """
         goals = self.listed
         if table is not None and self.goals_from and len(goals) > 1:

@@ -67,11 +67,15 @@ def items_of(
     stays: Stays | None,
     wanted: Mapping[ObjectNode, int] = MappingProxyType({}),
 ) -> UsedUp | None:
-    """Return how items are used up; ``None`` if they last. A stock precedes the amounts of the kitchen.
+    """Return how items are used up; ``None`` if they last.
 
-    ``wanted`` has the numbers of copies of goals. Raises :class:`UserError` for an unknown word ``items``,
-    for a stock or exceptions where items last, for a node that the kitchen does not have, for a name that the
-    network does not have, and below level 3.
+    ``items`` is ``used-up`` or ``lasting``.
+    Amounts in ``stock`` replace those of the kitchen.
+    ``stays`` are exceptions: which nodes stay, and which are used up.
+    ``wanted`` has the number of copies of each goal.
+
+    Raises :class:`UserError` for another word as ``items``, for a stock or exceptions where items last, for a
+    node that the kitchen lacks, for a name that the network lacks, and below level 3.
     """
     if items not in ITEMS:
         raise UserError(f"found the items {items!r}, expected one of {', '.join(ITEMS)}")
@@ -98,7 +102,7 @@ def require_contents(level: int) -> None:
 
 
 def _exceptions(dataset: Dataset, stays: Stays) -> dict[str | ObjectNode, bool]:
-    """Return whether labels and nodes stay, from a file or a mapping of names."""
+    """Return, by label or node, whether items stay when they are used, from a file or a mapping of names."""
     if isinstance(stays, str | PathLike):
         exceptions = STAYS.read(Path(stays))
     else:

@@ -18,7 +18,7 @@ class Kitchen(Collection[int]):
         return Kitchen(self, added, removed) if added or removed else self
 
     def is_all_of(self, base: Collection[int] | None) -> bool:
-        """Whether the kitchen has exactly this base and no changes."""
+        """Whether the kitchen is this base, without added or removed nodes."""
         return self._base is base and not self._added and not self._removed
 
     def __contains__(self, o: object) -> bool:

@@ -59,7 +59,7 @@ class Nearby:
 
     @property
     def problem(self) -> Problem:
-        """The question over the units read: its trees are trees of the whole network, but not all of them."""
+        """The question over the units read; each of its trees is a tree of the whole network."""
         if self._problem is None:
             self._problem = self.among(self._cone.units)
         return self._problem
@@ -150,8 +150,8 @@ class _ReadLater:
 class NearbyProblem(Problem):
     """A question to a large store; all units that its goals can need are read on first access.
 
-    :meth:`nearby` is the question over the units near the goals, for searches that need no more units. A
-    problem made from another one with changes has its own values.
+    :meth:`nearby` is the question over the units near the goals, for searches that need no more units. A copy
+    with changed fields has the values passed to it, and reads nothing.
     """
 
     network: Network = _ReadLater()  # type: ignore[assignment]
@@ -187,7 +187,7 @@ class NearbyProblem(Problem):
         return None if self.start is None or "read" in vars(self) else self.start.copied()
 
     def each_goal(self) -> list[Problem]:
-        """Return the question for each goal by itself, with as many units read as for this question."""
+        """Return the question for each goal by itself, with about as many units read as for this question."""
         start = self.start
         if start is None or "read" in vars(self):
             return [replace(self, goals=(goal,)) for goal in self.goals]
@@ -214,7 +214,10 @@ class NearbyProblem(Problem):
 
 
 def shown(problem: Problem) -> Problem:
-    """Return a problem with the goals and the kitchen of another one; no more units are read."""
+    """Return a problem with the same goals and kitchen whose access reads no more units of a store.
+
+    For a :class:`NearbyProblem`, this is the question over the units read at first.
+    """
     if isinstance(problem, NearbyProblem):
         return problem.first or problem
     return problem

@@ -36,7 +36,10 @@ REFINEMENT = RefinementTuning()
 
 
 def near_goals(problem: Problem, objectives: Sequence[Objective], settings: Settings) -> "Nearby | None":
-    """Return the question over units near the goals of a large store; ``None`` if all may be needed."""
+    """Return the question over units near the goals; ``None`` if a search may need all units.
+
+    ``None`` also if the problem is not about a large store.
+    """
     nearby_of: Callable[[], Nearby | None] | None = getattr(problem, "nearby", None)
     if nearby_of is None or settings.reductions != ALL or settings.clingo_options:
         return None
@@ -49,11 +52,13 @@ def solve_nearby(
 ) -> Outcome | None:
     """Solve a question to a large store by relaxation and refinement, reading only units that a proof needs.
 
-    Each round solves the relaxation in which open nodes are available. If its optimal tree uses none of them,
-    it is optimal in the whole network too; else more units that lead to these nodes are read. In the end all
-    are read. User rules have to hold for parts of trees. Units of the optimal tree without rules are read
-    first, then those of the smallest tree that keeps the rules, then more in each round. ``None`` where there
-    is no tree, unless only the rules exclude all trees: to explain this, all units that could lead to the
+    Each round solves the relaxation, in which open nodes are available. If its optimal tree uses none of
+    them, this tree is optimal in the whole network, too. Otherwise more units that lead to these nodes are
+    read, in the end all units. User rules have to be antimonotone: if a tree keeps them, so does every part
+    of the tree. For some rules, the units of the optimal tree without rules are read first, then those of the
+    smallest tree that keeps the rules.
+
+    Returns ``None`` if no tree exists even without rules: to explain this, all units that can lead to the
     goals are needed.
     """
     reporter = reporter or Reporter()
@@ -145,8 +150,8 @@ def _has_tree(nearby: "Nearby", deadline: Deadline) -> bool:
 def _read_smallest_tree(nearby: "Nearby", settings: Settings, units_of_rules: set[int]) -> list[int]:
     """Read and return the smallest tree that keeps the rules, by number in the whole network.
 
-    Counting units is faster than other objectives and shows infeasibility as well, and better trees mostly
-    use units near this tree. Empty where there is no tree, or at a limit.
+    The fewest units are searched for, since this is faster than other objectives and shows infeasibility as
+    well. Better trees mostly use units near this tree. Empty where there is no tree, or at a limit.
     """
     while True:
         outcome = solve(nearby.relaxed, (Objective.UNITS,), settings, mattered=units_of_rules)
@@ -190,7 +195,7 @@ def least_with_more(
 ) -> tuple[int | Fraction, ...]:
     """Return a lower bound on the keys of trees that cost at least ``costs`` and have more units.
 
-    ``extra_units`` is how many more units they have at least.
+    A key has the cost by each objective in ``order``. Such a tree has at least ``extra_units`` more units.
     """
     least_costs = dict(zip(order, costs.key(order), strict=True))
     least_costs[Objective.UNITS] += extra_units

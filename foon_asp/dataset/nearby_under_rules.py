@@ -28,9 +28,10 @@ from foon_asp.store.unit_distances import UnitDistances, greatest_cost
 class NearbyTuning(NamedTuple):
     """How much of a large store is read one by one.
 
-    ``max_units``: for more units, reading the whole store is faster. ``widths``: pairs that are tried in
-    order for a first tree. Each pair is a maximum number of units of a kind, and of their steps of distance
-    beyond the nearest unit.
+    ``max_units``: the greatest number of far units read one by one; for more, reading the whole store is
+    faster.
+    ``widths``: limits on the units read for a first tree, tried in order. Each is a pair: the number of units
+    of a kind, and how many steps of distance they may lie beyond the nearest one.
     """
 
     max_units: int = 30_000
@@ -75,15 +76,17 @@ class _Search:
     def __init__(
         self, nearby: Nearby, unconstrained: Outcome, settings: Settings, reporter: Reporter
     ) -> None:
+        """Start with an incumbent without a tree, whose bound is the optimum without rules."""
         self._nearby, self._unconstrained = nearby, unconstrained
         self._settings, self._reporter = settings, reporter
         self._order = levels(unconstrained.objectives)
         self.best = _unknown(nearby, unconstrained)  # the incumbent, without a proof
 
     def result(self) -> Outcome | None:
-        """Return the optimum, or the incumbent at a limit; ``None`` if relevant far units cannot be told.
+        """Return the optimum, or the incumbent at a limit.
 
-        Raises :class:`LimitError`.
+        ``None`` if the rules look beyond a tree, or if the distances of units are not known. Raises
+        :class:`LimitError` at a limit while the store is read.
         """
         settings, nearby = self._settings, self._nearby
         rules = varying_available(settings)
@@ -147,9 +150,9 @@ class _Search:
     def _with_better_trees(
         self, tree: Outcome, distances: UnitDistances, kinds: Sequence[Mask] | None
     ) -> Problem | None:
-        """Return the question over all units that a tree as good as ``tree``, or a better one, can have.
+        """Return the question over all units of trees that are as good as ``tree`` or better.
 
-        ``None`` if these are too many.
+        ``None`` if these units are too many.
         """
         if tree.costs is None or tree.units is None:
             return None
@@ -196,7 +199,7 @@ class _Search:
         return next(extra for extra in count() if key <= least_with_more(least_costs, order, extra + 1))
 
     def _proved(self, outcome: Outcome) -> Outcome:
-        """Return the outcome with the proof of both searches and without cuts, which hold for a part only."""
+        """Return the outcome with a proof of both searches, without its cuts: they hold for a part only."""
         assert outcome.costs is not None
         self._reporter.tree(outcome.costs)
         proofs = self._unconstrained.proof, outcome.proof

@@ -8,10 +8,12 @@ from foon_asp.network import FunctionalUnit, UnitPrices
 
 
 class DataPrices(NamedTuple):
-    """The prices of units by motion, ``None`` where no file lists any, and of single units.
+    """The prices of units by motion and of single units; others may be in a store.
 
-    For a single unit without a price in ``units``, its price in the store counts: if ``from_file``, the price
-    in the imported file, and otherwise or without such a price the price that networks state.
+    ``motions``: the prices by motion; ``None`` where no file lists any.
+    ``units``: the prices of single units that are in memory.
+    ``from_file``: whether the imported file of prices counts for other units of a store. A unit without a
+    price there has the price that the networks in the store state.
     """
 
     motions: Mapping[str, Fraction] | None = None

@@ -62,8 +62,8 @@ def stated_copies(
 ) -> dict[ObjectNode, int]:
     """Return amounts by object node, from amounts by name; names with the amount ``None`` are left out.
 
-    Raises :class:`UserError` as :func:`node_id` does, and for an amount that is no whole number from
-    ``least`` on.
+    Raises :class:`UserError` as :func:`node_id` does, and for an amount that is not a whole number of at
+    least ``least``.
     """
     copies: dict[ObjectNode, int] = {}
     for name, amount in amounts.items():
@@ -121,7 +121,10 @@ def _label(name: str) -> str | None:
 def changed_rates(
     rates: Mapping[str, Fraction] | None, changed: Mapping[str, Number] | None, motions: Collection[str]
 ) -> Mapping[str, Fraction] | None:
-    """Return success rates by motion with some changed; ``motions`` are all motions of the network."""
+    """Return success rates by motion with some ``changed``; ``None`` if there are no rates at all.
+
+    ``motions`` are all motions of the network. Raises :class:`UserError` for an unknown motion.
+    """
     if changed is None:
         return rates
     by_motion = dict(rates or {})

@@ -35,6 +35,7 @@ class StoreSource(Source):
     prices: DataPrices
 
     def __init__(self, store: Store, unit_amounts: Sequence[Row[UnitAmount, int]] = ()) -> None:
+        """Take an open store, and the rows of a table of amounts that replace imported amounts."""
         self._table = unit_amounts
         self.names, self.seconds = store, 0.0
         self.unit_count, self.left_out, self.repeated = store.units, store.left_out, store.repeated
@@ -115,9 +116,9 @@ class StoreSource(Source):
         rates: Mapping[str, Fraction] | None,
         objective: Objective,
     ) -> "UnitDistances":
-        """Return the distance of each unit: a lower bound on the cost of trees with it.
+        """Return the distance of each unit by an objective: a lower bound on the cost of trees with the unit.
 
-        Units do not need the ``utensils``.
+        Inputs that are ``utensils``, by label, are ignored.
         """
         from foon_asp.store.unit_distances import UnitDistances  # noqa: PLC0415 (few answers need numpy)
 
@@ -143,7 +144,7 @@ class StoreSource(Source):
         return {name: computed[name] for name in store.digests}
 
     def motion_places(self) -> Iterable[tuple[str, Place]]:
-        """Read the motions of the network, with the place of the first unit that has each."""
+        """Read the motions of the network, each with the first place of the first unit that has it."""
         return self.names.motion_sources()
 
     def unit_prices(self, network: Network, from_file: bool) -> Mapping[FunctionalUnit, Fraction] | None:

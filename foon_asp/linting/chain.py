@@ -18,6 +18,7 @@ class Chain:
     """
 
     def __init__(self, network: Network, copies: list[tuple[Copy, int]]) -> None:
+        """Index the units by the nodes that they make and need; ``copies`` are in the order of the sheet."""
         self.network, self.objects = network, network.objects
         firsts: dict[int, Copy] = {}
         for copy, unit in copies:
@@ -46,9 +47,9 @@ class Chain:
         return {self.objects[node].label for node in nodes_by_side[side][self.units[position]]}
 
     def nearest(self, node: int, consumer: int) -> tuple[int, int] | None:
-        """Return the last unit before ``consumer`` that makes a similar node, by position, and this node.
+        """Return the last unit before ``consumer`` that makes a node similar to a needed node, and that node.
 
-        ``None`` if no unit makes a similar node that may be meant.
+        Units are positions in the chain. ``None`` if no unit makes a similar node that may be meant.
         """
         wanted = self.objects[node]
         for distance in range(1, min(consumer, MAX_DISTANCE) + 1):
@@ -64,7 +65,11 @@ class Chain:
         return None
 
     def _may_be_one(self, node: int, consumer: int, other: int, producer: int) -> bool:
-        """Whether a needed and a made node may be one; not if their locations are listed and differ."""
+        """Whether a needed and a made node may be meant to be one node.
+
+        ``consumer`` and ``producer`` are the positions of the units. False if the nodes differ in more than a
+        little, or are in different places that both units list.
+        """
         needed, made = self.objects[node], self.objects[other]
         return _differ_little(needed, made, consumer - producer) and (
             needed.relations == made.relations

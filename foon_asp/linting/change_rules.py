@@ -10,7 +10,10 @@ from foon_asp.text.diagnostics import Diagnostic
 
 
 def _is_seldom(often: int, of: int) -> bool:
-    """Whether at most an eighth of a motion's units have a change; false for fewer than three units."""
+    """Whether a motion seldom has a change: in ``often`` of its ``of`` units, at most an eighth of them.
+
+    False for fewer than three units.
+    """
     return of >= 3 and 8 * often <= of
 
 

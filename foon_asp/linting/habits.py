@@ -38,7 +38,14 @@ def mentioned(nodes: Collection[ObjectNode]) -> set[str]:
 
 
 class Habit(NamedTuple):
-    """Counts of the units with a motion: all, those that keep contents, and those with each change."""
+    """Counts of the units with a motion.
+
+    ``units``: all of them.
+    ``keep``: those with a container that keeps a part of its contents.
+    ``lose``, ``gain``: those in which such a container also loses or gains contents.
+    ``make``: those with outputs that come from no input.
+    ``end``: those with inputs that are in no output.
+    """
 
     units: int = 0
     keep: int = 0
@@ -51,10 +58,12 @@ class Habit(NamedTuple):
 class Habits:
     """The changes of the units of a network.
 
-    ``ingredients`` are all names among contents; ``foods`` are those that are never a container or a place.
+    ``ingredients`` are all names among contents; ``foods`` are the ingredients that are never a container or
+    a place.
     """
 
     def __init__(self, network: Network) -> None:
+        """Collect the names of all contents, and find the foods among them."""
         self.network = network
         objects = network.objects
         self.ingredients = {name for node in objects for name in content_names(node)}

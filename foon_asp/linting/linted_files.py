@@ -48,6 +48,7 @@ class LintedFiles:
     """
 
     def __init__(self, files: Iterable[Path], contents: Mapping[Path, bytes] = MappingProxyType({})) -> None:
+        """Read all files, and merge their units into one network."""
         self._contents = contents
         self.reader = FoonReader()
         self.sheets: list[Sheet] = []

@@ -33,6 +33,7 @@ class Names:
     """Every name of every kind with its mentions, in order, and their number."""
 
     def __init__(self, files: LintedFiles) -> None:
+        """Collect the mentions of every name in the files, and count them."""
         self.files = files
         self.network = files.network
         self.mentions: dict[Kind, dict[str, list[Mention]]] = {kind: {} for kind in Kind}
@@ -50,7 +51,7 @@ class Names:
 
     @cached_property
     def loose(self) -> dict[Kind, set[str]]:
-        """Names by kind that do not occur both among the inputs and among the outputs of units."""
+        """Names by kind that are missing among the inputs, or among the outputs, of all units."""
         network = self.network
         input_names, output_names = (
             {
@@ -85,7 +86,7 @@ class Names:
         return endings
 
     def by_sheet(self, kind: Kind, name: str) -> Iterator[tuple[Sheet, int, int]]:
-        """Yield each sheet with a name, the index of its first line, and its mentions there."""
+        """Yield each sheet with a name, the index of the first line with it, and the number of mentions."""
         by_sheet: dict[int, tuple[int, int]] = {}
         for sheet, _, index, often in self.mentions[kind][name]:
             first, total = by_sheet.get(sheet, (index, 0))

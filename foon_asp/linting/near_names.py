@@ -13,14 +13,15 @@ _VERB_ENDING = re.compile(r"(?:e?[sdr]|[ey])$")  # juice, juiced; flakes, flaked
 class _Slips(NamedTuple):
     """The limits of frequency and length for a name to count as a slip for another name.
 
-    ``rare``, ``very_rare``: mentions of the slip, at most.
-    ``ratio``, ``high_ratio``, ``highest_ratio``: how many times as often the other name is mentioned, at
-    least.
-    ``short``, ``medium``, ``long``: letters of the shorter word, at least; shorter ones are mostly words of
-    their own (off and of, bell and bel). With lower limits, more slips are found and more words are wrongly
-    reported.
-    ``compared``: the most frequent names with the same letters but one that are compared.
-    ``name_letters``: letters of a name, at most; longer texts are no names, and slow to compare.
+    ``rare``, ``very_rare``: the greatest number of mentions of a slip.
+    ``ratio``, ``high_ratio``, ``highest_ratio``: the least ratio of mentions of the other name to those of
+    the slip.
+    ``short``, ``medium``, ``long``: the least number of letters of the shorter word. Shorter words are mostly
+    different words (off and of, bell and bel). With lower limits, more slips are found, and more words are
+    wrongly reported.
+    ``compared``: how many of the names that share all letters but one are compared, the most frequent first.
+    ``name_letters``: the greatest number of letters of a name; longer texts are no names, and slow to
+    compare.
     """
 
     rare: int = 5
@@ -48,16 +49,19 @@ def near_names(
 
     Names that only differ in doubled letters, capitals, blanks or hyphens are a pair at any frequency
     (``drinking glas``, ``hashbrown``). A rare name and a much more frequent name are a pair if one letter
-    after the first of a word is missing, added, changed or swapped (``baking try``). Grammatical endings are
-    no slips: egg, eggs, and for ``verbs`` cube, cubed. A different digit is no slip either.
+    after the first of a word is missing, added, changed or swapped (``baking try``). Grammatical endings
+    (egg, eggs) and different digits are no slips. A rare name is in one pair at most.
 
-    ``known_words`` are spelt correctly: two known words are different words, and an unknown word similar to a
-    known word is a slip at any frequency. ``loose`` are names that are never made or never used: a loose name
-    similar to a name that is not loose is a slip at any frequency.
+    Rare names are looked up among the frequent names by deletion neighbourhood: the texts that lack one of
+    their letters. So not all pairs are compared.
 
-    ``counts`` has the mentions of each name. A rare name is in one pair at most. Rare names are looked up
-    among the frequent ones by their deletion neighbourhood, the texts without one of their letters, so that
-    not all pairs are compared.
+    Parameters:
+        counts: The number of mentions of each name.
+        verbs: Whether the names are verbs; cube and cubed are then no slips either.
+        known_words: Words that are spelt correctly. Two known words are different words. An unknown word
+            similar to a known word is a slip at any frequency.
+        loose: Names that are never made or never used. A loose name similar to a name that is not loose is a
+            slip at any frequency.
     """
     paired: set[str] = set()
     for rare, meant in _spelt_two_ways(counts, known_words):

@@ -50,9 +50,11 @@ class WrittenBlock(NamedTuple):
 class Sheet:
     """The lines of a file, from index 0.
 
-    Of JSON these are the equivalent lines of FOON text, and ``places`` has for each line the place in the
-    file where its unit or entry begins. ``entries`` are the objects of a kitchen or of goals; a network has
+    ``lines``: the lines; for a JSON file, the equivalent lines of FOON text.
+    ``places``: for each line of a JSON file, the place in the file where its unit or entry begins, else
     ``None``.
+    ``entries``: the objects of a kitchen or of goals; ``None`` for a network.
+    ``source_lines``: the lines of a JSON file as they are written.
     """
 
     file: str

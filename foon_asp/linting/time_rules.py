@@ -52,7 +52,10 @@ class _Step(NamedTuple):
 
 
 def _timed_sheets(context: Context) -> Iterator[tuple[Sheet, list[_Step], dict[int, tuple[str, int]]]]:
-    """Yield each sheet with its timed steps, and the messages on odd times by motion line."""
+    """Yield each sheet with times, its steps with times, and the messages on unlikely times.
+
+    The messages are those of :func:`_odd_times`, by the line of the motion.
+    """
     for sheet, copies in zip(context.sheets, context.files.copies_by_sheet, strict=True):
         steps = list(_steps(sheet, copies))
         if steps:

@@ -33,6 +33,7 @@ class Vocabulary:
     """
 
     def __init__(self, rows: Iterable[_Row] = ()) -> None:
+        """Collect rows: a kind, a name of this kind, and its numbers."""
         self.numbers: dict[str, dict[str, Sequence[int]]] = {kind: {} for kind in _NUMBERS}
         for kind, name, numbers in rows:
             by_name = self.numbers[kind]

@@ -23,10 +23,11 @@ class DeadCycle(NamedTuple):
 def dead_cycles(network: Network, available: Collection[int] = ()) -> list[DeadCycle]:
     """Find the dead cycles among nodes that are not ``available``, in time linear in the size of the network.
 
-    A unit does not make a node that it needs, such as the knife that chops. Nodes that no unit makes are
-    available too. If no dead cycle is found, every node can be made. From a strongly connected component, the
-    nodes that can be made are removed; its dead cycles are the components of the remainder that need no other
-    component of the remainder.
+    A node that a unit needs, such as the knife that chops, does not count as made by this unit. Nodes that no
+    unit makes are available too. If no dead cycle is found, every node can be made.
+
+    From each strongly connected component, the nodes that can be made are removed. The dead cycles of the
+    component are those components of the remainder that need no other component of the remainder.
     """
     inputs = [frozenset(nodes) for nodes in network.inputs]
     made = [
@@ -60,7 +61,10 @@ def dead_cycles(network: Network, available: Collection[int] = ()) -> list[DeadC
 
 
 def _components(network: Network, made: list[tuple[int, ...]], nodes: Collection[int]) -> dict[int, int]:
-    """Return by node the number of its strongly connected component, for those of ``nodes`` on a cycle."""
+    """Return the number of the strongly connected component of each node on a cycle, by node.
+
+    Only ``nodes`` count. ``made`` has for each unit the nodes that it makes out of others.
+    """
     subnetwork = replace(
         network,
         inputs=tuple(tuple(n for n in unit_nodes if n in nodes) for unit_nodes in network.inputs),

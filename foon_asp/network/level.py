@@ -41,8 +41,8 @@ def pattern_at_level(pattern: NodePattern, level: int) -> NodePattern:
 def network_at_level(network: Network, level: int) -> Network:
     """Return a level-3 network at a level, with new ids; ``detailed`` and ``stands_for`` lead to the old ids.
 
-    Sources of all units that have become one are kept. Raises :class:`ValueError` when the network is not
-    of level 3 or there is no such level.
+    A unit keeps the sources of all units that it stands for. Raises :class:`ValueError` when the network is
+    not of level 3 or there is no such level.
     """
     if level not in LEVELS or network.level != 3:
         raise ValueError(f"no way from level {network.level} to level {level}")

@@ -25,9 +25,9 @@ class Slip(NamedTuple):
 def slip_between(node: ObjectNode, other: ObjectNode | NodePattern) -> Slip | None:
     """Return the only name in which two nodes differ, ``None`` unless its spellings are one edit apart.
 
-    One edit is a letter too many, too few, another or swapped with the next; doubled letters, capitals,
-    blanks and hyphens count as one edit together. Two relations to one object by different words
-    (``in [bowl]``, ``on [bowl]``) are one edit apart too.
+    One edit adds, omits or changes a letter, or swaps it with the next. Differences in doubled letters,
+    capitals, blanks and hyphens count as one edit together. Two relations to one object by different words
+    (``in [bowl]``, ``on [bowl]``) are one edit apart, too.
     """
     loose = isinstance(other, NodePattern) and not other.relations
     remaining, other_remaining = list(_parts(node, loose)), list(_parts(other, loose))
@@ -62,7 +62,10 @@ def nearest(node: ObjectNode, others: Iterable[ObjectNode], max_nodes: int) -> l
 
 
 def _parts(node: ObjectNode | NodePattern, loose: bool) -> Iterator[_NodePart]:
-    """Yield the names of a node with their kinds; if ``loose``, containers instead of relations."""
+    """Yield the names of a node with their kinds.
+
+    If ``loose``, the objects of relations are yielded as containers, without the words.
+    """
     yield "label", node.label
     yield from (("state", state) for state in sorted(node.states))
     yield from (("ingredient", ingredient) for ingredient in node.ingredients)

@@ -127,7 +127,7 @@ def units_kept_apart(units: Iterable[FunctionalUnit]) -> list[NearUnits]:
     """Return the pairs of units in one list that have a single difference, which may be a slip.
 
     The difference is in the motion, a state or a relation, or it is between two names that are spelt almost
-    alike. Units that differ in other labels are not meant to be one.
+    alike. Units with two quite different labels are meant to be different.
     """
     listed = list(units)
     pairs = []
@@ -150,7 +150,8 @@ def _candidates(
 ) -> list[list[int]]:
     """Return for each unit of ``lefts`` the indices in ``rights`` that share the most rare keys with it.
 
-    They are ``max_candidates`` at most. A key that more than ``max_sharing`` units share is not rare.
+    For each unit, these are at most ``max_candidates`` indices. A key that more than ``max_sharing`` units
+    have is not rare.
     """
     by_key: defaultdict[object, list[int]] = defaultdict(list)
     for j, unit in enumerate(rights):

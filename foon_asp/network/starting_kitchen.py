@@ -13,7 +13,11 @@ File = TypeVar("File", bound=Hashable)
 
 
 class RecipeKitchen(NamedTuple):
-    """The starting kitchen of one file: ``raw`` nodes, which no unit makes, and other nodes, ``granted``."""
+    """The starting kitchen of one file, by id of nodes.
+
+    ``raw`` nodes are made by no unit. ``granted`` nodes are made by a unit, but are assumed to be available
+    so that all units can execute.
+    """
 
     raw: list[int]
     granted: list[int]
@@ -25,9 +29,10 @@ def recipe_kitchen(
     """Return the starting kitchen of one file, in time linear in its size; items are not used up.
 
     ``units`` are the inputs and outputs of each unit in the order of the file, as ids of object nodes. Nodes
-    that no unit makes out of others are available. Then units execute as far as they can. When no more can,
-    the first unit in the file's order that lacks inputs is granted them, except ``goals``. This repeats until
-    only goals are lacking. A goal is granted only then, for example where several goals need each other.
+    that no unit makes out of others are available. Then units execute as far as they can. When none can, the
+    missing inputs of the first unit in the file that lacks any are granted, except ``goals``. This repeats
+    until only goals are lacking; then goals are granted in the same way, for example where two goals need
+    each other.
     """
     unit_sides = list(units)
     missing = [len(inputs) for inputs, _ in unit_sides]  # by unit: how many inputs are not available yet
@@ -98,7 +103,8 @@ class StartingKitchen(ABC, Generic[File]):
     def changes(self, goals: Iterable[int]) -> tuple[frozenset[int], frozenset[int]]:
         """Return the nodes that these goals add to the kitchen, and those that they remove from it.
 
-        A goal is not assumed where a unit makes it.
+        A goal that a unit can make from other nodes is not assumed to be available; other nodes may be
+        granted in its place.
         """
         goals = [goal for goal in goals if goal in self.nodes and self.makers(goal)]
         kitchens = {
@@ -124,6 +130,7 @@ class NetworkStartingKitchen(StartingKitchen[str]):
     """The starting kitchen of a network in memory. Units without a source count as one file."""
 
     def __init__(self, network: Network) -> None:
+        """Compute the starting kitchen of every file."""
         self._network = network
         self._files: dict[str, list[int]] = {}
         for unit, sources in enumerate(network.sources):

@@ -39,7 +39,7 @@ class UnitPrices(NamedTuple):
         return _least([self.price(network.detailed.unit(detail)) for detail in network.stands_for[number]])
 
     def _at_own_level(self, network: Network) -> tuple[Fraction | None, ...]:
-        """Return the price of each unit of a network of the same level; ``None`` where it has none."""
+        """Return the price of each unit of a network, looked up by the unit itself; ``None`` for none."""
         priced_motions = {unit.motion for unit in self.units}  # spares looking up units of other motions
         return tuple(
             self.price(network.unit(unit)) if motion in priced_motions else self.motions.get(motion)

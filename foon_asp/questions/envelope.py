@@ -38,12 +38,15 @@ class End(NamedTuple):
 
 
 class Envelope:
-    """The part of the upper envelope of the success of trees over one rate where the best tree is on it.
+    """Finds the interval of each success rate in which the best tree stays the best.
 
-    docs/dev/questions.md has the argument. ``motions`` are the motions that a tree for the goals may have.
+    As functions of one rate, the successes of all trees have an upper envelope; the interval is where the
+    best tree is on it. docs/dev/questions.md has the argument. ``motions`` are the motions that a tree for
+    the goals may have.
     """
 
     def __init__(self, problem: Problem, tree: tuple[int, ...], settings: Settings) -> None:
+        """Find the motions of possible trees, and by searches the rates that may rise to 1 without effect."""
         self._problem, self._tree, self._settings = problem, tree, settings
         self._holds = Postconditions(problem, levels(_SUCCESS), settings)
         reached = reach(problem)
@@ -88,10 +91,10 @@ class Envelope:
             return End(None, None, proved=False)
 
     def _end_from(self, motion: str, degree: int, of: Fraction) -> End:
-        """Return the end of the interval, found from a distant rate towards the given rate of a motion.
+        """Return the end of the interval of a motion's rate, found from a distant rate towards the given one.
 
         The distant rate is the root of ``of`` of this degree; each better tree gives the next rate to try. At
-        degree 0 all other rates are 1, so that the tree with the fewest units of the motion is found.
+        degree 0 all other rates count as 1, so that the tree with the fewest units of the motion is found.
         """
         tree = self._seen(motion, self._tree)
         rate = Root(1, (self._problem.rates or {})[motion])
@@ -108,10 +111,10 @@ class Envelope:
             degree, of = at.degree, at.of
 
     def _better(self, motion: str, degree: int, of: Fraction) -> tuple[_Tree | None, bool]:
-        """Return a tree that is better at another rate, or ``None``, and whether the answer is proved.
+        """Return a tree that is better at another rate of a motion, or ``None``, and whether this is proved.
 
-        The rate is the root of ``of`` of this degree. All rates are raised to the degree, which makes it
-        rational and keeps the order of products.
+        The other rate is the root of ``of`` of this degree. All rates are raised to the degree: then this
+        rate is rational, and the order of trees by success stays the same.
         """
         outcome, better = self._compared(_at_rate(self._problem, motion, degree, of))
         proved = outcome.status is Status.OPTIMAL
@@ -161,7 +164,7 @@ class Envelope:
 
 
 def _at_rate(problem: Problem, motion: str, degree: int, of: Fraction) -> Problem:
-    """Return a problem with all rates raised to a degree; the varied rate, a root, becomes ``of``."""
+    """Return a problem with all rates raised to a degree; ``of`` is the raised rate of the motion."""
     raised = {name: rate**degree for name, rate in (problem.rates or {}).items()}
     own_rates = {unit: rate**degree for unit, rate in problem.own_rates.items()}
     return replace(problem, rates=raised | {motion: of}, own_rates=own_rates, as_seen=problem)

@@ -10,9 +10,10 @@ _SHORT = Fraction(1, 10**9)  # smallest number that is written without an expone
 
 
 class Flip(NamedTuple):
-    """The value ``at`` of a rate, ``above`` it or below, beyond which another tree is the best.
+    """The value ``at`` of a rate beyond which another tree is the best.
 
-    Flips are in order of the relative change of the rate.
+    The other tree is the best at rates above this value if ``above``, else at rates below. Flips are in order
+    of the relative change of the rate.
     """
 
     rate: Fraction

@@ -121,7 +121,7 @@ class CountedHelp:
     def __init__(
         self, problem: Problem, better: Mapping[str, Fraction], settings: Settings, reporter: Reporter
     ) -> None:
-        """Take the person's rates of the motions that the person does better than the robot."""
+        """Add a copy of each unit that the person does better, with the person's rate from ``better``."""
         self._problem, self._settings, self._reporter = problem, settings, reporter
         network = problem.network
         units = [unit for unit in sorted(reach(problem).units) if network.motions[unit] in better]

@@ -50,9 +50,9 @@ def a_plan(
 def a_plan_or_state(
     command: Command, goals_named: Sequence[str], state: Path | None, plan: Path | None, **options: Any
 ) -> tuple[Problem, Tree | None]:
-    """Read a plan and pose its problem; with a state, pose the state's goals.
+    """Read a plan, and pose its problem; with a ``state``, pose the goals named, and return no plan.
 
-    With a state, the file of a plan is one more network.
+    The file of a plan beside a state serves as one more network.
     """
     if state is None:
         if plan is None:
@@ -109,10 +109,10 @@ def settle_data(command: Command, files: Mapping[Path, ListedTree]) -> Dataset:
 
 
 def own_networks(kitchen: Network, files: Mapping[Path, ListedTree]) -> Sequence[Path]:
-    """Return the files with trees that serve as their own network, where no data are named.
+    """Return the files with trees that also serve as the network, where no data are named.
 
-    Returns no file if the bundled kitchen has at least half of the units: a recipe may share a unit with
-    the kitchen, and a tree of the kitchen may have units that a program made up. Raises :class:`UserError`
+    Returns no file if the bundled ``kitchen`` has at least half of the units; it is then the network. Fewer
+    shared units may be chance, and a program may have made up some units of a tree. Raises :class:`UserError`
     for an answer about other data, since an answer holds only a part of its data.
     """
     listed = [listed_unit for tree in files.values() for listed_unit in tree.units or ()]

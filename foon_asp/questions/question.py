@@ -61,12 +61,15 @@ class Option(NamedTuple):
     name and default from the parameter. Without ``help``, it takes the first sentence of the parameter's
     entry in the docstring.
 
-    ``name`` is the parameter. ``flags`` are the flags of the command line, by default ``--name`` with dashes
-    for underscores. A ``positional`` option has no flag and must be given, unless it is ``optional`` or
-    ``many``. An option that is ``many`` may be repeated. ``help`` describes the option on the command line
-    and in Python; ``python`` adds what only Python accepts. ``choices`` are the values allowed, or a function
-    that lists them, if other packages may add some. ``least`` is the smallest number allowed. ``metavar`` is
-    the word for the value in help, by default the word of its type, and ``FILE`` for a file.
+    ``name``: the name of the parameter.
+    ``help``: the description on the command line and in Python.
+    ``flags``: the flags of the command line; by default ``--name`` with dashes for underscores.
+    ``many``: whether it may be repeated.
+    ``metavar``: the word for the value in help; by default the word of its type, and ``FILE`` for a file.
+    ``choices``: the values allowed; a function that lists them, if other packages may add some.
+    ``least``: the smallest number allowed.
+    ``positional``: whether it has no flag; it must then be given, unless it is ``optional`` or ``many``.
+    ``python``: an addition to ``help`` about values that only Python accepts.
     """
 
     name: str = ""
@@ -87,11 +90,13 @@ class Option(NamedTuple):
 class Question:
     """The description of a question for a command line.
 
-    ``help`` follows the line of the index, with examples and exit codes. ``formats`` are those of the result,
-    the default first. ``suffixes`` are the endings of file names, with the format that each stands for, if a
-    result can be written into a file. ``pose`` makes the first arguments of the function from the options of
-    the problem. ``command`` is what a command calls with all options: the function itself, or another one if
-    a command has more options, or answers where Python raises an exception.
+    ``options``: the options of the command.
+    ``help``: the text below the line of the index, with examples and exit codes.
+    ``formats``: the formats of the result, the default first.
+    ``suffixes``: the format that each ending of a file name stands for; empty if no file can be written.
+    ``pose``: a function from the options of the problem to the first arguments of the question.
+    ``command``: the function that a command calls with all options. It is not the question itself if a
+    command has more options, or answers where Python raises an exception.
     """
 
     def __init__(

@@ -339,7 +339,7 @@ def _with_copies(
 class _PricedList(NamedTuple):
     """A list, its price, whether it is proved the cheapest, and the best tree if it is known.
 
-    ``bought`` has the number of copies by the id of the object node, which is 1 where items last.
+    ``bought`` has the number of copies to buy by id of the object node; the number is 1 where items last.
     """
 
     bought: Mapping[int, int]
@@ -487,7 +487,10 @@ class _Shopper:
         objectives: tuple[Objective, ...],
         wares: Mapping[int, Fraction],
     ) -> None:
-        """Prepare the search; ``purchases`` returns the purchases possible without some wares, by id."""
+        """Prepare the search for lists of ``wares``, which are prices by id of the object node.
+
+        ``purchases`` returns, for ids of wares to leave out, the purchases that remain possible.
+        """
         self._problem, self._settings, self._wares = problem, settings, wares
         self._purchases, self._objectives = purchases, objectives
         self._waiting: list[tuple[tuple[int | Fraction, ...], int, frozenset[int], _PricedList]] = []

@@ -10,10 +10,10 @@ from foon_asp.proof.used_up_run import used_up_run
 
 
 def used_up_note(problem: Problem, tree: Iterable[FunctionalUnit]) -> list[str]:
-    """Return one line if items last and the tree would not run with each item used once, else no line.
+    """Return a note of one line if items last and the tree would not run with items used up, else none.
 
-    There is no line either if no step used up the copy that is missing. If units, the kitchen or the goals
-    have amounts that matter for the tree, the line says that amounts are not counted.
+    There is no note if no step used up the copy that is missing. If units, the kitchen or the goals have
+    amounts that matter for the tree, the note says that amounts are not counted.
     """
     units = tuple(tree)
     if problem.items is not None:

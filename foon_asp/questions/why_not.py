@@ -36,10 +36,14 @@ if TYPE_CHECKING:  # takes clingo along, which only rules need
 class _MaxShown(NamedTuple):
     """How much of an explanation is shown as text; JSON has all of it.
 
-    The fields are maximal counts. ``roots``: causes that are explained. ``dead_ends``: dead ends that are
-    expanded. ``other_units``: achievers of a node, beside the first. ``steps``: steps of a cycle. ``units``:
-    units in one line. ``fix_items``: nodes to add to the kitchen. ``alike``: nodes with the same label as a
-    missing one.
+    All fields are greatest numbers.
+    ``roots``: causes that are explained.
+    ``dead_ends``: dead ends that are expanded.
+    ``other_units``: achievers of a node, beside the first.
+    ``steps``: steps of a cycle.
+    ``units``: units in one line.
+    ``fix_items``: nodes to add to the kitchen.
+    ``alike``: nodes with the same label as a missing node.
     """
 
     roots: int = 8

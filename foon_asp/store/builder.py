@@ -41,6 +41,7 @@ class StoreBuilder:
     """
 
     def __init__(self, database: sqlite3.Connection, kitchen: Sequence[ListedObject] | None) -> None:
+        """Make the tables of the store in an empty database."""
         self._database = database
         create_tables(database)
         self.copies = 0  # of units, added so far
@@ -140,11 +141,18 @@ class StoreBuilder:
         stated: Mapping[FunctionalUnit, Fraction],
         prices: UnitPriceList | None,
     ) -> None:
-        """Write the remaining rows, and the indexes; ``left_out`` counts lines that were not understood.
+        """Write the remaining rows, the indexes, the starting kitchen and the digests.
 
-        ``goals_from`` is the origin of assumed goals, and is empty if a file lists the goals. ``repeated``
-        are nodes that a unit lists twice, ``amounts`` the amounts of units. ``stated`` are the prices that
-        networks state for their units, ``prices`` the prices of a file, if there is one.
+        Parameters:
+            goals: The entries of the goals file, or the assumed goals.
+            goals_from: The origin of the assumed goals; empty if a file lists the goals.
+            rates: The success rates of motions; ``None`` without a file of rates.
+            utensils: The labels of utensils.
+            left_out: The number of lines that were not understood.
+            repeated: The nodes that a unit lists twice.
+            amounts: The amounts of units.
+            stated: The prices that networks state for their units.
+            prices: The prices of a file; ``None`` without one.
         """
         amounts_by_id = [
             (self.unit_id(unit), *(self._amounts(side) for side in sides))

@@ -38,6 +38,7 @@ class Cone:
         utensils: frozenset[str],
         available: Container[int],
     ) -> None:
+        """Start with no unit read; goals that are not ``available`` are open."""
         self.goals = tuple(goals)
         self.units: set[int] = set()
         self.open = {goal for goal in self.goals if goal not in available}
@@ -53,9 +54,10 @@ class Cone:
 
     @uncollected()
     def grow(self, objects: Iterable[int], max_units: int | None = None) -> None:
-        """Read the producers of open nodes and of the nodes that they need, breadth first.
+        """Read the producers of open nodes, then of the nodes that these producers need, breadth first.
 
-        Ends when about ``max_units`` more units were read; ``None`` means no limit.
+        ``objects`` are the nodes to begin with; nodes that are not open are skipped. Ends when about
+        ``max_units`` more units were read; ``None`` means no limit.
         """
         queue = deque(objects)
         target_size = None if max_units is None else len(self.units) + max_units

@@ -20,12 +20,7 @@ _LABELLED = "label = (SELECT id FROM label WHERE name = ?)"
 
 
 class Outline:
-    """The hypergraph of all units of a store as arrays; ids are those of the whole network.
-
-    ``outline`` are the rows of the table; ``units`` and ``nodes`` are the numbers of units and nodes in the
-    store. ``motions`` are the names of motions, by number. ``nodes_where`` returns the ids of the nodes that
-    meet a condition in SQL. Raises :class:`LookupError` for ids that do not exist.
-    """
+    """The hypergraph of all units of a store as arrays; ids are those of the whole network."""
 
     def __init__(
         self,
@@ -35,6 +30,15 @@ class Outline:
         motions: Sequence[str],
         nodes_where: Callable[..., Collection[int]],
     ) -> None:
+        """Decode the arrays; raises :class:`LookupError` for ids that do not exist.
+
+        Parameters:
+            outline: The rows of the table: the name and the bytes of each array.
+            units: The number of units in the store.
+            nodes: The number of nodes in the store.
+            motions: The names of motions, by number.
+            nodes_where: A function that returns the ids of the nodes that meet a condition in SQL.
+        """
         self._nodes_where, self._nodes, self.motion_names = nodes_where, nodes, motions
         columns = {name: np.frombuffer(content, dtype="<u4") for name, content in outline}
         self.motions = _checked_ids(columns["motions"], len(motions))
@@ -84,7 +88,7 @@ class Outline:
         return mask
 
     def with_all(self, traits: Iterable[Trait], kitchen: Mask) -> Mask:
-        """Return the mask of the units that may have all of the traits, under a kitchen."""
+        """Return the mask of the units that may have all of the traits; nodes of ``kitchen`` are not made."""
         mask = np.ones(len(self.motions), dtype=np.bool_)
         for having, word in traits:
             if having is Having.MOTION:
@@ -114,9 +118,10 @@ class Outline:
     ) -> Distances:
         """Return for each unit its cost plus the largest distance of its inputs (``h_max``).
 
-        ``available`` nodes and ``free`` units cost nothing, and ``costs`` is by motion. A tree that has a
-        unit costs no less than its distance, since only one input of each unit counts. A distance above
-        ``max_distance`` is :data:`FAR`; ``limit`` returns a lower maximum from the distances found so far.
+        The distance of ``available`` nodes and ``free`` units is 0. The cost of another unit is that of its
+        motion in ``costs``. A tree costs no less than the distance of any of its units, since only one input
+        of each unit counts. A distance above ``max_distance`` becomes :data:`FAR`; ``limit`` returns a lower
+        maximum from the distances found so far.
         """
         node_distances = np.where(available, 0, FAR)
         distances = np.where(free, 0, FAR)

@@ -66,6 +66,7 @@ class Store:
     level = 3
 
     def __init__(self, file: Path) -> None:
+        """Open the file, check its header and its tables, and read its properties."""
         self.file, self.name = StoreFile(file), str(file)
         self._database = self.file.database
         self._node_rows: dict[int, _NodeRow] = {}  # rows of the nodes read so far
@@ -192,9 +193,10 @@ class Store:
     def unpriced(
         self, motions: Container[str], units: Iterable[FunctionalUnit], from_file: bool
     ) -> list[Unpriced]:
-        """Count the units without a price by motion, except those with the given motions and the given units.
+        """Count, for each motion, the units without a price.
 
-        ``from_file`` is as for :meth:`unit_prices`. All units with other motions are read.
+        Motions in ``motions`` and units in ``units`` are left out. ``from_file`` is as for
+        :meth:`unit_prices`.
         """
         unpriced_motions = [number for number, (name, _) in self._motions.items() if name not in motions]
         if not unpriced_motions:

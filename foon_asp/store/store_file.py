@@ -47,6 +47,7 @@ class StoreFile:
     """
 
     def __init__(self, file: Path) -> None:
+        """Check the header of the file, open it as a database, and check its tables."""
         self.file = file
         self._check_header()
         try:

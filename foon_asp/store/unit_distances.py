@@ -30,6 +30,7 @@ class UnitDistances:
         rates: Mapping[str, Fraction] | None,
         objective: Objective,
     ) -> None:
+        """Compute the cost of a unit of each motion."""
         self._outline, self._kitchen, self._available = outline, kitchen, kitchen | skipped
         motions = outline.motion_names
         costs, self._step = [1] * len(motions), 1  # the unit of ``max_steps``
@@ -52,9 +53,10 @@ class UnitDistances:
     ) -> tuple[list[int], list[int]]:
         """Return the nearest units of each kind with the units that lead to them, and the least distances.
 
-        ``executed`` are units that cost nothing. Of each kind, ``max_units`` units count at most, among those
-        whose distance exceeds the least by up to ``max_steps`` steps. The least distance of a kind is
-        :data:`FAR` where none of its units can be reached.
+        ``executed`` are units that cost nothing. Of each kind, at most ``max_units`` units are chosen. Their
+        distances exceed the least distance, or the greatest of those of several kinds, by at most
+        ``max_steps`` steps. The least distance of a kind is :data:`FAR` where none of its units can be
+        reached.
         """
         free_units, surplus = self._outline.units(executed), max_steps * self._step
 
@@ -76,10 +78,10 @@ class UnitDistances:
         return np.flatnonzero(units).tolist(), least_distances(distances, unit_ids)
 
     def relevant(self, kinds: Sequence[Mask] | None, executed: Collection[int], max_cost: int) -> list[int]:
-        """Return the units within a distance of ``max_cost`` that are of a kind or lead to such units.
+        """Return the units within a distance of ``max_cost`` that are of some kind or lead to such units.
 
-        ``executed`` are units that cost nothing and are left out. If ``kinds`` is ``None``, all units
-        count.
+        ``executed`` are units that cost nothing; they are not returned. ``None`` as ``kinds`` means all
+        units.
         """
         if max_cost < int(self._costs.min(initial=FAR)):
             return []

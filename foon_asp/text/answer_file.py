@@ -22,13 +22,15 @@ _TREE_COMMENT = "# Task tree for:"  # in the comments that FOON text begins with
 
 
 class ListedTree(NamedTuple):
-    """A tree as a file lists it: its ``units``, each with its source, in the order of the file.
+    """A tree as a file lists it.
 
-    ``units`` is ``None`` for an answer without a tree. ``goals``, ``status``, ``containers`` and ``items``
-    are read from an answer of foon-asp, and are empty for other files. ``wanted`` has the number of copies of
-    goals that are wanted several times. The output of clingo has no units: ``numbers`` are the ids in its
-    atoms ``use(U)``. ``is_tree`` is false for FOON without a mark of a task tree, which may be a network.
-    ``amounts`` are the amounts of the units.
+    ``units``: the units in the order of the file, each with its source; ``None`` for an answer without a
+    tree.
+    ``numbers``: the ids U in the atoms ``use(U)`` of clingo's output, for which ``units`` is empty.
+    ``goals``, ``status``, ``containers``, ``items``: the fields of an answer of foon-asp, else empty.
+    ``wanted``: the number of copies of each goal for which the answer states this number.
+    ``is_tree``: false for FOON without a mark of a task tree; the file may then be a network.
+    ``amounts``: the amounts of the units.
     """
 
     units: tuple[tuple[FunctionalUnit, Source], ...] | None
@@ -42,9 +44,10 @@ class ListedTree(NamedTuple):
     amounts: Amounts = MappingProxyType({})
 
     def with_units(self, file: Path, network: Callable[[], Network]) -> "ListedTree":
-        """Return the tree with the units that its ``numbers`` stand for, in the whole network.
+        """Return the tree with units in place of its ``numbers``, which are ids in the whole network.
 
-        Raises :class:`UserError` for a number that the network does not have.
+        ``network`` returns the whole network, and is called only if the tree has numbers. Raises
+        :class:`UserError` for a number that is no id of a unit.
         """
         if not self.numbers:
             return self
@@ -63,10 +66,8 @@ class ListedTree(NamedTuple):
 def read_listed_tree(file: Path, reader: FoonReader) -> ListedTree:
     """Read a tree; the diagnostics of FOON text are added to those of ``reader``.
 
-    Of clingo's output, the last answer counts, which is the best.
-
-    Raises :class:`UserError` for a document that cannot have a tree, is of another version, or is not of
-    the form of ``docs/json.md``.
+    In the output of clingo, the last answer is read, which is the best. Raises :class:`UserError` for JSON
+    without a field for a tree, of another version, or not as ``docs/json.md`` describes.
     """
     if not file.exists():
         raise UserError(f"{file}: no such file")
@@ -93,7 +94,7 @@ def read_listed_tree(file: Path, reader: FoonReader) -> ListedTree:
 
 
 def _used_ids(text: str) -> tuple[int, ...]:
-    """Return the ids in the last lines of atoms with ``use(U)``; empty for texts not from clingo."""
+    """Return the ids U in the atoms ``use(U)`` of the last answer of clingo; empty for any other text."""
     answers = [tuple(map(int, _USE.findall(block))) for block in _ATOMS.findall(text)]
     return next((numbers for numbers in reversed(answers) if numbers), ())
 

@@ -9,10 +9,11 @@ MARKED, LAST = "marked", "last"
 
 
 def wanted_outputs(inputs: Sequence[int], outputs: Sequence[int], needed: Iterable[int]) -> list[int]:
-    """Return the final outputs of the last unit of a file, by id: the outputs that no unit needs.
+    """Return the final outputs of the last unit of a file: its outputs that no unit needs.
 
-    ``needed`` are the outputs that some unit has as inputs. If every output is needed, the outputs that are
-    not inputs of the last unit itself are returned. If these are none either, all outputs are returned.
+    All arguments are ids of nodes: the ``inputs`` and ``outputs`` of the last unit, and as ``needed`` the
+    inputs of all units. If every output is needed, returns the outputs that are not among ``inputs``; if
+    there are none, all ``outputs``.
     """
     needed = set(needed)
     return [o for o in outputs if o not in needed] or [o for o in outputs if o not in inputs] or [*outputs]
@@ -24,7 +25,10 @@ def as_entry(node: ObjectNode, source: Source) -> ListedObject:
 
 
 def last_goals(network: Network, last_units: Mapping[int, Source]) -> list[ListedObject]:
-    """Return the goals of the last units, by id with their sources, as entries of a goals file."""
+    """Return the final outputs of the last unit of each file, as entries of a goals file.
+
+    ``last_units`` maps the id of each last unit to its source.
+    """
     outputs = {o for unit in last_units for o in network.outputs[unit]}
     needed = {o for inputs in network.inputs for o in inputs if o in outputs}
     goal_sources: dict[int, Source] = {}

@@ -61,7 +61,7 @@ def no_tab(bracket: str, column: int) -> Remark:
 def items(listed: str, column: int, remarks: list[Remark]) -> tuple[str, ...]:
     """Split the text in brackets at its commas; ``column`` is that of its first letter.
 
-    Dropped and doubtful items are remarked on, once for each kind of remark.
+    Adds to ``remarks`` a remark on dropped items and one on doubtful items, if there are any.
     """
     split = listed.split(",")
     if len(set(split)) == len(split) and all(item and item[0] != " " != item[-1] for item in split):

@@ -38,8 +38,8 @@ class Converted(NamedTuple):
 class Converter:
     """Converts any number of files to one dialect, with the same ids for the same names in all of them.
 
-    With ``lenient``, parts that cannot be understood or held are left out with a warning, or stay as they are
-    if text is converted to text. Warnings are in ``diagnostics``.
+    If ``lenient``, a part that cannot be understood, or that the dialect cannot hold, causes a warning in
+    ``diagnostics`` instead of an error. It is left out; in a conversion from text to text it stays unchanged.
     """
 
     def __init__(self, target: Dialect, lenient: bool = False) -> None:
@@ -88,7 +88,7 @@ class Converter:
         return Converted(converted, dialect, lost.found)
 
     def _lines(self, text: str, file: str, writer: TextWriter, lost: "_Tally") -> str:
-        """Rewrite line by line, so that comments and blank lines stay."""
+        """Return FOON text in another dialect, line by line, which keeps comments and blank lines."""
         losses_by_line: dict[str, list[Loss]] = {}
 
         def rewrite(line: Line, written: str) -> str:
@@ -141,7 +141,7 @@ class Converter:
     def _element(
         self, element: ObjectBlock | MotionLine, source: Source, lost: "_Tally", in_list: bool = False
     ) -> str:
-        """Return the text of an object or a motion, and count its losses; equal elements are written once."""
+        """Return the text of an object or a motion, cached for equal elements, and count its losses."""
         key = (
             element
             if isinstance(element, MotionLine)
@@ -158,7 +158,7 @@ class Converter:
         return written[0]
 
     def _videos(self, text: str, format_: Format, units: list[ListedUnit], lost: "_Tally") -> tuple[str, ...]:
-        """Return the videos of the whole file that the result can name, and count the others as lost."""
+        """Return the source videos of the file that the result can name; count its other videos as lost."""
         video_lists = {unit.sources[0].videos for unit in units}
         common = video_lists.pop() if len(video_lists) == 1 else ()
         comments = [line for line in split_lines(text) if line[:1] == "#"]

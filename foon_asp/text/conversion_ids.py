@@ -6,8 +6,8 @@ from foon_asp.text.line import Line, name_of
 class Numbering:
     """A numbering of names, which adds ids to lines: objects by label, states by word, motions by label.
 
-    A name with an id in some line keeps the first id learnt; other names get new ids, higher than all of
-    their kind. So all lines have to be learnt before the first is numbered.
+    A name keeps the first id that is learnt for it. A name without an id gets a new one, higher than all ids
+    of its kind. So all lines must be learnt before the first line is numbered.
     """
 
     def __init__(self) -> None:

@@ -128,7 +128,10 @@ def _lost_attributes(before: tuple[StateLine, ...], after: tuple[StateLine, ...]
 
 
 def _lost_relation(relation: Relation, extra: Counter[str | Relation | Contents]) -> Loss:
-    """Return the loss of a relation; the relation that replaces it is removed from ``extra``."""
+    """Return the loss of a relation; ``extra`` counts the attributes that only the result has.
+
+    If the result has another relation to the same object, this one is removed from ``extra``.
+    """
     for other in list(extra):
         if isinstance(other, Relation) and other.object == relation.object:
             extra[other] -= 1

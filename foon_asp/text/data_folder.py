@@ -67,12 +67,16 @@ class DataFiles(NamedTuple):
 class Data(NamedTuple):
     """All data read: the merged network and the data beside it.
 
-    ``kitchen`` are the ids of the object nodes that match ``kitchen_items``. ``rates`` is ``None`` without a
-    rates file, ``unit_prices`` without any price. ``warnings`` lists the assumptions made while reading;
-    ``left_out`` counts the lines dropped. ``starting`` is true without a kitchen file: then the kitchen is
-    the starting kitchen. ``goals_from`` is empty if a file lists the goals. Otherwise it is the origin of the
-    assumed ``goals``: the *marked* nodes, or the *last* unit of each file. ``repeated`` are nodes that a unit
-    lists twice. ``amounts`` has the copies of nodes that units take and make, where these are not 1.
+    ``kitchen``: the ids of the object nodes that match ``kitchen_items``.
+    ``rates``: the success rates of motions; ``None`` without a rates file.
+    ``warnings``: the assumptions made while reading.
+    ``left_out``: the number of lines that were dropped.
+    ``unit_prices``: the prices of units; ``None`` without any price.
+    ``starting``: true without a kitchen file; the kitchen is then the starting kitchen.
+    ``goals_from``: empty if a file lists the goals, else the origin of the assumed ``goals``: the *marked*
+    nodes, or the *last* unit of each file.
+    ``repeated``: the nodes that a unit lists twice.
+    ``amounts``: how many copies of nodes units take and make, where this is not 1.
     """
 
     network: Network
@@ -248,7 +252,7 @@ def counted_items(names: NodeNames, items: Iterable[ListedObject]) -> dict[Objec
 def unit_prices(stated: StatedPrices, listed: UnitPriceList | None) -> UnitPrices | None:
     """Return the prices of units, from a file and as stated in networks; the file takes precedence.
 
-    Raises :class:`InputError` for copies of a unit that disagree, where the file has no price for it.
+    Raises :class:`InputError` if copies of a unit state different prices and the file has none for the unit.
     """
     chosen = listed.units if listed else {}
     settled = stated.settled(chosen)
@@ -258,9 +262,9 @@ def unit_prices(stated: StatedPrices, listed: UnitPriceList | None) -> UnitPrice
 def amounts_of_units(
     stated: StatedAmounts, file: Path | None, network: Network, warnings: list[Diagnostic]
 ) -> DataAmounts:
-    """Return the amounts of a table and those that networks state of their units; the table takes precedence.
+    """Return the amounts that networks state for their units, replaced by those of the table in ``file``.
 
-    Appends warnings about rows that match no unit.
+    Appends to ``warnings`` a warning for each row of the table that matches no unit.
     """
     settled = stated.settled(network)
     if file is None:

@@ -23,7 +23,7 @@ class Severity(StrEnum):
 
 
 class Rename(NamedTuple):
-    """A name of a kind (object, state, relation, motion), and how to write it everywhere in a file."""
+    """A name of a kind (object, state, relation, motion), and its replacement in the whole file."""
 
     kind: str
     old: str

@@ -24,8 +24,8 @@ class FolderFile(NamedTuple):
 def foon_files(paths: Iterable[Path]) -> list[FolderFile]:
     """Return the files named and those of the folders named, sub-folders included, in order of name.
 
-    Of a folder these are the ``*.txt``, ``*.json`` and ``*.jsonl`` files with FOON content, networks and
-    lists of objects alike. Raises :class:`UserError` for a folder without such files.
+    From a folder come the ``*.txt``, ``*.json`` and ``*.jsonl`` files with FOON content: networks and lists
+    of objects. Raises :class:`UserError` for a folder without such files.
     """
     files_by_path: dict[Path, FolderFile] = {}
     for path in paths:

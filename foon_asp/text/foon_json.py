@@ -35,7 +35,10 @@ class FoonJson(Format):
         return begins_json(text)
 
     def dialect(self, text: str) -> Dialect:
-        """Return the form: that of an object, or of a list of objects with ``object_label``."""
+        """Return the published form: the one with ``object_label``, or the bare list of units.
+
+        An empty list is a bare list of units.
+        """
         by_its_name = any("object_label" in value for value in _first_objects(text))
         return Dialect.JSON if by_its_name or text.lstrip(" \t\r\n")[0] == "{" else Dialect.JSON_LIST
 
@@ -55,7 +58,7 @@ class FoonJson(Format):
             yield unit
 
     def objects(self, text: str, file: str, reading: Reading) -> Iterator[tuple[ObjectBlock, NodePattern]]:
-        """Yield the objects of a kitchen or of goals; only their patterns have the ``container``."""
+        """Yield the objects of a kitchen or of goals; a ``container`` is in an object's pattern alone."""
         return read_json_objects(text, file, reading)
 
     def lines(self, text: str) -> Iterator[Line]:

@@ -104,9 +104,10 @@ def _units(text: str, file: str, reading: Reading) -> TextUnits:
 def rewritten(text: str, file: str, lenient: bool, rewrite: Rewrite) -> str:
     """Return a text rewritten line by line; ``rewrite`` rewrites object, state and motion lines.
 
-    Blanks at the end of lines go, every line ends in the way that most do, a last unit is closed by ``//``.
-    Comments, blank lines and the order of everything stay, whether or not the lines make up units. Raises
-    :class:`InputError` with every line that cannot be understood; with ``lenient`` those stay as they are.
+    Blanks at the ends of lines are removed, all lines get the most frequent line end, and a last unit without
+    ``//`` gets it. Comments, blank lines and the order of lines stay, also where lines form no unit. For
+    lines that cannot be understood, one :class:`InputError` is raised with all of them; if ``lenient``, such
+    lines stay unchanged.
     """
     lines = split_lines(text)
     errors: list[Diagnostic] = []
@@ -137,8 +138,8 @@ def rewritten(text: str, file: str, lenient: bool, rewrite: Rewrite) -> str:
 def _mended(line: Line, written: str) -> str:
     """Return the canonical form of a line; a line whose only remarks are on blanks stays unchanged.
 
-    Blanks within a line stay, as the published universal FOON has them: ``{jelly, peanut butter}``, and a
-    space for the tab before a bracket. Linting remarks on them.
+    Blanks within a line stay, since the published universal FOON has them: ``{jelly, peanut butter}``, and a
+    space for the tab before a bracket. Linting reports such blanks.
     """
     if all(remark.code in _BLANKS for remark in line.remarks):
         return written.rstrip(" \t")
@@ -160,7 +161,7 @@ def _rewritten_line(line: str, rewrite: Rewrite) -> tuple[str, LineError | None]
 
 
 def _is_open_unit(lines: list[str]) -> bool:
-    """Whether the lines after the last separator are a whole unit: inputs, and one motion."""
+    """Whether the lines after the last ``//`` form a unit: one motion, with an object before it."""
     start = len(lines)
     while start > 0 and not re.fullmatch(r"//[ \t]*", lines[start - 1]):
         start -= 1

@@ -40,6 +40,7 @@ class JsonList:
         self._line, self._counted = 1, 0  # the line at the last offset, so that lines are counted once
 
     def __iter__(self) -> Iterator[JsonElement]:
+        """Yield the elements in order; a fault is added to ``errors`` and ends the list."""
         try:
             for offset, value in self._elements():
                 yield JsonElement(value, self.position_of(offset))

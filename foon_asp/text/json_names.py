@@ -135,9 +135,9 @@ def _is_word_of_list(name: _JsonName) -> bool:
 
 
 def _name_contents(names: list[_JsonName], first: int) -> None:
-    """Change a state ``contains`` to the word of the contents, in an object that lists ingredients.
+    """Make the state ``contains`` of an object a word of contents, since the object lists ingredients.
 
-    ``first`` is the index of the object's first name in ``names``.
+    ``first`` is the index of the object's first name in ``names``, which is changed.
     """
     for index in range(first, len(names)):
         if names[index].kind is NameKind.STATE and names[index].name == LISTED_UNDER:
@@ -150,7 +150,7 @@ def _is_state_line(json_name: _JsonName) -> bool:
 
 
 def _json_kind(level: _Level) -> NameKind | None:
-    """Return the kind of a text from the keys above it, ``None`` if it is no name."""
+    """Return the kind of name that a text is, by the keys above it; ``None`` if the text is no name."""
     key = level.key
     if key in {"motion_label", "motion_node", "id"}:
         return NameKind.MOTION

@@ -173,7 +173,7 @@ def number(value: dict[str, object], key: str) -> str:
 
 
 def amount_of(value: object) -> int:
-    """Return an amount, a number or a text of digits; raises :class:`ValueError`."""
+    """Read an amount from a number or a text of digits; raises :class:`ValueError` for another value."""
     written = value.text if isinstance(value, JsonNumber) else str(value)
     try:
         return amount(written, 1)
@@ -182,7 +182,7 @@ def amount_of(value: object) -> int:
 
 
 def stated_amount(value: dict[str, object]) -> int | None:
-    """Return the amount of an object, ``None`` where it states none; raises :class:`ValueError`."""
+    """Return the amount of an object, ``None`` for none; raises :class:`ValueError` for a wrong one."""
     stated = value.get("amount")
     return None if stated is None else amount_of(stated)
 
@@ -233,7 +233,7 @@ def _state(value: object) -> StateLine:
 
 
 def _with_contents(states: list[StateLine], ingredients: tuple[str, ...]) -> list[StateLine]:
-    """Return states with the ingredients in the state ``contains``, or else behind all states."""
+    """Return states with the ingredients as contents, in place of the state ``contains`` or at the end."""
     contents = Contents(LISTED_UNDER, tuple(sorted(ingredients)))
     for index, state in enumerate(states):
         if state.attribute == contents.word:
@@ -262,7 +262,7 @@ def _ingredient(value: object) -> str:
 
 
 def _list(value: dict[str, object], key: str, items: object) -> list[object]:
-    """Return the list under a key, empty for a missing one; raises :class:`ValueError` for others."""
+    """Return the list under a key, empty for a missing one; raises :class:`ValueError` for another value."""
     if items is None:
         return []
     if not isinstance(items, list):

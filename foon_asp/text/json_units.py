@@ -34,7 +34,7 @@ _MOTION_KEYS = {"motion_id", "motion_label", "start_time", "end_time", "robot_ty
 def read_json_units(text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
     """Yield the units in order; diagnostics are added to ``reading``.
 
-    An object whose ``container`` is named without a word is ``in`` it.
+    A ``container`` without a word is read as the relation ``in``.
     """
     elements = JsonList(text, Path(file), "functional_units")
     listed = list(elements)

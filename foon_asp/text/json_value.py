@@ -21,7 +21,7 @@ def schema_name(kind: str) -> str:
 def json_text(value: object) -> str:
     """Write plain values as a JSON text of their own; a list or an object that fits stands on one line.
 
-    An absolute path counts as long as its last part, so the lines are the same wherever the files lie.
+    To be independent of folders, this counts only the last part of an absolute path.
     """
     return _laid_out(value, "\n") + "\n"
 

@@ -64,7 +64,7 @@ class JsonWriter:
         return written_list(parts, 0) + "\n"
 
     def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
-        """Return the videos if the form has a key for videos and these are all of the file, else none."""
+        """Return ``videos`` if the form has a key for videos and the file has no other videos, else none."""
         named = tuple(video for video in map(read_video, comments) if video)
         return videos if not self._is_list and named == videos and not any(map(read_copy, comments)) else ()
 
@@ -103,8 +103,8 @@ def _raise_first_error(reading: Reading) -> None:
 def json_object(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
     """Write an object with its ids and flag, every state line as a state.
 
-    A relation without a word is a ``container``; contents under another word than ``contains``, and those
-    after the first, are a state such as ``coated {salt}``.
+    A relation without a word becomes the ``container``. The first contents with the word ``contains`` become
+    the ingredients; other contents become a state such as ``coated {salt}``.
     """
     ingredients: tuple[str, ...] = ()
     container = None

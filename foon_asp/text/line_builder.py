@@ -305,7 +305,7 @@ def _line_error(error: UnexpectedInput, text: str, in_file: bool) -> LineError:
 
 
 def _advice(line: str) -> str:
-    """Return advice on a line without a letter at its beginning; empty if it cannot be guessed."""
+    """Return advice on a line without a letter at its beginning; empty if no advice can be guessed."""
     if not line.replace("\t", " ").isprintable():
         return ""
     if line.startswith(FENCE):

@@ -34,8 +34,8 @@ class ObjectBlock(NamedTuple):
 class ReadUnit(NamedTuple):
     """A copy of a unit: its motion, its nodes in the order listed, and its sources.
 
-    ``sources`` has one entry, unless a merged file says from which copies the unit came. ``amounts`` are
-    those of nodes that the copy takes or makes several times.
+    ``sources`` has one entry; in a merged file, it has one for each copy that the unit was merged from.
+    ``amounts`` has the nodes that the copy takes or makes several times, with their numbers.
     """
 
     motion: str
@@ -53,8 +53,9 @@ class ReadUnit(NamedTuple):
 class ListedUnit(NamedTuple):
     """A copy of a functional unit with its lines as read, nodes in the order listed.
 
-    ``sources`` has one entry, unless a merged file says from which copies the unit came; ``motion_source`` is
-    the place of the motion. ``price`` is the price of this copy as written, empty for none.
+    ``sources`` has one entry; in a merged file, it has one for each copy that the unit was merged from.
+    ``motion_source`` is the place of the motion. ``price`` is the price of this copy as written, empty for
+    none.
     """
 
     motion: MotionLine

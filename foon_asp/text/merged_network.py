@@ -14,9 +14,9 @@ from foon_asp.text.writer import write_motion, write_node
 def merged_text(network: Network, comment: str, amounts: Amounts = MappingProxyType({})) -> Iterator[str]:
     """Yield the text piece by piece: a comment, then the units in order of first reading, in plain form.
 
-    Above each unit stands a line ``# From:`` for every copy of it, with file, line and videos; a copy that
-    was read twice, from a file and from a merge of that file, is listed once. Reading the text gives
-    the same network, the same ``amounts`` and the same sources, except that columns are not written. Raises
+    Above each unit stands a line ``# From:`` for every copy of the unit, with file, line and videos. A copy
+    that was read twice, from a file and from a merge of that file, is listed once. The text is read back as
+    the same network with the same ``amounts`` and sources, but without the columns of sources. Raises
     :class:`UserError` for a name that a line of text cannot hold, and for a unit without inputs.
     """
     blocks = list(map(write_node, network.objects))

@@ -45,7 +45,7 @@ class MotionFields(NamedTuple):
 
     @classmethod
     def of(cls, fields: tuple[str, ...]) -> "MotionFields":
-        """Return fields by kind; a rate is the last field, after an entity, which is no time."""
+        """Sort the fields of a motion line; a success rate is the last field, after an entity (no time)."""
         if len(fields) > 1 and is_rate(fields[-1]) and not is_time(fields[-2]):
             return cls(fields[:-2], fields[-2], fields[-1])
         return cls(fields)

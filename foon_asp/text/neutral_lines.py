@@ -102,7 +102,7 @@ class NeutralLines(FoonJson):
 
 
 def _priced(units: Iterable[tuple[ReadUnit, str]], reading: Reading) -> Iterator[ReadUnit]:
-    """Yield units, and record their prices; the lowest price of all copies counts."""
+    """Yield the units, and record their prices in ``reading``; the cheapest copy of a unit counts."""
     exact = cache(read_price)
     for unit, price in units:
         if price:
@@ -155,7 +155,10 @@ class _LineError(Exception):
 
 
 def _unit(line: str, source: Source, nodes: dict[str, ObjectNode]) -> tuple[ReadUnit, str]:
-    """Return the unit of a line, and its price as written, which may be empty."""
+    """Return the unit of a line, and its price as written, which may be empty.
+
+    ``nodes`` has the nodes read before, by name; new nodes are added.
+    """
     try:
         value = DECODER.decode(line)
     except json.JSONDecodeError as problem:
@@ -193,7 +196,11 @@ def _number_price(written: str) -> str:
 def _nodes(
     value: object, key: str, nodes: dict[str, ObjectNode]
 ) -> tuple[list[ObjectNode], dict[ObjectNode, int]]:
-    """Read a side, a list of names or amounts by name; return its nodes, each once, and amounts above 1."""
+    """Read one side of a unit: a list of names, or an object of amounts by name.
+
+    Returns the nodes, each once, and the amounts above 1. ``nodes`` has the nodes read before, by name; new
+    nodes are added.
+    """
     if not isinstance(value, list | dict):
         raise ValueError(f'found {shown(value)} as "{key}", expected a list of names, or amounts by name')
     listed: dict[ObjectNode, int] = {}

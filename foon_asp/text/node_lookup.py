@@ -77,12 +77,14 @@ def find_goal(
 ) -> int:
     """Return the id of the object node that a goal names.
 
-    A name is tried as the one-line notation of a node (``sweet potato; chopped; in [cutting board]``, as
-    ``str(node)`` returns it), then as the label of an entry of the goals file, then as a label of a single
-    node. A text that is no notation, or the notation of no node, is also tried literally as a label. A label
-    with a semicolon after it (``onion;``) is only tried as notation, of the node without states. Raises
+    A name is tried as each of these, in this order: the one-line notation of a node (``sweet potato; chopped;
+    in [cutting board]``), as ``str(node)`` returns it; the label of an entry of the goals file ``listed``;
+    the label of a single node.
+
+    A text that is no notation, or the notation of no node, is also tried literally as a label. A label with a
+    semicolon after it (``onion;``) is only tried as notation: it is the node without states. Raises
     :class:`GoalError` with candidates ready to paste if the name is unknown or means several nodes.
-    ``wording`` has other nouns than goal for messages.
+    ``wording`` has the noun for messages, by default that of a goal.
     """
     named: str | ObjectNode = name
     fault = None
@@ -170,7 +172,10 @@ def listed_nodes(entry: ListedObject, names: NodeNames) -> Sequence[int]:
 
 
 def _only(name: str, names: NodeNames, count: int, nodes: Sequence[int], wording: Wording) -> int:
-    """Return the only node of a name; raises :class:`GoalError` with candidates if there are several."""
+    """Return the only node of a name; raises :class:`GoalError` with candidates if there are several.
+
+    ``count`` is the number of nodes with the name; ``nodes`` are the ids of at least the first ones.
+    """
     if count > 1:
         message = f"the {wording.thing} {name!r} means {count} object nodes"
         raise _unclear(f"{message}; paste the one you mean", names, count, nodes, wording)
@@ -178,7 +183,7 @@ def _only(name: str, names: NodeNames, count: int, nodes: Sequence[int], wording
 
 
 def _most_similar_first(node: ObjectNode, nodes: Sequence[int], names: NodeNames) -> Sequence[int]:
-    """Return nodes sorted by similarity to an unknown ``node``; unsorted if that is a label alone."""
+    """Return nodes sorted by similarity to an unknown ``node``; unsorted if ``node`` is a label alone."""
     if node == ObjectNode(node.label):
         return nodes
     import difflib  # noqa: PLC0415 (only for error messages)

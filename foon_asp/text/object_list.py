@@ -24,9 +24,9 @@ class ListedObject(NamedTuple):
 def read_object_list(file: Path, warnings: list[Diagnostic] | None = None) -> list[ListedObject]:
     """Read a JSON list of ``{"label", "states", "ingredients", "container", "amount"}``, or object blocks.
 
-    In JSON, all but the label may be missing (none). Warnings are added to ``warnings``. Raises
-    :class:`InputError` with the line and column of every entry that is not of this form, and of one that is
-    listed before with another amount.
+    In JSON, only the label is required. Warnings are added to ``warnings``. Raises :class:`InputError` with
+    the line and column of every entry of another form, and of every entry whose node is listed before with
+    another amount.
     """
     text = read_plain_text(file)
     format_ = JSON if file.suffix == JSON.list_suffix else format_of(text, str(file))

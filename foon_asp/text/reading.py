@@ -23,11 +23,12 @@ _report: ContextVar[Report | None] = ContextVar("_report", default=None)
 class Reading:
     """The diagnostics of files, and the prices, amounts and goal marks that these files state.
 
-    With ``lenient``, what is not understood is left out with a warning; otherwise it is an error.
-    ``diagnostics`` has the findings in all files read so far. ``left_out`` counts the lines that were not
-    understood or do not form a unit. ``prices`` and ``amounts`` are those that copies of units state.
-    ``marked`` are the nodes with the goal mark ``!``, each with its first place. ``repeated`` are the nodes
-    that a copy of a unit lists twice; they count once.
+    ``lenient``: whether parts that are not understood are left out with a warning; otherwise they are errors.
+    ``diagnostics``: the findings in all files read so far.
+    ``left_out``: the number of lines that were not understood or do not form a unit.
+    ``prices``, ``amounts``: the prices and amounts that copies of units state.
+    ``marked``: the nodes with the goal mark ``!``, each with its first place.
+    ``repeated``: the nodes that a copy of a unit lists twice; such a node counts once.
     """
 
     def __init__(self, lenient: bool = False) -> None:

@@ -79,7 +79,10 @@ class Renaming:
         return name_of(line) == self.rename.old and self.rename.kind == kind_of(line)
 
     def id(self, old_id: str) -> str:
-        """Return the new name's most frequent id; ``old_id`` if that is empty or the new name has no id."""
+        """Return the id to write in place of ``old_id``: the most frequent one of the new name.
+
+        Returns ``old_id`` itself if it is empty, or if the new name has no id.
+        """
         return self._ids.most_common(1)[0][0] if old_id and self._ids else old_id
 
     def name(self, kind: NameKind, name: str) -> str:

@@ -27,8 +27,8 @@ class StatedAmounts:
     def settled(self, network: Network | None = None) -> DataAmounts:
         """Return the amounts of each unit, and a message about the first two copies that disagree.
 
-        Copies that state no amounts have all amounts 1. They are compared only if their ``network`` is
-        passed.
+        A copy that states no amounts has the amount 1 of each node. With ``network``, such copies are
+        compared, too; without it, only copies that state amounts are.
         """
         amounts: dict[FunctionalUnit, UnitAmounts] = {}
         conflict = ""
@@ -50,7 +50,7 @@ class StatedAmounts:
 def with_table(
     stated: DataAmounts, rows: Sequence[Row[UnitAmount, int]], units: Iterable[FunctionalUnit]
 ) -> tuple[DataAmounts, list[Diagnostic]]:
-    """Return amounts after a table replaced some, and warnings about rows of the table that match no unit.
+    """Return stated amounts with those of a table in their place, and warnings about rows that match no unit.
 
     ``units`` are all units whose motion is in the table.
     """

@@ -29,9 +29,8 @@ class StatedPrices:
     def settled(self, chosen: Mapping[FunctionalUnit, Fraction]) -> dict[FunctionalUnit, Fraction]:
         """Return the price of each unit; where copies disagree, it is the ``chosen`` one.
 
-        For a unit recorded with :meth:`add_least`, it is the least price.
-
-        Raises :class:`InputError` for copies that disagree unless a price is chosen.
+        For a unit recorded with :meth:`add_least`, it is the least price. Raises :class:`InputError` if
+        copies of a unit disagree and ``chosen`` has no price for the unit.
         """
         errors: list[Diagnostic] = []
         settled_prices = dict(self._least)

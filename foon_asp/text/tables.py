@@ -48,7 +48,7 @@ def stated_name(name: str) -> str | ObjectNode:
     """Return the name in the first column: a label, which means all nodes with the label, or a single node.
 
     A label with a semicolon after it is the node without states, relations and contents. Raises
-    :class:`LineError`.
+    :class:`LineError` for a text that cannot be read as a name.
     """
     name = name.strip()
     if not name:

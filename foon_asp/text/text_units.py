@@ -159,7 +159,11 @@ class TextUnits:
         return ReadUnit(motion.motion, inputs, outputs, sources)
 
     def _line_by_line(self, chunk: str, last: bool) -> Iterator[ListedUnit]:
-        """Read a chunk that may hold anything, separators with blanks behind them included."""
+        """Yield the units of a chunk, read line by line.
+
+        Separators with blanks after ``//`` are recognised, too. ``last`` is true for the last chunk of a
+        file.
+        """
         self._lines = lines = chunk.split("\n")
         start = 0
         for index, line in enumerate(lines):
@@ -312,10 +316,10 @@ class TextUnits:
 class _Section:
     """The lines between two separators, while they are read one by one; positions are indices of lines.
 
-    ``block`` is the block of the current object line, ``None`` before the first one. ``lost`` is true if the
-    current object line cannot be read; then the states under it are left out. ``blamed`` is true if an error
-    in a line may be the reason for a missing motion or object. ``left_out`` is the count of lines left out
-    before the section.
+    ``block``: the block of the current object line; ``None`` before the first object line.
+    ``lost``: true if the current object line cannot be read; the states under it are then left out.
+    ``blamed``: true if an error in a line may be the reason for a missing motion or object.
+    ``left_out``: the number of lines of the file that were left out before this section.
     """
 
     def __init__(self, end: int, closed: bool, left_out: int) -> None:

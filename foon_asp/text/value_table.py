@@ -24,10 +24,12 @@ class Row(NamedTuple, Generic[K, V]):
 class Table(NamedTuple, Generic[K, V]):
     """The description of a kind of table.
 
-    ``code`` is the code of diagnostics about the table, ``names`` the kind of the names in the first column.
-    ``expected`` describes the value after the tab, empty for a table of one column. ``row`` converts the
-    name, the text after the tab and the column of this text to a name and a value; it raises
-    :class:`LineError`. ``second`` is the message about a name with two values.
+    ``code``: the code of diagnostics about the table.
+    ``names``: the kind of the names in the first column.
+    ``expected``: the noun for the value after the tab; empty for a table of one column.
+    ``row``: a function from the name, the text after the tab and the column of this text to the name and the
+    value as read; raises :class:`LineError`.
+    ``second``: the message about a name with two values.
     """
 
     code: str
@@ -37,10 +39,10 @@ class Table(NamedTuple, Generic[K, V]):
     second: str = ""
 
     def rows(self, file: Path, text: str | None = None) -> list[Row[K, V]]:
-        """Return the rows of a file, or of its text if it is given, each name once.
+        """Return the rows of a file, or of its ``text`` if given, each name once.
 
         Blank lines and ``#`` comments are skipped. Raises :class:`InputError` with every line of another
-        form, and with each that has another value for a name than a line above.
+        form, and with every line that gives another value to a name than an earlier line.
         """
         rows_by_name: dict[K, Row[K, V]] = {}
 
@@ -67,11 +69,11 @@ def read_rows(
 ) -> None:
     """Call ``read`` with each line of a file: the name before the tab, the value behind it, and the source.
 
-    The file is not read if its ``text`` is given.
+    The file is not read if its ``text`` is given. Blank lines and ``#`` comments are skipped. If ``expected``
+    is empty, a line is a name without a tab and a value.
 
-    Blank lines and ``#`` comments are skipped. Raises :class:`InputError`, under ``code``, with every
-    line without a tab, unless nothing is ``expected`` behind it, and with those for which ``read`` raises
-    :class:`LineError`.
+    Raises :class:`InputError` with diagnostics of this ``code``: for each line without a required tab, and
+    for each line for which ``read`` raises :class:`LineError`.
     """
     errors: list[Diagnostic] = []
     lines = split_lines(read_plain_text(file) if text is None else text)
