@@ -279,7 +279,7 @@ class _Solver:
         Every tree that keeps to the rules has a part that is feasible in the relaxation. So an infeasible
         relaxation proves that there is no tree, and a best tree without open preconditions is optimal.
         Landmarks are required as well, since every tree has a unit of each. Units of best trees are explored
-        in further rounds. Returns the run that proves one of these, ``None`` if no run does within
+        in further rounds. Returns the run with a proof, ``None`` if no run has one within
         ``SEARCH.open_rounds``.
         """
         from foon_asp.encoding.fact_writer import write_known, write_objectives, write_required  # noqa: PLC0415

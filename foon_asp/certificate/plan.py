@@ -209,7 +209,7 @@ class _Question:
         return Claim(order, [(f,) for f in figures], (Fraction(objective.row.item),), (cost,), parts, caps)
 
     def _level(self, objective: Objective) -> tuple[Level, int] | None:
-        """Return the level of the incumbent by an objective, in integers, and the scale of these integers.
+        """Return the level of the incumbent by an objective, in integers, and the scale of the integers.
 
         ``None`` where the integers would be too long.
         """

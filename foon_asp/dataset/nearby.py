@@ -85,7 +85,7 @@ class Nearby:
         """The relaxation of the question in which all open nodes are available.
 
         In any tree of the whole network, the units that were read are a tree of the relaxation: each of their
-        inputs is available, made by another of these units, or open. So the optimum of the relaxation is a
+        inputs is available, made by another such unit, or open. So the optimum of the relaxation is a
         lower bound on the optimum of the whole network, for objectives that are sums over units.
 
         User rules see the kitchen without the open nodes. So a rule that does not depend on the available

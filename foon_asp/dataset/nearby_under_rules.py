@@ -167,7 +167,7 @@ class _Search:
     def _read_near_units(self, costs: Costs) -> set[int] | None:
         """Read all units of trees for the goals that cost no more than ``costs``, and maybe more units.
 
-        Returns the numbers of these units, ``None`` if they are too many.
+        Returns the numbers of the units, ``None`` if they are too many.
         """
         nearby, deadline = self._nearby, self._settings.begun
         while nearby.units <= NEARBY.max_units:

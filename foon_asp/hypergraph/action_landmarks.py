@@ -10,7 +10,7 @@ def relevant_beside_landmarks(graph: GoalGraph, allowed: Container[int]) -> set[
     """Return the allowed actions that an irredundant tree can have: action landmarks and relevant others.
 
     The only achiever of a goal is an action landmark, and its preconditions become goals, too. Every tree
-    makes the effects of an action landmark, so other achievers of these effects are redundant, unless the
+    makes the effects of an action landmark, so other achievers of its effects are redundant, unless the
     preconditions of the landmark may be derived from its effects. So the backward search from the goals stops
     at effects of landmarks.
     """

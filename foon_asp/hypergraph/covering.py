@@ -39,7 +39,7 @@ class Relaxed(NamedTuple):
     """A basic optimal solution: its value, the values ``x`` of the columns, and its basis.
 
     ``columns`` are the basic columns, and ``rows`` are as many rows that are tight by the basis. The square
-    matrix of these rows and columns determines the solution and the dual values.
+    matrix of the rows and columns determines the solution and the dual values.
     """
 
     value: float
@@ -74,7 +74,7 @@ class Covering:
         self._highs.changeColsCost(count, np.arange(count, dtype=np.int32), np.array(costs, dtype=float))
 
     def add(self, row: Sequence[int]) -> None:
-        """Add a row: the values of these columns add up to at least 1."""
+        """Add a row: the values of the columns add up to at least 1."""
         np_row = self._array(row, dtype="int32")
         ones = self._array([1.0] * len(row))
         self._highs.addRow(1.0, self._library.kHighsInf, len(row), np_row, ones)

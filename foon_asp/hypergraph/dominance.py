@@ -9,7 +9,7 @@ from foon_asp.hypergraph.goal_graph import GoalGraph
 def undominated(graph: GoalGraph, actions: Collection[int], cost: Callable[[int], int]) -> set[int]:
     """Return the actions that no other action dominates.
 
-    Action A dominates action B if the preconditions of A are a subset of those of B, A has all effects of B,
+    Action A dominates action B if the preconditions of A are a subset of B's, A has all effects of B,
     and A costs no more. Then A can replace B in any tree, and the tree costs no more: ``cost`` covers the
     whole list of objectives. Effects that no action or goal needs do not count. Of actions that dominate each
     other, one stays.

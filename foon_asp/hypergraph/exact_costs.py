@@ -23,7 +23,7 @@ class TooFineError(Exception):
 
 
 class ExactCosts:
-    """The cost of each action as one integer; sums of these costs compare lexicographically.
+    """The cost of each action as one integer; sums of costs compare lexicographically.
 
     An additive objective is scaled to integers and multiplied by more than the greatest sum of the objectives
     after it. Where rates multiply, logarithms are added: each factor of a coprime base of the rates has a

@@ -75,7 +75,7 @@ class _TimeUpError(Exception):
 class Prover:
     """Searches for optimality proofs over one hypergraph, its targets and the cost of each action.
 
-    ``costs``, ``order``: the cost of each action as a vector, and the order of these vectors.
+    ``costs``, ``order``: the cost of each action as a vector, and the order of the vectors.
     ``forbidden``: actions; derivations with one of them do not count.
     ``expired``: returns whether to give up. It is called between steps that take milliseconds on thousands of
     actions.

@@ -94,7 +94,7 @@ def _by_rising_prices(
 
     A question at a low price is about as quick as one without a price. Prices rise from about the cost of a
     unit to the price at which ``incumbent`` and ``over`` cost the same. The optimal tree at a price replaces
-    one of these two. The price with the greatest bound determines the units of trees better than
+    one of the two. The price with the greatest bound determines the units of trees better than
     ``incumbent``.
     """
     next_price = Fraction(subproblem.total(over), len(over))

@@ -226,7 +226,7 @@ def _task(
 
 
 def _with_costs(task: Task, actions: Collection[int]) -> Task:
-    """Return the task with exact costs of these actions; unchanged if it has costs or rates are too fine."""
+    """Return the task with exact costs of the actions; unchanged if it has costs or rates are too fine."""
     if task.costs is None:
         with suppress(TooFineError):
             return replace(task, costs=ExactCosts(task.problem, task.objectives, actions))

@@ -33,7 +33,7 @@ class Baseline(Struct, frozen=True, tag_field="schema", tag=schema_name("lint-ba
 
     @classmethod
     def of(cls, file: Path, findings: Iterable[Diagnostic]) -> "Baseline":
-        """Return the baseline of these findings, to be written to a file."""
+        """Return the baseline of the findings, to be written to a file."""
         counts = Counter(_key(file, finding) for finding in findings)
         return cls(tuple(KnownFinding(*key, count) for key, count in sorted(counts.items())))
 

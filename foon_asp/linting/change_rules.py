@@ -33,7 +33,7 @@ def _finding(context: Context, unit: int, side: int, node: int, message: str) ->
 def lost_contents(context: Context) -> Iterator[Diagnostic]:
     """A container keeps a part of its contents, and the rest is in no output of the unit.
 
-    Nothing is said of motions that are known to take something out, such as `drain`, nor of those that are
+    Nothing is said of motions that are known to take something out, such as `drain`, nor of motions that are
     not known.
     """
     for unit, motion, changes, habit in _units(context):
@@ -90,7 +90,7 @@ def _made_of_itself(context: Context) -> dict[ObjectNode, int]:
 def vanished(context: Context) -> Iterator[Diagnostic]:
     """An ingredient is in no output, neither as an object nor among the contents, and nothing new is made.
 
-    Nothing is said of motions that use things up, such as `wash`, nor of those that are not known.
+    Nothing is said of motions that use things up, such as `wash`, nor of unknown motions.
     """
     for unit, motion, changes, habit in _units(context):
         for node in changes.gone if _is_seldom(habit.end, habit.units) else ():

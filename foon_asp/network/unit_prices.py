@@ -18,7 +18,7 @@ class UnitPrices(NamedTuple):
         """Return the price of every unit of a network, ``None`` where it has none.
 
         Below level 3, the price is the least price of the units that a unit stands for, and ``None`` unless
-        all of these have a price.
+        all have a price.
         """
         if network.detailed is None:
             return self._at_own_level(network)

@@ -30,7 +30,7 @@ class _Relaxation:
     """Compiles conditional effects and negated derived facts of a task away (Nebel 2000)."""
 
     def __init__(self, task: SasTask) -> None:
-        """Find the default values of derived variables, and the axioms that change each of these values."""
+        """Find the default values of derived variables, and the axioms that change each value."""
         self._task = task
         self._facts = list(task.facts)
         self._values = {fact: facts for facts in task.variables for fact in facts}

@@ -38,8 +38,8 @@ class CountBound:
     ``required``: disjunctive action landmarks.
     ``limits``: bounds on weighted sums, with weights from 0, over executions or over the actions used.
     ``derivation``: actions that reach the targets in the delete relaxation; landmarks are grown around them.
-    ``levels``: plans that are worse than the incumbent by one of these are excluded.
-    ``excluded_counts``: plans that execute each action at least as often as one of these are excluded.
+    ``levels``: plans that are worse than the incumbent by any level are excluded.
+    ``excluded_counts``: plans that execute each action at least as often as any of the counts are excluded.
     ``expired``: returns whether time is up; the methods then raise :class:`Stopped`.
     """
 
@@ -476,7 +476,7 @@ class CountBound:
         """Add landmarks of the targets that an LP solution violates; return whether there are any.
 
         Actions with large LP values are kept out of the landmarks first. At the root, further landmarks keep
-        out all actions of the derivation but one, for each of these actions in turn. Without a derivation, no
+        out all actions of the derivation but one, for each such action in turn. Without a derivation, no
         landmarks are sought.
         """
         derivation, size = self.derivation, self._size

@@ -16,7 +16,7 @@ class Flows:
     ``asks``, ``uses`` and ``adds`` map, for each action, objects to numbers of copies. An action can be
     executed if there are the copies in ``asks``; it consumes the copies in ``uses``, and produces the copies
     in ``adds``. ``start`` has the initial numbers of copies, ``targets`` the numbers that have to remain.
-    Objects that are not consumable are in none of these; ``items`` has those that each action has as
+    Objects that are not consumable are in none of the three maps; ``items`` has those that each action has as
     preconditions.
     """
 

@@ -39,7 +39,7 @@ class Question(NamedTuple):
         return frozenset(unit for unit, name in enumerate(self.network.motions) if name == motion)
 
     def touching(self, nodes: Iterable[int]) -> Units:
-        """Return the units with one of these nodes among their inputs or outputs."""
+        """Return the units with one of the nodes among their inputs or outputs."""
         touched, network = frozenset(nodes), self.network
         sides = enumerate(zip(network.inputs, network.outputs, strict=True))
         return frozenset(

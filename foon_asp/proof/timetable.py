@@ -101,7 +101,7 @@ class ToolNeed(NamedTuple):
 
     @property
     def number(self) -> int:
-        """The number of these tools."""
+        """The number of the tools."""
         return len(self.kept) + max(len(self.changed) + len(self.others), len(self.made))
 
 

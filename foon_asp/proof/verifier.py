@@ -534,7 +534,7 @@ class Check:
         return total, self._figures(units, total)
 
     def _figures(self, units: list[int], total: Amount) -> list[int | Fraction]:
-        """Return the costs of a tree of these units by each objective, as figures."""
+        """Return the costs of a tree of the units by each objective, as figures."""
         costs: list[int | Fraction] = []
         for level, objective in enumerate(self.objectives):
             if objective == "success":

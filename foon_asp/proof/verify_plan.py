@@ -4,7 +4,7 @@ docs/dev/certificates.md describes these certificates and proves that what passe
 often a plan executes each unit satisfies conditions that can be read from the network. No more copies of a
 node are used up than are initial or added (the *balance* of the node). For each cut before a goal, or before
 a unit that is executed, a member is executed. Counts are integers, so sums of balances can be rounded. A
-Farkas combination of these conditions, with weights from 0, bounds the cost of every plan. The bound is the
+Farkas combination of the conditions, with weights from 0, bounds the cost of every plan. The bound is the
 sum of the right-hand sides plus, for each unit, the least of its reduced cost over all the counts that it may
 have.
 

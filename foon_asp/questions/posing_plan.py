@@ -75,7 +75,7 @@ def listed_tree(
 ) -> Tree:
     """Return the tree that a file lists, for the named goals or the goals of an answer.
 
-    Without any of these goals, the tree is for the only goal of the data, or for what the last step makes.
+    Without any such goal, the tree is for the only goal of the data, or for what the last step makes.
     ``used_up`` returns for goals, by id, how items are used up; without it, items last.
     """
     ordered = not answer.numbers

@@ -187,14 +187,14 @@ def unknown_text(facts: Sequence[str], word: str, meant: str | None) -> str:
 
 
 def nearest_text(facts: Sequence[str], word: str, values: FactValues) -> str | None:
-    """Return the text in facts of these predicates that is most similar to a word; ``None`` if none is."""
+    """Return the text in facts of the predicates that is most similar to a word; ``None`` if none is."""
     nearest = [values.nearest(fact, COLUMNS[fact, 2], {1: word}) for fact in facts]
     best = near_labels(word, sorted({match[1] for match in nearest if match is not None}), 1)
     return best[0] if best else None
 
 
 def has_text(facts: Sequence[str], word: str, values: FactValues) -> bool:
-    """Whether a fact of one of these predicates has the text ``word``."""
+    """Whether a fact of one of the predicates has the text ``word``."""
     return any(values.matches(fact, COLUMNS[fact, 2], {1: word}) for fact in facts)
 
 

@@ -77,7 +77,7 @@ def wrong_cost(
 ) -> str | None:
     """Return a message about the first unit whose cost differs from the stated cost; ``None`` if none does.
 
-    ``stated`` has costs by unit id. Each of these units is evaluated, even if others have the same facts.
+    ``stated`` has costs by unit id. Each such unit is evaluated, even if others have the same facts.
     Raises the errors of :meth:`Measure.costs`.
     """
     from foon_asp.rules.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)

@@ -1,4 +1,4 @@
-"""Traits of the units that a rule requires: the names that the rule states for each of these units."""
+"""Traits of the units that a rule requires: the names that the rule states for each such unit."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import count, product

@@ -70,7 +70,7 @@ class AtLeastOne(NamedTuple):
 class Row(NamedTuple):
     """A rule that bounds a sum of weights of units, which its program derives in atoms ``weighs``.
 
-    ``number``: the first argument of these atoms. Different weights of a unit add up.
+    ``number``: the first argument of the atoms. Different weights of a unit add up.
     ``bound``: an upper bound on the sum; with ``at_least``, a lower bound.
     ``used``: a weight counts once, not for each execution of the unit.
     ``per_unit``: the bound holds for each unit by itself, not for the sum over units.

@@ -54,7 +54,7 @@ class UnitDistances:
         """Return the nearest units of each kind with the units that lead to them, and the least distances.
 
         ``executed`` are units that cost nothing. Of each kind, at most ``max_units`` units are chosen. Their
-        distances exceed the least distance, or the greatest of those of several kinds, by at most
+        distances exceed the least distance, or the greatest of several kinds, by at most
         ``max_steps`` steps. The least distance of a kind is :data:`FAR` where none of its units can be
         reached.
         """

@@ -82,7 +82,7 @@ class MotionLine(NamedTuple):
     """``M54⇥pour*⇥1:10⇥1:11``: the motion of a unit.
 
     ``composite`` is true for a ``*`` after the motion: several motions annotated as one. ``fields`` are the
-    times and, where there is a success rate, the moving entity and this rate, as written. None of these is
+    times and, where there is a success rate, the moving entity and this rate, as written. No field is
     part of the unit.
     """
 

@@ -77,7 +77,7 @@ def find_goal(
 ) -> int:
     """Return the id of the object node that a goal names.
 
-    A name is tried as each of these, in this order: the one-line notation of a node (``sweet potato; chopped;
+    A name is tried in this order: the one-line notation of a node (``sweet potato; chopped;
     in [cutting board]``), as ``str(node)`` returns it; the label of an entry of the goals file ``listed``;
     the label of a single node.
 
