@@ -200,8 +200,8 @@ class StateEquation(RoundedProgram):
     def _round_alternatives(self, costs: Mapping[int, int]) -> bool:
         """Add rounded rows of a smaller program that merges objects of one role; return whether any is added.
 
-        A row of this program is the sum of the balances of objects of one role, for example of planks of any wood.
-        Actions that are alike in all rows and in cost share a column. A row about a single object of many
+        A row of this program is the sum of the balances of all objects of one role, such
+        as planks of any wood. Actions that are alike in all rows and in cost share a column. A row about a single object of many
         alternatives is weak, since the solution can use another alternative.
         """
         roles = self._flows.roles
