@@ -71,7 +71,7 @@ class Prepared:
 
     @cached_property
     def scales(self) -> "Scales":
-        """The scales of the remaining units in clingo; raises like :class:`Scales`."""
+        """The scales by which costs of units become integers of clingo; raises like :class:`Scales`."""
         from foon_asp.encoding.scales import Scales  # noqa: PLC0415
 
         return Scales(self.problem, self.units, self.levels)

@@ -41,8 +41,8 @@ class Support:
     def replaceable(self, action: int) -> bool:
         """Return whether every add effect in use of an action has another achiever.
 
-        In a tree with redundant actions, this is true of at least one of them: of actions that can be removed
-        together, the last in an executable order.
+        A tree with redundant actions has at least one replaceable action: the last, in an executable order,
+        of the actions that can be removed together.
         """
         return all(len(self._achievers[o]) > 1 for o in self._graph.gives[action] if self._in_use(o))
 

@@ -24,6 +24,7 @@ class RankedPlans:
     def __init__(
         self, problem: Problem, objectives: Sequence[Objective], settings: Settings, reporter: Reporter
     ) -> None:
+        """Start the time limit of ``settings``: all plans share one deadline."""
         self._problem, self._objectives = problem, tuple(objectives)
         self._settings, self._reporter = settings._replace(deadline=settings.begun), reporter
         self.complete = False

@@ -51,7 +51,11 @@ class Shop:
         self._dishes = {name for name in names if name in self._products}
 
     def sells(self, o: int) -> bool:
-        """Return whether a node, by id, can be bought, whether or not it is the dish."""
+        """Return whether a node, by id, can be bought, whether or not it is the dish.
+
+        For sale are plain nodes, and nodes without states that are only in something and contain at most one
+        ingredient, which no unit makes.
+        """
         node = self._problem.network.objects[o]
         if self._is_plain(o):
             return True

@@ -43,7 +43,7 @@ _Comparable = Answer | Tree | Foon | File | Named
 def _posed(
     command: Command, a: Path, b: Path, goals_named: Sequence[str], containers: str
 ) -> tuple[Named, Named, int]:
-    """Read two files; the data are read for trees alone."""
+    """Read two files; networks and kitchens are read only if the files are task trees."""
     chosen = containers if command.given("containers") else None
     with command.reading():
         return (*_of_files((a, b), goals_named, chosen, partial(settle_data, command)), command.level)
