@@ -71,7 +71,7 @@ class Ruled:
         return {number: barred(used, without) for number, barred in self.barred.items()}
 
     def fault(self, units: Units, others: Units) -> str | None:
-        """Return why a tree with all ``units`` and none of ``others`` breaks the constraints, else ``None``."""
+        """Return why a tree with all ``units`` and none of ``others`` breaks constraints, else ``None``."""
         members = self.used(units)
         if removed := self.removed & units:
             return f"has unit {min(removed)}, which a rule removes"
