@@ -2,7 +2,7 @@
 
 import time
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 
@@ -34,11 +34,6 @@ Plan = tuple[int, ...]
 """Units by id in the order of execution, with repeats."""
 
 
-def _none_removed(_: int) -> bool:
-    """Return that rules do not remove a unit: there are none that remove any."""
-    return False
-
-
 class PlanQuestion:
     """A question about plans, with the incumbent."""
 
@@ -62,8 +57,7 @@ class PlanQuestion:
         self.program = assemble(settings, reporter.warning, used_up=True, problem=problem)
         self.program.require_facts(problem, by_levels)
         require_rules_of_plans(self.program)
-        self.removed: Callable[[int], bool] = _none_removed
-        self.required: tuple[frozenset[int], ...] = ()
+        self.restriction: Restriction | None = None  # what rules remove and require
         self.limits: Sequence[LinearRow] = ()
         bounded = settings.bounded or Bounded()
         self.below = [(objective, cost) for costs in bounded.below for objective, cost in costs.items()]
@@ -88,8 +82,13 @@ class PlanQuestion:
         self.limits = rules.limits(self.problem, self.deadline)
         restriction = rules.varying({TIMES}).applied(self.problem, self.deadline)
         if isinstance(restriction, Restriction):
-            self.removed, self.required = restriction.removed, restriction.required
+            self.restriction = restriction
         return not isinstance(restriction, Contradiction)
+
+    @property
+    def required(self) -> tuple[frozenset[int], ...]:
+        """The sets of units that rules require a unit of."""
+        return () if self.restriction is None else self.restriction.required
 
     @property
     def keeps_redundant(self) -> bool:
@@ -105,9 +104,8 @@ class PlanQuestion:
         """
         problem = self.problem
         stocked = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
-        restriction = Restriction(self.removed, self.required)
-        lasting = replace(problem, kitchen=stocked, restriction=restriction)
-        if self.removed is _none_removed and not self.required:
+        lasting = replace(problem, kitchen=stocked, restriction=self.restriction)
+        if self.restriction is None:
             reached = unrestricted_reach(problem.network, problem.containers, problem.utensils, stocked)
         else:
             reached = reach(lasting)
