@@ -244,12 +244,12 @@ class Deadline:
 
     @property
     def limited(self) -> bool:
-        """Whether there is a limit or a token."""
+        """Whether the question can be stopped: it has a time limit, a memory limit or a token."""
         return self.seconds is not None or self.memory is not None or self._token is not None
 
     @property
     def overdue(self) -> bool:
-        """Whether to stop even without an answer: half a second after a limit."""
+        """Whether to stop even without an answer, which is half a second after a limit."""
         if not self.passed:
             return False
         if self._stopped_by == _CANCELLED:
@@ -279,7 +279,7 @@ class Deadline:
                 self._within.interrupt()
 
     def enough(self) -> None:
-        """Stop the question because its answer is proved; an outer deadline (``within``) continues."""
+        """Stop the question because its answer is proved; an outer deadline (``within``) is not stopped."""
         self._stopped_by = self._stopped_by or _PROVED
 
     def out_of_memory(self) -> None:

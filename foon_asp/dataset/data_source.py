@@ -27,7 +27,7 @@ if TYPE_CHECKING:  # text does without SQLite
 
 
 class Source:
-    """A network in memory; the subclass :class:`~foon_asp.dataset.store_source.StoreSource` is a store.
+    """The source of a dataset: a network in memory; for a store, the subclass :class:`StoreSource`.
 
     Ids are those of the whole network.
     ``names``: looks up nodes and units.
@@ -61,7 +61,7 @@ class Source:
 
     @property
     def digests(self) -> Mapping[str, str]:
-        """The digests of network, kitchen and prices that a store states, by name; empty in memory."""
+        """The digests of network, kitchen and prices that a store states, by name; empty without a store."""
         return MappingProxyType({})
 
     @property
@@ -75,7 +75,7 @@ class Source:
         return self._network.different_motions
 
     def motion_places(self) -> Iterable[tuple[str, Place]]:
-        """Return pairs of a motion and a place of a unit with it, among them each motion's first place."""
+        """Return pairs of a motion and a place of a unit with it; each motion's first place is among them."""
         return first_places(self._network)
 
     def whole(self) -> Network:
@@ -83,7 +83,7 @@ class Source:
         return self._network
 
     def touched(self) -> Network:
-        """Return the whole network; that of a store reads each unit and node on access."""
+        """Return the whole network; for a store, one that reads each unit and node on access."""
         return self._network
 
     def part(self, units: Iterable[int], objects: Iterable[int]) -> Network:
@@ -98,7 +98,10 @@ class Source:
         available: Container[int],
         max_units: int | None,
     ) -> "Cone | None":
-        """Return the cone of goals, or about ``max_units`` units of it; ``None`` for a network in memory."""
+        """Return the cone of goals, or about ``max_units`` of its units; ``None`` for a network in memory.
+
+        The cone of goals has all units that the goals can need.
+        """
         return None
 
     def unit_distances(

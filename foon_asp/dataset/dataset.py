@@ -85,9 +85,9 @@ def ask(
 
 @dataclass(frozen=True, eq=False)
 class Dataset:
-    """Data read from a ``source``: text, or a store, of which each problem reads only its part.
+    """Data that was read from text, or an open store, of which each problem reads only its part.
 
-    :attr:`data` is all of it. Ids are those of the whole network.
+    ``source``: the network in memory, or the store. Ids are those of the whole network.
     ``listed``: the entries of the goals file, or the assumed goals.
     ``rates``: the success rates of motions; ``None`` without a file of rates.
     ``utensils``: the labels of utensils for the container rule ``implied``.
@@ -264,7 +264,7 @@ class Dataset:
         return [self.names.node(o) for o in dict.fromkeys(self.each_goal(()))]
 
     def each_goal(self, names: Sequence[str | ObjectNode]) -> list[int]:
-        """Find one goal for each name; without names, all nodes of the goals file."""
+        """Return the id of the goal for each name; without names, the ids of all nodes of the goals file."""
         if names:
             return [
                 node_id(self, name, "goal")
@@ -302,7 +302,7 @@ class Dataset:
         return self._varied(kitchen=kitchen, kitchen_items=(), starting=True, stock={})
 
     def _varied(self, **changes: Any) -> "Dataset":
-        """Return the data with changes, and without remarks on assumptions made while reading."""
+        """Return a copy with some fields changed, and without remarks on assumptions made while reading."""
         return replace(self, **{"remarks": (), "brief": (), "has_kitchen": True, **changes})
 
     def with_remarks(
@@ -336,7 +336,7 @@ class Dataset:
     ) -> "Dataset":
         """Return the same data with a changed kitchen: object nodes, by id, are added and removed.
 
-        ``only``, unless ``None``, replaces the whole kitchen first. Added nodes never run out.
+        If ``only`` is not ``None``, it replaces the whole kitchen before that. Added nodes never run out.
         """
         if only is not None:
             kitchen = Kitchen(only, added, removed)
@@ -391,7 +391,7 @@ class Dataset:
     def posed_anew(
         self, problem: Problem, goals: Names | None, containers: str | None, changes: Changes
     ) -> Problem:
-        """Pose a problem of the dataset with changes; see :meth:`Problem.vary`."""
+        """Return a problem of this dataset with changes, as :meth:`Problem.vary` describes."""
         dataset = self.with_kitchen_of(problem).vary(changes)
         ids = _whole_goals(problem) if goals is None else dataset.named_goals(goals)
         items = problem.items
@@ -401,23 +401,23 @@ class Dataset:
         return _with_own_rates(posed, problem)
 
     def posed_whole(self, problem: Problem) -> Problem:
-        """Pose a problem of the dataset over the whole network."""
+        """Return the same problem over the whole network of this dataset."""
         dataset = self.with_kitchen_of(problem)
         posed = dataset.problem(_whole_goals(problem), problem.containers, True, problem.items)
         return _with_own_rates(posed, problem)
 
     def posed_about(self, problem: Problem, units: Iterable[FunctionalUnit]) -> Problem:
-        """Pose a problem of the dataset over a part with its goals and the given units."""
+        """Return the same problem over a part of the network that has its goals and the given units."""
         dataset = self.with_kitchen_of(problem)
         data, goals = dataset.part(_whole_goals(problem), tree=units)
         return _with_own_rates(ask(data, goals, problem.containers, dataset, problem.items), problem)
 
     def subject(self, everything: bool = True, goals: Iterable[int] = ()) -> "Subject":
-        """Return the subject of a certificate: all data, or a store that is read on access.
+        """Return the network, kitchen and prices that a certificate is about.
 
         A store is read on access only if ``everything`` is false, the kitchen is no starting kitchen, and the
-        prices are those of the store. Otherwise all data are read, and :class:`UserError` is raised if a
-        digest that the store states is not true. A starting kitchen is the one for ``goals``.
+        prices are those of the store. Otherwise all data are read; raises :class:`UserError` if they do not
+        have a digest that the store states. A starting kitchen is the one for ``goals``.
         """
         from foon_asp.proof.verifier import Subject  # noqa: PLC0415 (few answers need it)
 
@@ -451,7 +451,7 @@ class Dataset:
     def subject_with_stand_ins(
         self, goals: Sequence[int], containers: str, everything: bool, steps: Sequence[int] = ()
     ) -> "Subject":
-        """Return the subject of a certificate about a network with the stand-ins for goals.
+        """Return the network and kitchen of a certificate about a network with the stand-ins for goals.
 
         With ``steps``, the ids of the units of a tree, the stand-ins are those for the repair of this tree.
         """
@@ -468,9 +468,9 @@ class Dataset:
         return Subject(problem.network, *values, stand_ins=self.stand_ins)
 
     def named_goals(self, names: Names) -> tuple[int, ...]:
-        """Find goals that Python names, by id in the whole network, each once.
+        """Return the ids of the goals that a Python caller names, each once.
 
-        Without a name, the goals file has to hold exactly one.
+        Without a name, return the only goal of the goals file; raises :class:`UserError` if it has several.
         """
         named = tuple(dict.fromkeys(node_ids(self, names, "goal")))
         if named:
@@ -487,7 +487,7 @@ class Dataset:
         raise UserError("name a goal" + (f"; the goals file has {choices}" if choices else ""))
 
     def with_kitchen_of(self, problem: Problem) -> "Dataset":
-        """Return the same data with the kitchen of a problem posed of it."""
+        """Return the same data with the kitchen of ``problem``, which is a problem of this dataset."""
         from foon_asp.dataset.nearby import shown  # noqa: PLC0415 (few answers need it)
 
         added, removed = self.kitchen_changes(shown(problem), _whole_goals(problem))
@@ -496,9 +496,10 @@ class Dataset:
     def kitchen_changes(
         self, problem: Problem, goals: Iterable[int]
     ) -> tuple[frozenset[int], frozenset[int]]:
-        """Return the nodes that a problem posed of this data adds to its kitchen, and those that it lacks.
+        """Return how the kitchen of a problem differs from the kitchen that this dataset has for ``goals``.
 
-        All ids, also those of the ``goals`` of the problem, are ids of the whole network.
+        Return the nodes that only the problem has available, and those that only the dataset has. All ids,
+        also those of ``goals``, are ids of the whole network.
         """
         kitchen, network = self.for_goals(goals).kitchen, problem.network
         if not network.object_numbers:
@@ -546,10 +547,10 @@ class Dataset:
     def nearby(
         self, goals: Sequence[int], containers: str, items: UsedUp | None = None, first: int = 1000
     ) -> Problem:
-        """Return the problem of goals; a store is read only up to about ``first`` units near the goals.
+        """Return the problem of goals; of a store, only about ``first`` units near the goals are read now.
 
-        Further units are read on access. Without a given kitchen, all units that the goals can need are
-        read, since the items of the starting kitchen are listed.
+        Other units are read on access. If no kitchen was given, all units that the goals can need are read
+        now, since the starting kitchen follows from them.
         """
         cone = None
         if items is None and self.has_kitchen and self.stand_ins is None:
@@ -562,7 +563,7 @@ class Dataset:
         return NearbyProblem.of(Nearby(self, cone, containers), first)
 
     def among(self, units: Iterable[int], goals: Sequence[int], containers: str) -> Problem:
-        """Return the problem of goals over a part of the network with these units."""
+        """Return the problem of goals over a part of the network that has these units."""
         network = self.source.part(units, goals)
         return ask(self.for_goals(goals)._data_of(network), _local_ids(network, goals), containers, self)
 
@@ -581,10 +582,10 @@ class Dataset:
     def part(
         self, goals: Sequence[int], units: Iterable[int] = (), tree: Iterable[FunctionalUnit] = ()
     ) -> tuple[Data, tuple[int, ...]]:
-        """Return data with at least these goals, units by id, and the units and nodes of a tree.
+        """Return a part of the data, and the ids that the goals have in it.
 
-        Also returns the ids of the goals in that data. Raises :class:`UserError` for an id that no unit
-        has.
+        The part has at least the ``goals`` and ``units``, both by id, and the units and nodes of ``tree``.
+        Raises :class:`UserError` for an id that no unit has.
         """
         units, names = list(units), self.names
         for unit in units:
@@ -600,7 +601,7 @@ class Dataset:
 
 
 def _local_ids(network: Network, goals: Sequence[int]) -> tuple[int, ...]:
-    """Return the ids of goals in ``network``, which may be a part of the whole one."""
+    """Return the ids that goals of the whole network have in ``network``, which may be a part of it."""
     if not network.object_numbers:
         return tuple(goals)
     local_ids = {o: local_id for local_id, o in enumerate(network.object_numbers)}
@@ -608,7 +609,7 @@ def _local_ids(network: Network, goals: Sequence[int]) -> tuple[int, ...]:
 
 
 def left_out(count: int) -> str:
-    """Return a warning that lines were left out."""
+    """Return a warning that ``count`` lines were not understood and left out."""
     return f"warning: {counted(count, 'line')} left out"
 
 

@@ -1,4 +1,4 @@
-"""Items that are used up: the options of a question, checked against the data."""
+"""The options of a question about items that are used up, checked against the data."""
 
 from collections.abc import Mapping, Sequence
 from os import PathLike
@@ -28,11 +28,12 @@ def items_for(
     stock: Stock | None,
     stays: Stays | None,
 ) -> UsedUp | None:
-    """Return how items are used up for goals, by id; ``None`` if they last.
+    """Return how items are used up in a question about ``goals``; ``None`` if items last.
 
-    ``amounts`` has how many copies are wanted of each goal; without it, the amounts of the goals file count.
-    Without ``items``, items are used up if amounts are wanted. Raises :class:`UserError` as :func:`items_of`
-    does, for amounts that do not fit the goals, and for amounts where items last.
+    ``goals`` are ids. ``amounts`` has the number of copies wanted of each goal; if it is empty, the amounts
+    of the goals file count. If ``items`` is ``None``, items are used up if amounts are wanted, and last
+    otherwise. Raises :class:`UserError` as :func:`items_of` does, for amounts that do not fit the goals, and
+    for amounts where items last.
     """
     if not amounts:
         listed = dataset.wanted
@@ -46,7 +47,7 @@ def items_for(
 
 
 def _wanted(dataset: Dataset, goals: Sequence[int], amounts: Sequence[int]) -> dict[ObjectNode, int]:
-    """Return how many copies of goals are wanted; ``amounts`` has one for each.
+    """Return the number of copies wanted of each goal; ``amounts`` has a number for each goal, in order.
 
     Raises :class:`UserError` for another number of amounts than of goals, and for an amount out of range.
     """

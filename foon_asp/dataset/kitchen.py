@@ -14,7 +14,7 @@ class Kitchen(Collection[int]):
         self._base, self._added, self._removed = base, frozenset(added), frozenset(removed)
 
     def changed(self, added: Collection[int], removed: Collection[int]) -> "Kitchen":
-        """Return the kitchen with nodes added and removed."""
+        """Return a copy with further nodes added and removed."""
         return Kitchen(self, added, removed) if added or removed else self
 
     def is_all_of(self, base: Collection[int] | None) -> bool:

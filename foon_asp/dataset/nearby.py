@@ -15,29 +15,30 @@ if TYPE_CHECKING:  # plain answers do not need it
 
 
 class UnreadData(Protocol):
-    """Data that problems are posed of over a part of the network; ids are those of the whole network."""
+    """A dataset whose problems may cover only a part of its network; ids are those of the whole network."""
 
     def problem(self, goals: Sequence[int], containers: str) -> Problem:
         """Return the problem of goals over all units that they can need."""
 
     def among(self, units: Iterable[int], goals: Sequence[int], containers: str) -> Problem:
-        """Return the problem of goals over a part of the network with these units."""
+        """Return the problem of goals over a part of the network that has these units."""
 
     def nearby(self, goals: Sequence[int], containers: str, items: UsedUp | None, first: int) -> Problem:
-        """Return the problem of goals, for which about ``first`` units are read."""
+        """Return the problem of goals, after reading about ``first`` units near them."""
 
     def unit_distances(self, containers: str, objective: Objective) -> "UnitDistances | None":
         """Return the distance of each unit by an objective, ``None`` if they are not known."""
 
     def subject(self, everything: bool, goals: Iterable[int]) -> "Subject":
-        """Return the subject of a certificate."""
+        """Return the network and kitchen that a certificate is about."""
 
 
 class Nearby:
-    """A question over the units near its goals, which can read more of them.
+    """A question to a store over the units read so far, which are near its goals; :meth:`grow` reads more.
 
-    ``data`` are the data asked under the container rule ``containers``, and ``cone`` is the part read so far
-    of the units that the goals can need.
+    ``cone`` has the units read, out of all units that the goals can need. A node is *open* if it is needed,
+    but the units that make it were not all read. ``data`` is the dataset that is asked, under the container
+    rule ``containers``.
     """
 
     def __init__(self, data: UnreadData, cone: Cone, containers: str) -> None:
@@ -52,14 +53,14 @@ class Nearby:
         return self._cone.goals
 
     def copied(self) -> "Nearby":
-        """Return a copy that reads more units independently."""
+        """Return a copy with the same units read; reading more units in one does not affect the other."""
         other = Nearby(self.data, self._cone.copied(), self.containers)
         other._problem, other._relaxed = self._problem, self._relaxed
         return other
 
     @property
     def problem(self) -> Problem:
-        """The question over the units read; each of its trees is a tree of the whole network."""
+        """The question over the units read so far; each of its trees is also a tree of the whole network."""
         if self._problem is None:
             self._problem = self.among(self._cone.units)
         return self._problem
@@ -73,7 +74,7 @@ class Nearby:
         return self.data.unit_distances(self.containers, objective)
 
     def subject(self) -> "Subject":
-        """Return the subject of a certificate of the answer."""
+        """Return the network and kitchen that a certificate of the answer is about."""
         return self.data.subject(False, self.goals)
 
     def whole(self) -> Problem:

@@ -36,9 +36,10 @@ REFINEMENT = RefinementTuning()
 
 
 def near_goals(problem: Problem, objectives: Sequence[Objective], settings: Settings) -> "Nearby | None":
-    """Return the question over units near the goals; ``None`` if a search may need all units.
+    """Return the question over the units near the goals of a problem.
 
-    ``None`` also if the problem is not about a large store.
+    Return ``None`` if the problem is not about a large store, or if its settings or objectives need all
+    units.
     """
     nearby_of: Callable[[], Nearby | None] | None = getattr(problem, "nearby", None)
     if nearby_of is None or settings.reductions != ALL or settings.clingo_options:
@@ -50,16 +51,16 @@ def near_goals(problem: Problem, objectives: Sequence[Objective], settings: Sett
 def solve_nearby(
     nearby: "Nearby", objectives: Sequence[Objective], settings: Settings, reporter: Reporter | None = None
 ) -> Outcome | None:
-    """Solve a question to a large store by relaxation and refinement, reading only units that a proof needs.
+    """Solve a question to a large store by relaxation and refinement, reading only the units that are needed.
 
     Each round solves the relaxation, in which open nodes are available. If its optimal tree uses none of
     them, this tree is optimal in the whole network, too. Otherwise more units that lead to these nodes are
-    read, in the end all units. User rules have to be antimonotone: if a tree keeps them, so does every part
-    of the tree. For some rules, the units of the optimal tree without rules are read first, then those of the
-    smallest tree that keeps the rules.
+    read. This repeats until a tree is optimal or all units are read. User rules have to be antimonotone: if a
+    tree keeps them, so does every part of the tree. For some rules, the units of the optimal tree without
+    rules are read first, then those of the smallest tree that keeps the rules.
 
-    Returns ``None`` if no tree exists even without rules: to explain this, all units that can lead to the
-    goals are needed.
+    At a limit, return the best tree among the units read, with the bound of the relaxation. Return ``None``
+    if no tree exists even without rules: the caller then reads all units, to explain why.
     """
     reporter = reporter or Reporter()
     if settings.constraints:
@@ -129,7 +130,7 @@ def solve_nearby(
 
 
 def _has_tree(nearby: "Nearby", deadline: Deadline) -> bool:
-    """Whether a tree exists without rules; true at a limit, where that is not known."""
+    """Whether a tree exists without rules; reads units until that is known. Also true at a limit."""
     while True:
         relaxed = nearby.relaxed
         reached = reach(relaxed)
@@ -148,10 +149,11 @@ def _has_tree(nearby: "Nearby", deadline: Deadline) -> bool:
 
 
 def _read_smallest_tree(nearby: "Nearby", settings: Settings, units_of_rules: set[int]) -> list[int]:
-    """Read and return the smallest tree that keeps the rules, by number in the whole network.
+    """Search for the tree of fewest units that keeps the rules, reading units until it is found.
 
-    The fewest units are searched for, since this is faster than other objectives and shows infeasibility as
-    well. Better trees mostly use units near this tree. Empty where there is no tree, or at a limit.
+    Return its units by id in the whole network; empty if there is no tree, or at a limit. Fewest units are
+    found faster than the optimum of other objectives. Better trees mostly use units near this tree.
+    ``units_of_rules`` collects the units on which the rules depend.
     """
     while True:
         outcome = solve(nearby.relaxed, (Objective.UNITS,), settings, mattered=units_of_rules)
@@ -173,8 +175,8 @@ def _read_more(
 ) -> None:
     """Read more units that lead to the nodes that an optimal tree of the relaxation lacks.
 
-    If many units are read already, repeats this for trees that follow h_add, until one lacks no node. Such
-    trees mostly lead to the units of an optimal tree, and take a tenth of the time of a proof.
+    If many units were read before and there are no rules, repeat this for trees found by ``h_add``, until one
+    lacks no node. Such trees mostly lead to the units of an optimal tree, in a tenth of the time of a proof.
     """
     many_read = nearby.units > REFINEMENT.proved_units
     long_rounds = many_read or leave_unsettled(settings)
@@ -193,9 +195,9 @@ def _read_more(
 def least_with_more(
     costs: Costs, order: Sequence[Objective], extra_units: int = 1
 ) -> tuple[int | Fraction, ...]:
-    """Return a lower bound on the keys of trees that cost at least ``costs`` and have more units.
+    """Return a lower bound on the key of any tree with at least ``extra_units`` more units than ``costs``.
 
-    A key has the cost by each objective in ``order``. Such a tree has at least ``extra_units`` more units.
+    The tree costs at least ``costs`` by every objective. A key has the cost by each objective in ``order``.
     """
     least_costs = dict(zip(order, costs.key(order), strict=True))
     least_costs[Objective.UNITS] += extra_units
@@ -203,7 +205,7 @@ def least_with_more(
 
 
 class _OnlyWarnings(Reporter):
-    """Passes on only warnings and bounds, which hold for a part of a network as for the whole."""
+    """A reporter that passes on only warnings and bounds; they hold for the whole network, unlike trees."""
 
     def __init__(self, reporter: Reporter) -> None:
         self.warning = reporter.warning  # type: ignore[method-assign]

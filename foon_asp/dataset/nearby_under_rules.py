@@ -2,8 +2,8 @@
 
 Call the units read for the goals near, and all others far. Let c be the optimum of the relaxation of
 :class:`~foon_asp.dataset.nearby.Nearby` without rules. A tree with a far unit v has units for the goals,
-which cost at least c, and units that lead to v. These cost at least the distance of v from the near units,
-which the outline of the store has for all units at once. So a tree that costs less than q has only far units
+which cost at least c, and units that lead to v. These cost at least the distance of v from the near units;
+the outline of the store has the distances of all units. So a tree that costs less than q has only far units
 whose distance is less than q - c. Once all such units that rules may require were read, with all units that
 lead to them, the units read of any such tree are a tree of the relaxation that keeps the rules. So no tree is
 better than both the optimum of that relaxation and q.
@@ -46,8 +46,9 @@ def solve_nearby_under(
 ) -> Outcome | None:
     """Solve a question to a large store under rules, reading units near the goals and units for the rules.
 
-    A tree without a proof may not be optimal; ``stopped`` is set only at a limit. ``None`` where no tree was
-    found or the method does not apply.
+    Return an outcome with a proved optimum, or with a tree that may not be optimal; its ``stopped`` is set
+    only at a limit. Return ``None`` if no tree was found or the method does not apply: the caller then reads
+    all units.
     """
     if not settings.constraints or reach_of_rules(settings) is ReachOfRules.ALL:
         return None
@@ -83,10 +84,10 @@ class _Search:
         self.best = _unknown(nearby, unconstrained)  # the incumbent, without a proof
 
     def result(self) -> Outcome | None:
-        """Return the optimum, or the incumbent at a limit.
+        """Return the optimum, or the incumbent if a limit is reached or optimality is not proved.
 
-        ``None`` if the rules look beyond a tree, or if the distances of units are not known. Raises
-        :class:`LimitError` at a limit while the store is read.
+        Return ``None`` if the rules depend on more than the units of a tree and its kitchen, or if the
+        distances of units are not known. Raises :class:`LimitError` at a limit while the store is read.
         """
         settings, nearby = self._settings, self._nearby
         rules = varying_available(settings)
@@ -116,7 +117,7 @@ class _Search:
         return self._proved(outcome)
 
     def _solved(self, problem: Problem) -> Outcome:
-        """Solve a part of the question, and make its tree the incumbent."""
+        """Solve the question over a part of the network; if there is a tree, make it the incumbent."""
         outcome = solve(problem, self._unconstrained.objectives, self._settings)
         if outcome.units is not None:
             self.best = self.best._replace(
@@ -127,10 +128,11 @@ class _Search:
     def _some_tree(
         self, distances: UnitDistances, kinds: Sequence[Mask], is_required: Sequence[bool]
     ) -> Outcome:
-        """Find a tree that keeps the rules, in the optimum without rules and the nearest units of each kind.
+        """Search for a tree that keeps the rules, first among few units, then among more.
 
-        Without a tree, the status of the outcome is ``infeasible`` if a required kind has no unit that can
-        execute, else ``unknown``.
+        These are the units of the optimum without rules, and the nearest units of each kind that the rules
+        can require. If no tree is found, the status of the outcome is ``infeasible`` if a required kind has
+        no unit that can execute, else ``unknown``.
         """
         tree = _numbers(self._unconstrained)
         for max_units, max_steps in NEARBY.widths:
@@ -150,9 +152,10 @@ class _Search:
     def _with_better_trees(
         self, tree: Outcome, distances: UnitDistances, kinds: Sequence[Mask] | None
     ) -> Problem | None:
-        """Return the question over all units of trees that are as good as ``tree`` or better.
+        """Return the question over all units that a tree as good as ``tree``, or better, can have.
 
-        ``None`` if these units are too many.
+        Return ``None`` if these units are more than :attr:`NearbyTuning.max_units`, or if ``tree`` is an
+        outcome without a tree.
         """
         if tree.costs is None or tree.units is None:
             return None
@@ -165,9 +168,9 @@ class _Search:
             return self._nearby.among({*near_units, *far_units, *_numbers(tree)})
 
     def _read_near_units(self, costs: Costs) -> set[int] | None:
-        """Read all units of trees for the goals that cost no more than ``costs``, and maybe more units.
+        """Read all units that a tree for the goals can have if it costs at most ``costs``.
 
-        Returns the numbers of the units, ``None`` if they are too many.
+        Return their ids in the whole network, maybe with a few more units; ``None`` if they are too many.
         """
         nearby, deadline = self._nearby, self._settings.begun
         while nearby.units <= NEARBY.max_units:
@@ -187,7 +190,7 @@ class _Search:
         return None
 
     def _max_far_cost(self, costs: Costs) -> int:
-        """Return the greatest distance of a far unit in a tree that is better than ``costs``."""
+        """Return the greatest distance that a far unit can have in a tree better than ``costs``."""
         order, least_costs = self._order, self._unconstrained.costs
         assert least_costs is not None
         key = costs.key(order)
@@ -199,7 +202,10 @@ class _Search:
         return next(extra for extra in count() if key <= least_with_more(least_costs, order, extra + 1))
 
     def _proved(self, outcome: Outcome) -> Outcome:
-        """Return the outcome with a proof of both searches, without its cuts: they hold for a part only."""
+        """Return the outcome as proved for the whole network.
+
+        Its cuts are omitted, because they hold only for a part of the network.
+        """
         assert outcome.costs is not None
         self._reporter.tree(outcome.costs)
         proofs = self._unconstrained.proof, outcome.proof
@@ -208,11 +214,12 @@ class _Search:
 
 
 def _numbers(outcome: Outcome) -> list[int]:
+    """Return the units of the tree of an outcome, by id in the whole network; empty without a tree."""
     return [*map(outcome.problem.network.unit_number, outcome.units or ())]
 
 
 def _unknown(nearby: Nearby, unconstrained: Outcome) -> Outcome:
-    """Return an outcome without a tree, with the bound of the optimum without rules."""
+    """Return an outcome without a tree, whose bound is that of the optimum without rules."""
     first_objective = levels(unconstrained.objectives)[0]
     bounds = {
         objective: bound for objective, bound in unconstrained.bounds.items() if objective == first_objective

@@ -107,9 +107,9 @@ def item_id(dataset: Named, name: str | ObjectNode) -> int:
 
 
 def _label(name: str) -> str | None:
-    """Return the label that a name stands for, as written if it is not valid notation.
+    """Return the label in a name that has nothing but a label; ``None`` for a name of a whole node.
 
-    ``None`` for a node.
+    A name that is not valid notation counts as a label, as written.
     """
     try:
         named = parse_name(name)
@@ -143,9 +143,10 @@ def changed_rates(
 def changed_prices(
     prices: UnitPrices, changed: UnitPricesNamed, motions: Collection[str], names: NamesAndUnits
 ) -> UnitPrices:
-    """Return prices of units with some changed.
+    """Return ``prices`` with some prices changed, by the name of a motion or by unit.
 
-    ``names`` looks units up, and ``motions`` are all motions of the network.
+    ``names`` looks units up. ``motions`` are all motions of the network; other motions raise
+    :class:`UserError`.
     """
     by_motion, by_unit = dict(prices.motions), dict(prices.units)
     for named, value in changed.items():
@@ -176,6 +177,6 @@ def listed(names: Names) -> list[str | ObjectNode]:
 
 
 def in_python(error: GoalError) -> str:
-    """Return an error as text, with its candidates as Python strings."""
+    """Return the text of an error, whose candidates are written as Python strings."""
     lines = [error.message, *(f"  {candidate!r}" for candidate in error.candidates)]
     return "\n".join(lines + ([f"  ... and {error.hidden} more"] if error.hidden else []))

@@ -27,7 +27,7 @@ from foon_asp.text.unit_price_list import read_unit_prices
 
 
 def read_stored(files: DataFiles, level: int) -> Dataset:
-    """Open the store that is named in place of networks; other files replace the data imported with it.
+    """Open a store that is named in place of network files; other named files replace what was imported.
 
     Below level 3 the whole store is read, since nodes are merged at such a level.
     """

@@ -28,7 +28,7 @@ if TYPE_CHECKING:  # few answers need numpy
 
 
 class StoreSource(Source):
-    """A store as a source; all variants of a dataset share the parts that were read."""
+    """A store as the source of a dataset; variants of the dataset share what was read from it."""
 
     names: Store
     kitchen: StoredIds
@@ -89,7 +89,7 @@ class StoreSource(Source):
         return self._whole[0]
 
     def touched(self) -> Network:
-        """Return the whole network, read on access unless it is in memory already."""
+        """Return the whole network: in memory if it was read, otherwise one that reads on access."""
         return self._whole[0] if "_whole" in vars(self) else TouchedNetwork.of(self.names)
 
     def cone(
@@ -105,7 +105,7 @@ class StoreSource(Source):
             return self.names.cone(goals, containers, utensils, available, max_units)
 
     def part(self, units: Iterable[int], objects: Iterable[int]) -> Network:
-        """Read units with their nodes, and the given further nodes."""
+        """Read a network that has the given units with their nodes, and the given further nodes."""
         with self._timed():
             return self.names.part(units, objects)
 

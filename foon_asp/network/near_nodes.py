@@ -23,7 +23,7 @@ class Slip(NamedTuple):
 
 
 def slip_between(node: ObjectNode, other: ObjectNode | NodePattern) -> Slip | None:
-    """Return the only name in which two nodes differ, ``None`` unless its spellings are one edit apart.
+    """Return the only name in which two nodes differ, if its two spellings are one edit apart, else ``None``.
 
     One edit adds, omits or changes a letter, or swaps it with the next. Differences in doubled letters,
     capitals, blanks and hyphens count as one edit together. Two relations to one object by different words

@@ -21,7 +21,7 @@ _ESCAPED = re.compile(rf'["\\\t\n]|{UNSAFE.pattern}')
 
 
 def quoted(name: str, special: re.Pattern[str] = NAME) -> str:
-    """Return a name as the notation has it: in quotes only where it holds something ``special``."""
+    """Return a name as the notation writes it: in quotes if ``special`` matches a part of it."""
     return in_quotes(name) if special.search(name) else name
 
 

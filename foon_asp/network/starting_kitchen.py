@@ -31,8 +31,8 @@ def recipe_kitchen(
     ``units`` are the inputs and outputs of each unit in the order of the file, as ids of object nodes. Nodes
     that no unit makes out of others are available. Then units execute as far as they can. When none can, the
     missing inputs of the first unit in the file that lacks any are granted, except ``goals``. This repeats
-    until only goals are lacking; then goals are granted in the same way, for example where two goals need
-    each other.
+    until only goals are lacking. Then goals are granted in the same way, for example if two goals need each
+    other.
     """
     unit_sides = list(units)
     missing = [len(inputs) for inputs, _ in unit_sides]  # by unit: how many inputs are not available yet

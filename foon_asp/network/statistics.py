@@ -16,11 +16,12 @@ MANY = 4  # producers; object nodes with as many or more are counted together
 class Statistics:
     """The counts of a network at one level; every mean is over units.
 
-    ``producers[n]`` counts the object nodes that ``n`` units make, the last entry those that ``MANY`` or more
-    do. A cycle is a set of object nodes that need each other; ``in_cycles`` counts the nodes in any,
-    ``largest_cycle`` those in the largest. ``at_hand`` counts the available nodes, ``depth`` is the highest
-    layer reached from them, and ``median_depth`` the median layer of the units reached. ``parts`` counts the
-    connected components, and ``largest_part`` the units of the largest.
+    ``producers[n]`` is the number of object nodes that exactly ``n`` units make; its last entry counts the
+    nodes that ``MANY`` or more units make. A cycle is a set of object nodes that need each other;
+    ``in_cycles`` counts the nodes in all cycles, ``largest_cycle`` those in the largest one. ``at_hand``
+    counts the available nodes. ``depth`` is the highest layer reached from them, and ``median_depth`` the
+    median layer of the units reached. ``parts`` counts the connected components, and ``largest_part`` the
+    units of the largest one.
     """
 
     level: int
@@ -52,7 +53,10 @@ class Statistics:
 
 
 def count(network: Network, at_hand: Iterable[int] | None = None) -> Statistics:
-    """Count a network, reached from the object nodes ``at_hand``, or else from the starting kitchen."""
+    """Return the statistics of a network.
+
+    Layers are counted from the object nodes ``at_hand``, by default from those of the starting kitchen.
+    """
     if at_hand is None:
         at_hand = starting_kitchen(network).nodes
     start = list(at_hand)

@@ -27,7 +27,7 @@ Amounts = Mapping[FunctionalUnit, UnitAmounts]
 
 
 class DataAmounts(NamedTuple):
-    """The amounts of units, and a message about a ``conflict`` of amounts, empty for none."""
+    """The amounts of units; ``conflict`` is a message about contradictory amounts, empty for none."""
 
     units: Amounts
     conflict: str = ""

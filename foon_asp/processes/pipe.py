@@ -31,14 +31,14 @@ def packed(value: object) -> bytes:
 
 
 def write(pipe: RawIOBase, content: bytes) -> None:
-    """Write bytes completely; raises ``OSError`` where the other end is closed."""
+    """Write all bytes; raises ``OSError`` if the other end is closed."""
     unwritten = memoryview(content)
     while unwritten:
         unwritten = unwritten[pipe.write(unwritten) :]
 
 
 def write_if_open(pipe: RawIOBase, content: bytes) -> None:
-    """Write bytes completely, or nothing where the other end is closed; the reader of answers notices."""
+    """Write bytes completely; do nothing if the other end is closed, as the reader of answers will notice."""
     with contextlib.suppress(OSError, ValueError):
         write(pipe, content)
 
@@ -74,6 +74,7 @@ def requests(read: Callable[[RawIOBase], T]) -> "tuple[queue.SimpleQueue[T], Fil
     received: queue.SimpleQueue[T] = queue.SimpleQueue()
 
     def listen() -> None:
+        """Put each request into the queue; end the process when standard input ends."""
         while True:
             try:
                 received.put(read(incoming))

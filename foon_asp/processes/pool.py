@@ -36,7 +36,10 @@ class LostError(Exception):
 
 
 class Done(NamedTuple, Generic[Task, Answer]):
-    """A task and its answer, or the exception in its place: of the work, or a :class:`LostError`."""
+    """A finished task with its answer, or with the exception that was raised instead.
+
+    The exception is one of the work, or a :class:`LostError`.
+    """
 
     task: Task
     answer: Answer | None
@@ -55,11 +58,11 @@ def share(
     jobs: int,
     seconds: Callable[[Task], float | None] = lambda _: None,
 ) -> "Iterator[Done[Task, Answer]]":
-    """Do tasks in up to ``jobs`` processes.
+    """Do tasks in up to ``jobs`` child processes, and yield each with its answer as soon as it is done.
 
-    Yield them with their answers, in the order in which they finish. ``begin`` runs first in each process.
-    A process that dies, or exceeds the ``seconds`` of its task, is replaced by another one. The time of the
-    first task of a process starts once ``begin`` has returned in it.
+    ``begin`` runs once in each process, and returns the function that does the tasks there. ``seconds``
+    returns the time limit of a task, ``None`` for no limit. A process that dies or exceeds this time is
+    replaced by another one. The time of the first task of a process starts once ``begin`` has returned.
     """
     packed_begin, remaining, messages = packed(begin), iter(tasks), _Messages()
     workers: dict[int, _Worker[Task]] = {}
@@ -102,9 +105,9 @@ _Messages = SimpleQueue[tuple[int, _Message]]  # with the number of the process 
 
 
 def _next_message(workers: "dict[int, _Worker[Any]]", messages: _Messages) -> tuple[int, _Message]:
-    """Wait for a message, and return it with the number of its worker.
+    """Wait for a message of any worker, and return it with the number of the worker.
 
-    A worker that died or exceeds its time has the message ``lost``.
+    For a worker that died or exceeded the time of its task, the message is ``lost``.
     """
     while True:
         ends = {worker.end_by: number for number, worker in workers.items() if worker.end_by is not None}
@@ -133,7 +136,7 @@ class _Worker(PythonProcess, Generic[Task]):
         self.start_thread(_listen, self._in, number, messages)
 
     def start_timer(self, seconds: float | None) -> None:
-        """Start the time of the current task."""
+        """Start the time of the current task; ``None`` is no limit."""
         self.end_by = None if seconds is None else time.monotonic() + seconds
 
     def ask(self, task: Task, seconds: float | None) -> None:
@@ -144,6 +147,7 @@ class _Worker(PythonProcess, Generic[Task]):
 
 
 def _listen(pipe: RawIOBase, number: int, messages: _Messages) -> None:
+    """Put each message of a worker into the queue of all messages, until its output ends."""
     with contextlib.suppress(EOFError):
         while True:
             messages.put((number, receive(pipe)))
@@ -151,7 +155,7 @@ def _listen(pipe: RawIOBase, number: int, messages: _Messages) -> None:
 
 
 def serve() -> None:
-    """Do tasks as a process of a pool, after ``begin``, and send their answers, until the parent ends."""
+    """Work as a child process of a pool: receive ``begin`` and tasks, send answers, until the parent ends."""
     received, answers = requests(receive_packed)
     work = _task_function(received.get())
     with contextlib.suppress(BrokenPipeError):  # the parent has ended
@@ -161,7 +165,7 @@ def serve() -> None:
 
 
 def _task_function(begin: bytes) -> Callable[[Any], Any]:
-    """Return the function that does tasks; where ``begin`` raises, one that raises the same for each task."""
+    """Return the function that ``begin`` makes for tasks; if it raises, one that always raises the same."""
     try:
         work: Callable[[Any], Any] = pickle.loads(begin)()
     except Exception as error:
@@ -174,7 +178,7 @@ def _task_function(begin: bytes) -> Callable[[Any], Any]:
 
 
 def _answer(work: Callable[[Any], Any], task: bytes) -> bytes:
-    """Return the message with the answer to a task, or with the exception that it raised."""
+    """Do a task; return a message with its answer, or with the exception that it raised."""
     try:
         return packed(("done", work(pickle.loads(task))))
     except Exception as error:
@@ -182,7 +186,7 @@ def _answer(work: Callable[[Any], Any], task: bytes) -> bytes:
 
 
 def _portable(error: Exception) -> Exception:
-    """Return an error as one that can be sent to another process; those that do not pickle become bugs."""
+    """Return an error that can be sent to another process: one that cannot be pickled becomes a bug."""
     try:
         pickle.loads(pickle.dumps(error))
     except Exception:
