@@ -9,7 +9,7 @@ from foon_asp.escapes import escaped
 from foon_asp.warning import warn
 
 
-def pass_on(old: os.stat_result, file: Path) -> None:
+def copy_permissions(old: os.stat_result, file: Path) -> None:
     """Set the permissions of a file to those of ``old``, and its owner where the system allows it."""
     new = file.stat()
     if (old.st_uid, old.st_gid) != (new.st_uid, new.st_gid):

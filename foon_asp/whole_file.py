@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from foon_asp.errors import UserError
-from foon_asp.file_permissions import pass_on, warn_of_replaced
+from foon_asp.file_permissions import copy_permissions, warn_of_replaced
 
 try:
     import fcntl
@@ -52,7 +52,7 @@ def write_all_whole(contents: Mapping[Path, bytes]) -> None:
             staged = []
             for file, content in contents.items():
                 target = Path(os.path.realpath(file))
-                staged.append((target, stack.enter_context(_staged(target, content))))
+                staged.append((target, stack.enter_context(_staged_file(target, content))))
             for target, partial in staged:
                 before = target.read_bytes()
                 replaced[target] = before
@@ -84,12 +84,12 @@ def utf_8(text: str) -> bytes:
 
 
 def _replace(target: Path, content: bytes) -> None:
-    with _staged(target, content) as partial:
+    with _staged_file(target, content) as partial:
         partial.replace(target)
 
 
 @contextlib.contextmanager
-def _staged(target: Path, content: bytes) -> Iterator[Path]:
+def _staged_file(target: Path, content: bytes) -> Iterator[Path]:
     """Write a new file beside the target, and yield it; afterwards remove it if it was not renamed.
 
     Refuse a target that may not be replaced.
@@ -98,15 +98,15 @@ def _staged(target: Path, content: bytes) -> Iterator[Path]:
     if target.exists():
         with target.open("ab"):  # may it be written? Renaming asks the folder alone
             old = target.stat()
-    _clear(target.parent)
-    partial, written = _own_file(target.parent)
+    _remove_leftovers(target.parent)
+    partial, written = _create_locked_file(target.parent)
     try:
         with written:
             written.write(content)
             written.flush()
             os.fsync(written.fileno())
             if old is not None:
-                pass_on(old, partial)
+                copy_permissions(old, partial)
             # Windows renames no open file; and a process may have 1,024 open, and rename writes many
             if fcntl is None or written.fileno() > 500:
                 written.close()
@@ -117,18 +117,18 @@ def _staged(target: Path, content: bytes) -> Iterator[Path]:
         partial.unlink(missing_ok=True)
 
 
-def _own_file(folder: Path) -> tuple[Path, BinaryIO]:
+def _create_locked_file(folder: Path) -> tuple[Path, BinaryIO]:
     """Create and open a file with an unused name; it is locked as long as it is open."""
     while True:
         partial = folder / f".foon-asp.{os.urandom(8).hex()}"
         written = partial.open("xb")
-        if _locked(written.fileno(), otherwise=True) and partial.exists():
+        if _try_lock(written.fileno(), otherwise=True) and partial.exists():
             return partial, written
         written.close()  # before it was locked, another process took it for left over
 
 
 @functools.cache  # once for each folder: fmt writes many files
-def _clear(folder: Path) -> None:
+def _remove_leftovers(folder: Path) -> None:
     """Remove the temporary files of killed processes from a folder: no process has locked them."""
     with contextlib.suppress(OSError):
         for name in filter(_PARTIAL.fullmatch, os.listdir(folder)):
@@ -140,13 +140,13 @@ def _remove_unlocked(file: Path) -> None:
     """Remove a partial file unless the process that writes it has locked it."""
     found = os.open(file, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
     try:
-        if stat.S_ISREG(os.fstat(found).st_mode) and _locked(found, otherwise=False):
+        if stat.S_ISREG(os.fstat(found).st_mode) and _try_lock(found, otherwise=False):
             file.unlink()
     finally:
         os.close(found)
 
 
-def _locked(number: int, otherwise: bool) -> bool:
+def _try_lock(number: int, otherwise: bool) -> bool:
     """Lock an open file; return whether it is locked, or ``otherwise`` where files cannot be locked."""
     if fcntl is None:
         return otherwise

@@ -17,10 +17,10 @@ def serve() -> None:
     functions: dict[Offer, Callable[..., object]] = {}
     while True:
         offer, arguments = pickle.loads(received.get())
-        write(answers, _answer(offer, arguments, functions))
+        write(answers, _call(offer, arguments, functions))
 
 
-def _answer(
+def _call(
     offer: Offer, arguments: tuple[object, ...], functions: dict[Offer, Callable[..., object]]
 ) -> bytes:
     """Call a function, and return a line of JSON: its reply, its exception, or what is wrong with it."""
@@ -28,9 +28,11 @@ def _answer(
         try:
             function: Any = EntryPoint(offer.name, offer.function, offer.group).load()
         except BaseException as error:
-            return _line("fault", [f"cannot be imported: {_in_words(error)}", traceback.format_exc()])
+            return _message_line(
+                "fault", [f"cannot be imported: {_error_text(error)}", traceback.format_exc()]
+            )
         if not callable(function):
-            return _line("fault", [f"expected a function, found {_shown(function)}", ""])
+            return _message_line("fault", [f"expected a function, found {_shortened_repr(function)}", ""])
         functions[offer] = function
     try:
         reply = functions[offer](*arguments)
@@ -44,29 +46,29 @@ def _answer(
             ),
             "",
         )
-        return _line("raised", [classes, _message(error), raised_at, traceback.format_exc()])
+        return _message_line("raised", [classes, _error_message(error), raised_at, traceback.format_exc()])
     try:
-        return _line("reply", reply)
+        return _message_line("reply", reply)
     except Exception:
-        return _line("fault", [f"gave {_shown(reply)}, which is no answer", ""])
+        return _message_line("fault", [f"gave {_shortened_repr(reply)}, which is no answer", ""])
 
 
-def _line(kind: str, value: object) -> bytes:
+def _message_line(kind: str, value: object) -> bytes:
     return json.dumps([kind, value], allow_nan=False).encode("ascii") + b"\n"
 
 
-def _in_words(error: BaseException) -> str:
-    return f"{type(error).__name__}: {_message(error)}"
+def _error_text(error: BaseException) -> str:
+    return f"{type(error).__name__}: {_error_message(error)}"
 
 
-def _message(error: BaseException) -> str:
+def _error_message(error: BaseException) -> str:
     try:
         return _shortened(str(error))
     except Exception:
         return ""
 
 
-def _shown(value: object) -> str:
+def _shortened_repr(value: object) -> str:
     try:
         return _shortened(repr(value))
     except Exception:

@@ -22,7 +22,7 @@ def ask_offered(offer: Offer, deadline: Deadline, *arguments: object) -> Any:
     be imported, ends its process, or returns anything but plain values.
     """
     key = (offer.package, *sys.path)  # with the path, another version of the package may be found
-    worker = take(key, _start)
+    worker = take(key, _start_worker)
     try:
         kind, line = worker.ask(packed((offer, arguments)), deadline)
     except DiedError as died:
@@ -40,11 +40,11 @@ def ask_offered(offer: Offer, deadline: Deadline, *arguments: object) -> Any:
     return Raised(tuple(value[0]), *value[1:]) if kind == "raised" else value
 
 
-def _start() -> Worker:
-    return Worker("foon_asp.offered.call_worker", "what other packages offer is run", read=_line)
+def _start_worker() -> Worker:
+    return Worker("foon_asp.offered.call_worker", "what other packages offer is run", read=_read_message)
 
 
-def _line(pipe: RawIOBase, max_bytes: int = 64 * 2**20) -> tuple[str, bytes]:
+def _read_message(pipe: RawIOBase, max_bytes: int = 64 * 2**20) -> tuple[str, bytes]:
     """Return a line of a pipe as a message; its kind is ``endless`` for a line of more than ``max_bytes``.
 
     A tree of a million units takes some megabytes; an endless line would fill the memory.

@@ -16,10 +16,10 @@ def is_amount(comment: str) -> bool:
 def read_amount(comment: str) -> int:
     """Return the amount that a comment line states; raises :class:`LineError` for any other text."""
     written = comment[len(_MARK) :].strip()
-    return amount(written, len(_MARK) + 1 + comment[len(_MARK) :].find(written))
+    return parse_amount(written, len(_MARK) + 1 + comment[len(_MARK) :].find(written))
 
 
-def amount(written: str, column: int) -> int:
+def parse_amount(written: str, column: int) -> int:
     """Return the number of a written amount; raises :class:`LineError` at ``column`` for any other text."""
     if not is_number(written) or len(written) > len(str(MAX_AMOUNT)) or not 1 <= int(written) <= MAX_AMOUNT:
         raise LineError(column, f"the amount {written[:40]!r}", (EXPECTED_AMOUNT,))

@@ -72,15 +72,15 @@ def read_listed_tree(file: Path, reader: FoonReader) -> ListedTree:
     if not file.exists():
         raise UserError(f"{file}: no such file")
     text = read_plain_text(file)  # a pipe can be read only once
-    document = _document(text)
+    document = _foon_asp_document(text)
     if numbers := _used_ids(text):
         return ListedTree((), numbers=numbers)
     if document is None:
         is_tree = _TREE_COMMENT in text.partition("//")[0]
         listed = tuple(reader.tree_units(text, str(file)))
-        return ListedTree(listed, is_tree=is_tree, amounts=reader.amounts.settled().units)
+        return ListedTree(listed, is_tree=is_tree, amounts=reader.amounts.amounts_by_unit().units)
     try:
-        answer = _with_tree(document)
+        answer = _answer_with_tree(document)
         steps = answer["units"]
         units = None if steps is None else tuple(chain.from_iterable(map(_executions, steps)))
         goals = tuple(map(read_node_json, answer["goals"]))
@@ -99,7 +99,7 @@ def _used_ids(text: str) -> tuple[int, ...]:
     return next((numbers for numbers in reversed(answers) if numbers), ())
 
 
-def _document(text: str) -> Json | None:
+def _foon_asp_document(text: str) -> Json | None:
     """Return a JSON document of foon-asp, of any version; ``None`` for any other text."""
     if not text.lstrip().startswith("{"):
         return None
@@ -110,7 +110,7 @@ def _document(text: str) -> Json | None:
     return value if isinstance(value, dict) and ("schema" in value or "units" in value) else None
 
 
-def _with_tree(document: Json) -> Json:
+def _answer_with_tree(document: Json) -> Json:
     """Return the answer that has the tree: the document itself, or the answer inside it."""
     inner_answer = document.get("answer")
     answer, kind = inner_answer if isinstance(inner_answer, dict) else document, ""

@@ -8,7 +8,7 @@ from foon_asp.text.object_list import ListedObject
 MARKED, LAST = "marked", "last"
 
 
-def wanted_outputs(inputs: Sequence[int], outputs: Sequence[int], needed: Iterable[int]) -> list[int]:
+def final_outputs(inputs: Sequence[int], outputs: Sequence[int], needed: Iterable[int]) -> list[int]:
     """Return the final outputs of the last unit of a file: its outputs that no unit needs.
 
     All arguments are ids of nodes: the ``inputs`` and ``outputs`` of the last unit, and as ``needed`` the
@@ -19,7 +19,7 @@ def wanted_outputs(inputs: Sequence[int], outputs: Sequence[int], needed: Iterab
     return [o for o in outputs if o not in needed] or [o for o in outputs if o not in inputs] or [*outputs]
 
 
-def as_entry(node: ObjectNode, source: Source) -> ListedObject:
+def goal_entry(node: ObjectNode, source: Source) -> ListedObject:
     """Return a node as an entry of a goals file; ``source`` is where it was read."""
     return ListedObject(NodePattern.of(node), source._replace(videos=()))
 
@@ -33,6 +33,6 @@ def last_goals(network: Network, last_units: Mapping[int, Source]) -> list[Liste
     needed = {o for inputs in network.inputs for o in inputs if o in outputs}
     goal_sources: dict[int, Source] = {}
     for unit, source in last_units.items():
-        for o in wanted_outputs(network.inputs[unit], network.outputs[unit], needed):
+        for o in final_outputs(network.inputs[unit], network.outputs[unit], needed):
             goal_sources.setdefault(o, source)
-    return [as_entry(network.objects[o], source) for o, source in goal_sources.items()]
+    return [goal_entry(network.objects[o], source) for o, source in goal_sources.items()]

@@ -45,20 +45,20 @@ def _state(match: re.Match[str]) -> StateLine:
     remarks: list[Remark] = []
     if related is not None:
         if gap == " ":
-            remarks.append(no_tab(f"[{related}]", end + 1))
+            remarks.append(no_tab_remark(f"[{related}]", end + 1))
         return StateLine(Relation(name, related), id_, remarks=tuple(remarks))
     if listed is None:
         return StateLine(name, id_)
-    ingredients = items(listed, end + 3, remarks)
+    ingredients = split_ingredients(listed, end + 3, remarks)
     return StateLine(Contents(name, tuple(sorted(ingredients))), id_, ingredients, tuple(remarks))
 
 
-def no_tab(bracket: str, column: int) -> Remark:
+def no_tab_remark(bracket: str, column: int) -> Remark:
     """Return the remark that a bracket has no tab before it."""
     return Remark(column, "space-for-tab", f"no tab before {bracket}; read as if there were one")
 
 
-def items(listed: str, column: int, remarks: list[Remark]) -> tuple[str, ...]:
+def split_ingredients(listed: str, column: int, remarks: list[Remark]) -> tuple[str, ...]:
     """Split the text in brackets at its commas; ``column`` is that of its first letter.
 
     Adds to ``remarks`` a remark on dropped items and one on doubtful items, if there are any.

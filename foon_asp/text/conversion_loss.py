@@ -117,12 +117,12 @@ def _lost_attributes(before: tuple[StateLine, ...], after: tuple[StateLine, ...]
     ]
     if len(contents) > 1 and any(isinstance(attribute, Contents) for attribute in missing):
         lost.append(Loss.CONTENTS_LISTS)
-    if _ingredients(old_attributes) != _ingredients(new_attributes):
-        raise CannotHoldError(f"{_shown(old_attributes)} would be read as {_shown(new_attributes)}")
+    if _all_ingredients(old_attributes) != _all_ingredients(new_attributes):
+        raise CannotHoldError(f"{_joined(old_attributes)} would be read as {_joined(new_attributes)}")
     unexpected = [attribute for attribute in extra.elements() if not isinstance(attribute, Contents)]
     if unexpected:
-        raise CannotHoldError(f"{_shown(old_attributes)} would be read as {_shown(new_attributes)}")
-    if _in_order(before, kept) != _in_order(after, kept):
+        raise CannotHoldError(f"{_joined(old_attributes)} would be read as {_joined(new_attributes)}")
+    if _kept_in_order(before, kept) != _kept_in_order(after, kept):
         lost.append(Loss.ORDER)
     return lost
 
@@ -140,17 +140,17 @@ def _lost_relation(relation: Relation, extra: Counter[str | Relation | Contents]
     return Loss.RELATIONS
 
 
-def _ingredients(attributes: list[str | Relation | Contents]) -> list[str]:
+def _all_ingredients(attributes: list[str | Relation | Contents]) -> list[str]:
     return sorted(
         i for contents in attributes if isinstance(contents, Contents) for i in contents.ingredients
     )
 
 
-def _in_order(
+def _kept_in_order(
     states: tuple[StateLine, ...], kept: Counter[str | Relation | Contents]
 ) -> list[tuple[object, tuple[str, ...]]]:
     return [(state.attribute, state.listed) for state in states if state.attribute in kept]
 
 
-def _shown(attributes: list[str | Relation | Contents]) -> str:
+def _joined(attributes: list[str | Relation | Contents]) -> str:
     return "; ".join(map(str, attributes)) or "nothing"

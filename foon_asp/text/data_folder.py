@@ -21,15 +21,15 @@ from foon_asp.network import (
     starting_kitchen,
 )
 from foon_asp.resources import bundled_kitchen
-from foon_asp.text.assumed_goals import LAST, MARKED, as_entry, last_goals
+from foon_asp.text.assumed_goals import LAST, MARKED, goal_entry, last_goals
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.formats import NEUTRAL
 from foon_asp.text.node_lookup import NodeNames
 from foon_asp.text.object_list import ListedObject, read_object_list
-from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, beginning, read_content
+from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, read_beginning_text, read_content
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.repeated_node import RepeatedNode
-from foon_asp.text.stated_amounts import StatedAmounts, with_table
+from foon_asp.text.stated_amounts import StatedAmounts, apply_amount_table
 from foon_asp.text.stated_prices import StatedPrices
 from foon_asp.text.tables import RATES, read_utensils
 from foon_asp.text.unit_amount_list import UNIT_AMOUNTS
@@ -175,7 +175,7 @@ def _may_be_network(file: Path) -> bool:
     if file.suffix == ".json":
         return _OBJECT_KEY.search(read_content(file)) is not None
     if file.name.endswith(NEUTRAL_SUFFIXES):
-        return NEUTRAL.recognises(beginning(file), "")
+        return NEUTRAL.recognises(read_beginning_text(file), "")
     return file.suffix == ".txt"
 
 
@@ -230,7 +230,7 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
 def _assumed_goals(reader: FoonReader, network: Network) -> tuple[list[ListedObject], str]:
     """Return the assumed goals of a network and their origin: marked nodes, or outputs of last units."""
     if reader.marked:
-        return [as_entry(node, source) for node, source in reader.marked.items()], MARKED
+        return [goal_entry(node, source) for node, source in reader.marked.items()], MARKED
     return last_goals(network, reader.last_units), LAST
 
 
@@ -239,7 +239,7 @@ def kitchen_nodes(network: Network, items: Iterable[ListedObject]) -> frozenset[
     return frozenset(o for item in items for o in network.find(pattern_at_level(item.pattern, network.level)))
 
 
-def counted_items(names: NodeNames, items: Iterable[ListedObject]) -> dict[ObjectNode, int]:
+def amounts_of_items(names: NodeNames, items: Iterable[ListedObject]) -> dict[ObjectNode, int]:
     """Return the amounts of nodes that match entries with an amount, at the level of the network."""
     return {
         names.node(o): item.amount
@@ -255,7 +255,7 @@ def unit_prices(stated: StatedPrices, listed: UnitPriceList | None) -> UnitPrice
     Raises :class:`InputError` if copies of a unit state different prices and the file has none for the unit.
     """
     chosen = listed.units if listed else {}
-    settled = stated.settled(chosen)
+    settled = stated.price_by_unit(chosen)
     return UnitPrices(listed.motions if listed else {}, settled | chosen) if listed or settled else None
 
 
@@ -266,13 +266,13 @@ def amounts_of_units(
 
     Appends to ``warnings`` a warning for each row of the table that matches no unit.
     """
-    settled = stated.settled(network)
+    settled = stated.amounts_by_unit(network)
     if file is None:
         return settled
     rows = UNIT_AMOUNTS.rows(file)
     motions = {row.name[0] for row in rows}
     units = (network.unit(unit) for unit, motion in enumerate(network.motions) if motion in motions)
-    amounts, unmatched = with_table(settled, rows, units)
+    amounts, unmatched = apply_amount_table(settled, rows, units)
     warnings += unmatched
     return amounts
 

@@ -80,7 +80,7 @@ class InputError(UserError):
         self.diagnostics = tuple(diagnostics)
 
 
-def in_brief(diagnostics: Sequence[Diagnostic]) -> list[str]:
+def brief_summary(diagnostics: Sequence[Diagnostic]) -> list[str]:
     """Return warnings as :func:`summarize` does, or one line of counts if that has more than six lines."""
     summary = summarize(diagnostics)
     if sum(1 + text.count("\n") for text in summary) <= 6:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from foon_asp.errors import UserError
 from foon_asp.text.formats import NEUTRAL
-from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, beginning, read_content
+from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, read_beginning_text, read_content
 
 _FOON_LINE = re.compile(rb"^(?:\xef\xbb\xbf)?[OSM]\d*[\t ]", re.MULTILINE)
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
@@ -48,7 +48,7 @@ def _is_foon(file: Path, relative: Path) -> bool:
     if any(name[:1] == "." for name in relative.parts) or not file.is_file():
         return False
     if file.name.endswith(NEUTRAL_SUFFIXES):
-        return NEUTRAL.recognises(beginning(file), "")
+        return NEUTRAL.recognises(read_beginning_text(file), "")
     pattern = {".txt": _FOON_LINE, ".json": _JSON_KEY}.get(file.suffix)
     content = read_content(file) if pattern else b""
     # UTF-16 cannot be read, which has to be reported to the caller

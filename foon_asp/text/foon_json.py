@@ -10,7 +10,7 @@ from foon_asp.text.exact_number import read_price
 from foon_asp.text.format import Dialect, Format, Writer
 from foon_asp.text.json_layout import check_json, lay_out
 from foon_asp.text.json_list import JsonList, begins_json
-from foon_asp.text.json_names import json_mentions, renamed_json
+from foon_asp.text.json_names import json_mentions, rename_in_json
 from foon_asp.text.json_object import read_json_objects
 from foon_asp.text.json_units import read_json_units
 from foon_asp.text.line import Line, Mention
@@ -39,7 +39,7 @@ class FoonJson(Format):
 
         An empty list is a bare list of units.
         """
-        by_its_name = any("object_label" in value for value in _first_objects(text))
+        by_its_name = any("object_label" in value for value in _objects_telling_form(text))
         return Dialect.JSON if by_its_name or text.lstrip(" \t\r\n")[0] == "{" else Dialect.JSON_LIST
 
     def lists_objects(self, text: str) -> bool:
@@ -73,7 +73,7 @@ class FoonJson(Format):
             for block in unit.inputs + unit.outputs:
                 yield from block.lines
 
-    def normalised(self, text: str, file: str, lenient: bool = False) -> str:
+    def canonical_text(self, text: str, file: str, lenient: bool = False) -> str:
         """Return JSON laid out anew; a line end after the last bracket is neither added nor removed."""
         try:
             check_json(text, file)
@@ -84,14 +84,14 @@ class FoonJson(Format):
         laid_out = lay_out(text) + ("\n" if text.rstrip(" \t")[-1:] in {"\r", "\n"} else "")
         return laid_out.replace("\n", usual_line_end(text))
 
-    def names(self, text: str, file: str) -> Iterator[Mention]:
+    def mentions(self, text: str, file: str) -> Iterator[Mention]:
         """Yield every mention of a name; raises :class:`InputError` for a text that is not JSON."""
         check_json(text, file)
         return json_mentions(text)
 
-    def renamed(self, text: str, file: str, renaming: "Renaming") -> str:
+    def renamed_text(self, text: str, file: str, renaming: "Renaming") -> str:
         """Return a text with the new name."""
-        return renamed_json(text, renaming)
+        return rename_in_json(text, renaming)
 
     def writer(self, target: Dialect, numbering: "Numbering") -> Writer:
         """Return a writer of networks and lists of objects in one of the forms."""
@@ -100,7 +100,7 @@ class FoonJson(Format):
         return JsonWriter(target)
 
 
-def _first_objects(text: str) -> Iterator[dict[str, object]]:
+def _objects_telling_form(text: str) -> Iterator[dict[str, object]]:
     """Yield the first object of a list of objects, or the objects of the first unit."""
     first = next(iter(JsonList(text, Path(), "functional_units")), None)
     value = first.value if first else None

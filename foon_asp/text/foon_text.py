@@ -11,7 +11,7 @@ from foon_asp.text.format import Dialect, Format, Writer
 from foon_asp.text.line import Line, LineError, Mention, MotionLine, ObjectLine, line_names
 from foon_asp.text.line_parser import read_line
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, ReadUnit
-from foon_asp.text.plain_file import each_line, split_lines, text_pieces, usual_line_end
+from foon_asp.text.plain_file import map_lines, split_lines, text_pieces, usual_line_end
 from foon_asp.text.reading import Reading
 from foon_asp.text.text_units import TextUnits
 from foon_asp.text.writer import write_line
@@ -60,15 +60,15 @@ class FoonText(Format):
 
     def units(self, text: str, file: str, reading: Reading) -> Iterator[ReadUnit]:
         """Yield the units of a text in order."""
-        return _units(text, file, reading).units()
+        return _text_units(text, file, reading).units()
 
     def listed_units(self, text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
         """Yield the units of a text in order, with their lines as written."""
-        return _units(text, file, reading).listed_units()
+        return _text_units(text, file, reading).listed_units()
 
     def objects(self, text: str, file: str, reading: Reading) -> Iterator[tuple[ObjectBlock, NodePattern]]:
         """Yield the objects of a kitchen or of goals."""
-        for block in _units(text, file, reading).objects():
+        for block in _text_units(text, file, reading).objects():
             yield block, NodePattern.of(block.node)
 
     def lines(self, text: str) -> Iterator[Line]:
@@ -77,18 +77,18 @@ class FoonText(Format):
             if written[:1] in {"O", "S", "M"} and not isinstance(line := read_line(written), LineError):
                 yield line
 
-    def normalised(self, text: str, file: str, lenient: bool = False) -> str:
-        """Return a text in canonical form, line by line, as :func:`rewritten` does."""
-        return rewritten(text, file, lenient, _mended)
+    def canonical_text(self, text: str, file: str, lenient: bool = False) -> str:
+        """Return a text in canonical form, line by line, as :func:`rewrite_lines` does."""
+        return rewrite_lines(text, file, lenient, _mend_line)
 
-    def names(self, text: str, file: str) -> Iterator[Mention]:
+    def mentions(self, text: str, file: str) -> Iterator[Mention]:
         """Yield every mention of a name."""
         for line in self.lines(text):
             yield from line_names(line)
 
-    def renamed(self, text: str, file: str, renaming: "Renaming") -> str:
+    def renamed_text(self, text: str, file: str, renaming: "Renaming") -> str:
         """Return a text with the new name."""
-        return each_line(text, renaming.line)
+        return map_lines(text, renaming.line)
 
     def writer(self, target: Dialect, numbering: "Numbering") -> Writer:
         """Return a writer of networks and lists of objects as lines."""
@@ -97,12 +97,12 @@ class FoonText(Format):
         return TextWriter(target, numbering)
 
 
-def _units(text: str, file: str, reading: Reading) -> TextUnits:
+def _text_units(text: str, file: str, reading: Reading) -> TextUnits:
     return TextUnits([text.replace("\r\n", "\n").replace("\r", "\n")], file, reading)
 
 
-def rewritten(text: str, file: str, lenient: bool, rewrite: Rewrite) -> str:
-    """Return a text rewritten line by line; ``rewrite`` rewrites object, state and motion lines.
+def rewrite_lines(text: str, file: str, lenient: bool, rewrite: Rewrite) -> str:
+    """Return a text rewrite_lines line by line; ``rewrite`` rewrites object, state and motion lines.
 
     Blanks at the ends of lines are removed, all lines get the most frequent line end, and a last unit without
     ``//`` gets it. Comments, blank lines and the order of lines stay, also where lines form no unit. For
@@ -116,7 +116,7 @@ def rewritten(text: str, file: str, lenient: bool, rewrite: Rewrite) -> str:
     for number, line in enumerate(lines, 1):
         new_line = rewritten_lines.get(line)
         if new_line is None:
-            new_line, error = _rewritten_line(line, rewrite)
+            new_line, error = _rewrite_line(line, rewrite)
             if error and not lenient:
                 source = Source(file, number, error.column)
                 errors.append(Diagnostic(Severity.ERROR, "syntax", str(error), source, line))
@@ -128,14 +128,14 @@ def rewritten(text: str, file: str, lenient: bool, rewrite: Rewrite) -> str:
     last = len(new_lines) - 1
     while last >= 0 and not new_lines[last]:
         last -= 1
-    if _is_open_unit(lines):
+    if _ends_in_open_unit(lines):
         new_lines.insert(last + 1, "//")
     if new_lines[-1]:
         new_lines.append("")
     return usual_line_end(text).join(new_lines)
 
 
-def _mended(line: Line, written: str) -> str:
+def _mend_line(line: Line, written: str) -> str:
     """Return the canonical form of a line; a line whose only remarks are on blanks stays unchanged.
 
     Blanks within a line stay, since the published universal FOON has them: ``{jelly, peanut butter}``, and a
@@ -146,7 +146,7 @@ def _mended(line: Line, written: str) -> str:
     return write_line(line)
 
 
-def _rewritten_line(line: str, rewrite: Rewrite) -> tuple[str, LineError | None]:
+def _rewrite_line(line: str, rewrite: Rewrite) -> tuple[str, LineError | None]:
     """Return a line as ``rewrite`` writes it, or unchanged with an error; comments and blank lines stay."""
     if line[:1] == "#":
         return line, None
@@ -160,7 +160,7 @@ def _rewritten_line(line: str, rewrite: Rewrite) -> tuple[str, LineError | None]
     return rewrite(parsed, line), None
 
 
-def _is_open_unit(lines: list[str]) -> bool:
+def _ends_in_open_unit(lines: list[str]) -> bool:
     """Whether the lines after the last ``//`` form a unit: one motion, with an object before it."""
     start = len(lines)
     while start > 0 and not re.fullmatch(r"//[ \t]*", lines[start - 1]):

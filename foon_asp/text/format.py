@@ -78,16 +78,16 @@ class Format(Protocol):
     def lines(self, text: str) -> Iterator[Line]:
         """Yield the parts of a text that can be understood as lines of FOON text."""
 
-    def normalised(self, text: str, file: str, lenient: bool = False) -> str:
+    def canonical_text(self, text: str, file: str, lenient: bool = False) -> str:
         """Return a text in canonical form, with the same meaning.
 
         Raises :class:`InputError` with all faults; with ``lenient``, lines that cannot be understood stay.
         """
 
-    def names(self, text: str, file: str) -> Iterator[Mention]:
+    def mentions(self, text: str, file: str) -> Iterator[Mention]:
         """Yield every mention of a name; raises :class:`InputError` for a text that is broken."""
 
-    def renamed(self, text: str, file: str, renaming: "Renaming") -> str:
+    def renamed_text(self, text: str, file: str, renaming: "Renaming") -> str:
         """Return a text with a new name for an old one; everything else stays as it is written."""
 
     def writer(self, target: Dialect, numbering: "Numbering") -> "Writer":

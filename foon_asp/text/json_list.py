@@ -46,13 +46,13 @@ class JsonList:
                 yield JsonElement(value, self.position_of(offset))
         except json.JSONDecodeError as problem:
             syntax_fault = json_fault(problem)
-            self.error(self.position_of(syntax_fault.offset), syntax_fault.message)
+            self.add_error(self.position_of(syntax_fault.offset), syntax_fault.message)
         except JsonFaultError as fault:
-            self.error(self.position_of(fault.position), str(fault))
+            self.add_error(self.position_of(fault.position), str(fault))
         except RecursionError:
-            self.error(self.position_of(0), "found lists nested too deeply, expected a list of objects")
+            self.add_error(self.position_of(0), "found lists nested too deeply, expected a list of objects")
 
-    def error(self, source: Source, message: str) -> None:
+    def add_error(self, source: Source, message: str) -> None:
         """Record an error at a place of the file."""
         excerpt = self._text.split("\n", source.line)[source.line - 1].rstrip("\r")
         self.errors.append(Diagnostic(Severity.ERROR, "json", message, source, excerpt))
@@ -67,31 +67,31 @@ class JsonList:
 
     def _elements(self) -> Iterator[tuple[int, object]]:
         """Yield each element of the list, or of the list in an object, with its position."""
-        start = self._skip(0)
+        start = self._skip_blanks(0)
         if self._key is not None and self._text[start : start + 1] == "{":
-            yield from self._in_object(start + 1)
+            yield from self._elements_under_key(start + 1)
             return
-        end = yield from self._in_list(start)
+        end = yield from self._list_elements(start)
         self._expect_end(end)
 
-    def _in_object(self, position: int) -> Iterator[tuple[int, object]]:
+    def _elements_under_key(self, position: int) -> Iterator[tuple[int, object]]:
         """Yield the elements of the list under the key; the values of other keys are kept aside."""
         seen: set[str] = set()
-        position = self._skip(position)
+        position = self._skip_blanks(position)
         while self._text[position : position + 1] != "}":
             start = position
             key, position = self._value(position)
             if not isinstance(key, str):
                 raise self._unexpected("a key in quotes", start)
             if key in seen:
-                raise _repeated(key, start)
+                raise _repeated_key(key, start)
             seen.add(key)
-            position = self._expect(":", self._skip(position))
+            position = self._expect(":", self._skip_blanks(position))
             if key == self._key:
-                position = yield from self._in_list(position)
+                position = yield from self._list_elements(position)
             else:
                 self.others[key], position = self._value(position)
-            position = self._skip(position)
+            position = self._skip_blanks(position)
             if self._text[position : position + 1] != "}":
                 position = self._expect(",", position, "a comma or }")
                 if self._text[position : position + 1] == "}":
@@ -100,7 +100,7 @@ class JsonList:
             raise self._unexpected(f"a list, or an object with the key {self._key!r}", 0)
         self._expect_end(position + 1)
 
-    def _in_list(self, position: int) -> Generator[tuple[int, object], None, int]:
+    def _list_elements(self, position: int) -> Generator[tuple[int, object], None, int]:
         """Yield the elements of the list that begins at a position, and return the position of its end."""
         position = self._expect("[", position, "a list, [ ... ]")
         first = True
@@ -110,7 +110,7 @@ class JsonList:
             first = False
             value, end = self._value(position)
             yield position, value
-            position = self._skip(end)
+            position = self._skip_blanks(end)
         return position + 1
 
     def _value(self, position: int) -> tuple[object, int]:
@@ -124,11 +124,11 @@ class JsonList:
     def _expect(self, character: str, position: int, what: str = "") -> int:
         if self._text[position : position + 1] != character:
             raise self._unexpected(what or character, position)
-        return self._skip(position + 1)
+        return self._skip_blanks(position + 1)
 
     def _expect_end(self, end: int) -> None:
         """Raise :class:`JsonFaultError` where anything but blanks follows."""
-        position = self._skip(end)
+        position = self._skip_blanks(end)
         if position != len(self._text):
             raise self._unexpected(
                 "the end of the file after the list: remove what stands behind it", position
@@ -136,14 +136,14 @@ class JsonList:
 
     def _unexpected(self, expected: str, position: int) -> "JsonFaultError":
         """Return the error that something else was expected at a position."""
-        if position == self._skip(0) and (message := before_json(self._text)):
+        if position == self._skip_blanks(0) and (message := fault_before_json(self._text)):
             return JsonFaultError(message, position)
         text = self._text[position:].split("\n", 1)[0].rstrip("\r")
         text = text if len(text) <= 24 else text[:24] + "..."
         shown = repr(text) if text else "the end of the line"
         return JsonFaultError(f"found {shown}, expected {expected}", position)
 
-    def _skip(self, position: int) -> int:
+    def _skip_blanks(self, position: int) -> int:
         match = _SPACE.match(self._text, position)
         return match.end() if match else position
 
@@ -163,7 +163,7 @@ class JsonFaultError(Exception):
         self.position = position
 
 
-def _repeated(key: str, position: int) -> JsonFaultError:
+def _repeated_key(key: str, position: int) -> JsonFaultError:
     return JsonFaultError(f"found the key {key!r} twice in one object", position)
 
 
@@ -172,7 +172,7 @@ def _object(pairs: list[tuple[str, object]]) -> dict[str, object]:
     value = dict(pairs)
     if len(value) < len(pairs):
         keys = [key for key, _ in pairs]
-        raise _repeated(next(key for key in value if keys.count(key) > 1), 0)
+        raise _repeated_key(next(key for key in value if keys.count(key) > 1), 0)
     return value
 
 
@@ -186,7 +186,7 @@ def begins_json(text: str) -> bool:
     return text[:1_000].lstrip(_BLANKS)[:1] in {"{", "["}
 
 
-def before_json(text: str) -> str:
+def fault_before_json(text: str) -> str:
     """Return an error message if other text stands before JSON, else an empty text.
 
     JSON is searched for in the first 2,000 letters.

@@ -32,12 +32,12 @@ def json_mentions(text: str) -> Iterator[Mention]:
             yield from line_names(state)
 
 
-def renamed_json(text: str, renaming: "Renaming") -> str:
+def rename_in_json(text: str, renaming: "Renaming") -> str:
     """Return a text that is JSON with the new name; everything else stays as it is written."""
     edits: list[tuple[int, int, str]] = []
     names = _json_names(text)
     word = renaming.rename
-    if word.kind == NameKind.WORD and word.old == LISTED_UNDER and any(map(_is_word_of_list, names)):
+    if word.kind == NameKind.WORD and word.old == LISTED_UNDER and any(map(_is_contains_word, names)):
         raise UserError(
             f"JSON lists ingredients under the word {LISTED_UNDER!r} alone, which cannot be renamed there; "
             "convert the file to text before"
@@ -101,11 +101,11 @@ def _json_names(text: str) -> list[_JsonName]:
             levels.append(_Level(level.key, token == "[", len(names)))
         elif token in {"}", "]"}:
             levels.pop()
-            names += _with_ids(level)
+            names += _names_with_ids(level)
             if level.is_list and level.owner == "ingredients":
                 levels[-1].lists_ingredients = any(not is_none(each.name) for each in names[level.first :])
             elif level.lists_ingredients:
-                _name_contents(names, level.first)
+                _mark_word_of_contents(names, level.first)
         elif token in {":", ","}:
             continue
         elif not level.is_list and next_token is not None and next_token[0] == ":":
@@ -121,7 +121,7 @@ def _json_names(text: str) -> list[_JsonName]:
     return names
 
 
-def _with_ids(level: _Level) -> Iterator[_JsonName]:
+def _names_with_ids(level: _Level) -> Iterator[_JsonName]:
     """Yield the names of a JSON object; a label has the id of the object, a container has no id."""
     related = any(key in _RELATED and not is_none(name.name) for key, name in level.names)
     for key, name in level.names:
@@ -130,11 +130,11 @@ def _with_ids(level: _Level) -> Iterator[_JsonName]:
         yield name._replace(kind=kind, id=id_[0], id_span=id_[1]) if id_ else name._replace(kind=kind)
 
 
-def _is_word_of_list(name: _JsonName) -> bool:
+def _is_contains_word(name: _JsonName) -> bool:
     return name.kind is NameKind.WORD and name.name == LISTED_UNDER
 
 
-def _name_contents(names: list[_JsonName], first: int) -> None:
+def _mark_word_of_contents(names: list[_JsonName], first: int) -> None:
     """Make the state ``contains`` of an object a word of contents, since the object lists ingredients.
 
     ``first`` is the index of the object's first name in ``names``, which is changed.

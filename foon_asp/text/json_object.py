@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.network import Contents, NodePattern, ObjectNode, Relation, Source
-from foon_asp.text.amount_mark import EXPECTED_AMOUNT, amount
+from foon_asp.text.amount_mark import EXPECTED_AMOUNT, parse_amount
 from foon_asp.text.exact_number import MAX_LETTERS, read_price
 from foon_asp.text.json_list import JsonList, JsonNumber
 from foon_asp.text.json_node import read_node_json
@@ -50,24 +50,26 @@ def read_object(value: object, keys: set[str] = KEYS) -> JsonObject:
     or empty value and ``"None"`` are no value. Raises :class:`ValueError` for a value of another form.
     """
     if not isinstance(value, dict):
-        raise ValueError(f'found {shown(value)}, expected an object {{"label": ..., "states": [...]}}')
+        raise ValueError(f'found {excerpt_of(value)}, expected an object {{"label": ..., "states": [...]}}')
     check_keys(value, keys)
-    label_key, label_value = first_of(value, _LABEL)
-    label = _name(label_value, label_key).strip(" ")
+    label_key, label_value = key_and_value(value, _LABEL)
+    label = _checked_name(label_value, label_key).strip(" ")
     if not label:
-        raise ValueError(f'found {shown(label_value)} as "{label_key}", expected a name')
-    states = [_state(state) for state in _list(value, *first_of(value, _STATES))]
-    listed = _list(value, "ingredients", value.get("ingredients"))
-    ingredients = tuple(item for item in map(_ingredient, listed) if item)
+        raise ValueError(f'found {excerpt_of(label_value)} as "{label_key}", expected a name')
+    states = [_state(state) for state in _list_under(value, *key_and_value(value, _STATES))]
+    listed = _list_under(value, "ingredients", value.get("ingredients"))
+    ingredients = tuple(item for item in map(_ingredient_name, listed) if item)
     if ingredients:
-        states = _with_contents(states, ingredients)
+        states = _add_contents(states, ingredients)
     container = optional_name(value.get("container"), "container")
-    flag, category = number(value, "object_in_motion"), number(value, "recipe_category")
+    flag, category = digits_under(value, "object_in_motion"), digits_under(value, "recipe_category")
     fields = tuple(filter(None, (flag, category)))
-    line = ObjectLine(label, number(value, "object_id"), fields)
+    line = ObjectLine(label, digits_under(value, "object_id"), fields)
     remarks = [remark.message for state in states for remark in state.remarks]
     plain = [state._replace(remarks=()) for state in states] if remarks else states
-    return JsonObject(line, tuple(plain), container, (*remarks, *_left_out(value, flag, category, listed)))
+    return JsonObject(
+        line, tuple(plain), container, (*remarks, *_remarks_on_losses(value, flag, category, listed))
+    )
 
 
 def read_json_objects(text: str, file: str, reading: Reading) -> Iterator[tuple[ObjectBlock, NodePattern]]:
@@ -92,12 +94,12 @@ def read_objects(elements: JsonList) -> Iterator[tuple[ObjectBlock, NodePattern,
     for value, source in elements:
         try:
             amount = stated_amount(value) if isinstance(value, dict) else None
-            if (node := _whole_node(value)) is not None:
-                yield _block(node, source)._replace(amount=amount), NodePattern.of(node), ()
+            if (node := _node_of_notation_or_answer(value)) is not None:
+                yield _block_of_node(node, source)._replace(amount=amount), NodePattern.of(node), ()
                 continue
             line, states, container, remarks = read_object(value, NODE_KEYS)
         except ValueError as problem:
-            elements.error(source, str(problem))
+            elements.add_error(source, str(problem))
         else:
             block = ObjectBlock(line, states, source, amount)
             pattern = NodePattern.of(block.node)._replace(container=container)
@@ -106,25 +108,27 @@ def read_objects(elements: JsonList) -> Iterator[tuple[ObjectBlock, NodePattern,
             yield block, pattern, remarks
 
 
-def _whole_node(value: object) -> ObjectNode | None:
+def _node_of_notation_or_answer(value: object) -> ObjectNode | None:
     """Return a node in one-line notation or as in an answer; ``None`` for another form."""
     if isinstance(value, str):
         try:
             return parse_node(value)
         except LineError as error:
             raise ValueError(
-                f"found {shown(value)}: at its column {error.column}, {error}; a name with such letters in "
-                "it is in quotes"
+                f"found {excerpt_of(value)}: at its column {error.column}, {error}; a name with such "
+                "letters in it is in quotes"
             ) from None
     if not isinstance(value, dict) or "node" not in value:
         return None
     try:
         return read_node_json(value)
     except (KeyError, TypeError) as error:
-        raise ValueError(f"found {shown(value['node'])}, expected a node as in an answer: {error}") from None
+        raise ValueError(
+            f"found {excerpt_of(value['node'])}, expected a node as in an answer: {error}"
+        ) from None
 
 
-def _block(node: ObjectNode, source: Source) -> ObjectBlock:
+def _block_of_node(node: ObjectNode, source: Source) -> ObjectBlock:
     states = [*map(StateLine, sorted(node.states)), *map(StateLine, sorted(node.relations))]
     states += [StateLine(contents, listed=contents.ingredients) for contents in node.contents]
     return ObjectBlock(ObjectLine(node.label), tuple(states), source)
@@ -137,7 +141,7 @@ def check_keys(value: dict[str, object], allowed: set[str]) -> None:
         raise ValueError(f"found the key {unknown!r}, expected one of {', '.join(sorted(allowed))}")
 
 
-def first_of(value: dict[str, object], keys: tuple[str, ...]) -> tuple[str, object]:
+def key_and_value(value: dict[str, object], keys: tuple[str, ...]) -> tuple[str, object]:
     """Return the one of ``keys`` that an object has, and its value; without any, the first key and ``None``.
 
     Raises :class:`ValueError` if it has two of the keys.
@@ -152,7 +156,7 @@ def optional_name(value: object, key: str) -> str | None:
     """Return a name; ``None`` for null, an empty text and ``"None"`` in letters of any case."""
     if value is None:
         return None
-    name = _name(value, key, "a name or null").strip(" ")
+    name = _checked_name(value, key, "a name or null").strip(" ")
     return None if is_none(name) else name
 
 
@@ -161,7 +165,7 @@ def is_none(name: str) -> bool:
     return name.strip().lower() in {"", "none"}
 
 
-def number(value: dict[str, object], key: str) -> str:
+def digits_under(value: dict[str, object], key: str) -> str:
     """Return the digits of a number, which may be written as text; empty if the key has no value."""
     field = value.get(key)
     if field is None or (isinstance(field, str) and is_none(field)):
@@ -169,25 +173,25 @@ def number(value: dict[str, object], key: str) -> str:
     written = field.text if isinstance(field, JsonNumber) else field
     if isinstance(written, str) and is_number(written):
         return written
-    raise ValueError(f'found {shown(field)} as "{key}", expected a number')
+    raise ValueError(f'found {excerpt_of(field)} as "{key}", expected a number')
 
 
-def amount_of(value: object) -> int:
+def amount_from_json(value: object) -> int:
     """Read an amount from a number or a text of digits; raises :class:`ValueError` for another value."""
     written = value.text if isinstance(value, JsonNumber) else str(value)
     try:
-        return amount(written, 1)
+        return parse_amount(written, 1)
     except LineError:
-        raise ValueError(f"found the amount {shown(value)}, expected {EXPECTED_AMOUNT}") from None
+        raise ValueError(f"found the amount {excerpt_of(value)}, expected {EXPECTED_AMOUNT}") from None
 
 
 def stated_amount(value: dict[str, object]) -> int | None:
     """Return the amount of an object, ``None`` for none; raises :class:`ValueError` for a wrong one."""
     stated = value.get("amount")
-    return None if stated is None else amount_of(stated)
+    return None if stated is None else amount_from_json(stated)
 
 
-def price_of(value: object, exponents: bool = False) -> str:
+def price_from_json(value: object, exponents: bool = False) -> str:
     """Return the price of a unit, in JSON a number or a text; empty for a unit without a price.
 
     If the form has ``exponents``, a number may be written with one; the price is returned without it.
@@ -215,24 +219,26 @@ def _state(value: object) -> StateLine:
     """Return a state as a state line, from a name or an object of JSON."""
     if isinstance(value, dict):
         check_keys(value, _STATE_KEYS)
-        label_key, label_value = first_of(value, _STATE_LABEL)
-        state = _state(_name(label_value, label_key))
-        related = optional_name(first_of(value, _RELATED)[1], _RELATED[0])
+        label_key, label_value = key_and_value(value, _STATE_LABEL)
+        state = _state(_checked_name(label_value, label_key))
+        related = optional_name(key_and_value(value, _RELATED)[1], _RELATED[0])
         if related:
             if not isinstance(state.attribute, str):
                 raise ValueError(
-                    f"found the related object {related!r} besides the one in {shown(label_value)}"
+                    f"found the related object {related!r} besides the one in {excerpt_of(label_value)}"
                 )
             state = state._replace(attribute=Relation(state.attribute, related))
-        return state._replace(id=number(value, "state_id"))
-    name = _name(value, "states", "a name").strip(" ")
+        return state._replace(id=digits_under(value, "state_id"))
+    name = _checked_name(value, "states", "a name").strip(" ")
     try:
         return read_state(name)
     except LineError as error:
-        raise ValueError(f"found the state {shown(name)}: at its column {error.column}, {error}") from None
+        raise ValueError(
+            f"found the state {excerpt_of(name)}: at its column {error.column}, {error}"
+        ) from None
 
 
-def _with_contents(states: list[StateLine], ingredients: tuple[str, ...]) -> list[StateLine]:
+def _add_contents(states: list[StateLine], ingredients: tuple[str, ...]) -> list[StateLine]:
     """Return states with the ingredients as contents, in place of the state ``contains`` or at the end."""
     contents = Contents(LISTED_UNDER, tuple(sorted(ingredients)))
     for index, state in enumerate(states):
@@ -241,7 +247,9 @@ def _with_contents(states: list[StateLine], ingredients: tuple[str, ...]) -> lis
     return [*states, StateLine(contents, "", ingredients)]
 
 
-def _left_out(value: dict[str, object], flag: str, category: str, ingredients: list[object]) -> Iterator[str]:
+def _remarks_on_losses(
+    value: dict[str, object], flag: str, category: str, ingredients: list[object]
+) -> Iterator[str]:
     """Yield remarks on parts of an object that lines cannot hold."""
     if flag not in {"", *MOTION_FLAGS}:
         yield f"the motion flag {flag!r} is not 0 or 1"
@@ -254,29 +262,29 @@ def _left_out(value: dict[str, object], flag: str, category: str, ingredients: l
             yield "states and containers of ingredients left out: only their labels count"
 
 
-def _ingredient(value: object) -> str:
+def _ingredient_name(value: object) -> str:
     """Return the name of an ingredient; for a whole object, its label."""
     if isinstance(value, dict):
         return read_object(value).line.label
-    return _name(value, "ingredients").strip(" ")
+    return _checked_name(value, "ingredients").strip(" ")
 
 
-def _list(value: dict[str, object], key: str, items: object) -> list[object]:
+def _list_under(value: dict[str, object], key: str, items: object) -> list[object]:
     """Return the list under a key, empty for a missing one; raises :class:`ValueError` for another value."""
     if items is None:
         return []
     if not isinstance(items, list):
-        raise ValueError(f'found {shown(items)} as "{key}", expected a list of names')
+        raise ValueError(f'found {excerpt_of(items)} as "{key}", expected a list of names')
     return items
 
 
-def _name(value: object, key: str, expected: str = "a name") -> str:
+def _checked_name(value: object, key: str, expected: str = "a name") -> str:
     if not isinstance(value, str):
-        raise ValueError(f'found {shown(value)} as "{key}", expected {expected}')
+        raise ValueError(f'found {excerpt_of(value)} as "{key}", expected {expected}')
     return value
 
 
-def shown(value: object) -> str:
+def excerpt_of(value: object) -> str:
     """Return a value as it is written, for a message; a long one is cut."""
     if isinstance(value, JsonNumber):
         return value.text[:40]

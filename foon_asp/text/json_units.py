@@ -13,9 +13,9 @@ from foon_asp.text.json_list import JsonElement, JsonList, JsonNumber
 from foon_asp.text.json_object import (
     NODE_KEYS,
     check_keys,
-    number,
+    digits_under,
     optional_name,
-    price_of,
+    price_from_json,
     read_object,
     stated_amount,
 )
@@ -23,7 +23,7 @@ from foon_asp.text.line import MotionLine, StateLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
 from foon_asp.text.motion_times import is_rate, is_time
 from foon_asp.text.reading import Reading
-from foon_asp.text.text_units import no_motion
+from foon_asp.text.text_units import no_motion_message
 
 _NEEDED = {"input_nodes", "motion_node", "output_nodes"}
 _KEYS = {*_NEEDED, "price"}
@@ -40,13 +40,13 @@ def read_json_units(text: str, file: str, reading: Reading) -> Iterator[ListedUn
     listed = list(elements)
     videos = _videos(elements.others.get("source"))
     if listed and not elements.errors and all(_is_object(element.value) for element in listed):
-        reading.warn("no-motion", no_motion(len(listed)), listed[0].source)
+        reading.warn("no-motion", no_motion_message(len(listed)), listed[0].source)
         return
     for element in listed:
         try:
             unit, remarks = _unit(element, videos)
         except ValueError as problem:
-            elements.error(element.source, str(problem))
+            elements.add_error(element.source, str(problem))
             continue
         for remark in remarks:
             reading.warn("json-value", remark, element.source)
@@ -79,8 +79,8 @@ def _unit(element: JsonElement, videos: tuple[str, ...]) -> tuple[ListedUnit, li
     check_keys(value, _KEYS)
     remarks: list[str] = []
     inputs, outputs = (_blocks(value, key, source, remarks) for key in ("input_nodes", "output_nodes"))
-    motion = _motion(value["motion_node"], remarks)
-    price = price_of(value.get("price"))
+    motion = _motion_line(value["motion_node"], remarks)
+    price = price_from_json(value.get("price"))
     unit = ListedUnit(motion, inputs, outputs, (source._replace(videos=videos),), source, price)
     return unit, list(dict.fromkeys(remarks))
 
@@ -94,17 +94,17 @@ def _blocks(unit: dict[str, object], key: str, source: Source, remarks: list[str
     for value in objects:
         line, states, container, object_remarks = read_object(value, NODE_KEYS)
         remarks += object_remarks
-        if container is not None and not any(_names(state, container) for state in states):
+        if container is not None and not any(_relates_to(state, container) for state in states):
             states = (*states, StateLine(Relation("in", container)))
         blocks.append(ObjectBlock(line, states, source, stated_amount(value)))
     return tuple(blocks)
 
 
-def _names(state: StateLine, container: str) -> bool:
+def _relates_to(state: StateLine, container: str) -> bool:
     return isinstance(state.attribute, Relation) and state.attribute.object == container
 
 
-def _motion(value: object, remarks: list[str]) -> MotionLine:
+def _motion_line(value: object, remarks: list[str]) -> MotionLine:
     """Return the motion line of a unit, with the fields that its JSON has."""
     if not isinstance(value, dict):
         value = {"motion_label": value}
@@ -130,5 +130,5 @@ def _motion(value: object, remarks: list[str]) -> MotionLine:
     elif entity is not None:
         remarks.append(f"the robot_type {entity!r} has no weight_success; left out")
     return MotionLine(
-        label.rstrip("* ") if composite else label, number(value, "motion_id"), composite, tuple(fields)
+        label.rstrip("* ") if composite else label, digits_under(value, "motion_id"), composite, tuple(fields)
     )

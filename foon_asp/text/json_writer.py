@@ -38,30 +38,30 @@ class JsonWriter:
     def block(self, block: ObjectBlock, in_list: bool) -> WrittenPart:
         """Write an object."""
         line, states = block.object, block.states
-        text = (list_object if self._is_list else json_object)(line, states)
+        text = (object_without_ids if self._is_list else object_with_ids)(line, states)
         if block.amount is not None and (in_list or block.amount > 1):
             text = f'{text[:-1]},"amount":{block.amount}}}'
-        back = _listed(text) if in_list else _unit(text, '"x"').inputs[0]
+        back = _read_back_object(text) if in_list else _read_back_unit(text, '"x"').inputs[0]
         losses = lost_in_line(line, back.object) + lost_in_states(states, back.states)
         return lay_out(text, 1 if in_list else self._level + 2), losses
 
     def motion(self, line: MotionLine) -> WrittenPart:
         """Write a motion."""
-        text = (list_motion if self._is_list else json_motion)(line)
-        back = _unit('{"label":"x"}', text).motion
+        text = (motion_without_ids if self._is_list else motion_with_ids)(line)
+        back = _read_back_unit('{"label":"x"}', text).motion
         return lay_out(text, self._level + 1), lost_in_line(line, back)
 
     def unit(self, inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str) -> str:
         """Put a unit together."""
-        return written_unit(inputs, motion, outputs, price, self._level)
+        return unit_text(inputs, motion, outputs, price, self._level)
 
     def network(self, units: Sequence[str], videos: Sequence[str]) -> str:
         """Put a file together."""
-        return self.objects(units) if self._is_list else written_network(videos, units)
+        return self.objects(units) if self._is_list else network_text(videos, units)
 
     def objects(self, parts: Sequence[str]) -> str:
         """Put a list together."""
-        return written_list(parts, 0) + "\n"
+        return list_text(parts, 0) + "\n"
 
     def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
         """Return ``videos`` if the form has a key for videos and the file has no other videos, else none."""
@@ -76,7 +76,7 @@ def with_container(block: ObjectBlock, pattern: NodePattern) -> ObjectBlock:
     return block._replace(states=(*block.states, StateLine(Relation("", pattern.container))))
 
 
-def _listed(text: str) -> ObjectBlock:
+def _read_back_object(text: str) -> ObjectBlock:
     """Read back an object from the JSON of a list; raises :class:`CannotHoldError` for an error."""
     reading = Reading()
     blocks = [with_container(*entry) for entry in read_json_objects(f"[{text}]", "", reading)]
@@ -84,7 +84,7 @@ def _listed(text: str) -> ObjectBlock:
     return blocks[0]
 
 
-def _unit(node: str, motion: str) -> ListedUnit:
+def _read_back_unit(node: str, motion: str) -> ListedUnit:
     """Return a unit of one node and one motion, read back from JSON."""
     text = f'[{{"input_nodes":[{node}],"motion_node":{motion},"output_nodes":[{node}]}}]'
     reading = Reading()
@@ -100,7 +100,7 @@ def _raise_first_error(reading: Reading) -> None:
             raise CannotHoldError(diagnostic.message)
 
 
-def json_object(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
+def object_with_ids(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
     """Write an object with its ids and flag, every state line as a state.
 
     A relation without a word becomes the ``container``. The first contents with the word ``contains`` become
@@ -123,45 +123,45 @@ def json_object(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
                 label, ingredients = "contains", state.listed
             else:
                 label = f"{attribute.word} {{{','.join(state.listed)}}}"
-        written.append({"state_id": _number(state.id), "state_label": label, "relative_object": related})
+        written.append({"state_id": _json_number(state.id), "state_label": label, "relative_object": related})
     value: dict[str, object] = {
-        "object_id": _number(line.id),
+        "object_id": _json_number(line.id),
         "object_label": line.label,
         "object_states": written,
         "ingredients": list(ingredients),
-        "object_in_motion": _number(line.motion_flag or ""),
+        "object_in_motion": _json_number(line.motion_flag or ""),
     }
     if line.category and line.motion_flag:  # without a flag before it, it would be read as the flag
-        value["recipe_category"] = _number(line.category)
+        value["recipe_category"] = _json_number(line.category)
     if container is not None:
         value["container"] = container
-    return _text(value)
+    return _compact_json(value)
 
 
-def json_motion(line: MotionLine) -> str:
+def motion_with_ids(line: MotionLine) -> str:
     """Write a motion with its id, its times, who moves and the success rate."""
     times, entity, rate = MotionFields.of(line.fields)
     begin, end, *_ = (*in_two_fields(times), None, None)
-    return _text(
+    return _compact_json(
         {
-            "motion_id": _number(line.id),
+            "motion_id": _json_number(line.id),
             "motion_label": line.motion + "*" * line.composite,
             "start_time": begin,
             "end_time": end,
             "robot_type": entity,
-            "weight_success": _number(rate or ""),
+            "weight_success": _json_number(rate or ""),
         }
     )
 
 
-def list_object(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
+def object_without_ids(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
     """Write an object with label, states, ingredients and one container, preferably the one of ``in``."""
     attributes = [state.attribute for state in states]
     relations = sorted(
         (attribute for attribute in attributes if isinstance(attribute, Relation)),
         key=lambda p: p.word != "in",
     )
-    return _text(
+    return _compact_json(
         {
             "label": line.label,
             "states": [state for state in attributes if isinstance(state, str)],
@@ -171,32 +171,32 @@ def list_object(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
     )
 
 
-def list_motion(line: MotionLine) -> str:
+def motion_without_ids(line: MotionLine) -> str:
     """Write a motion as its name alone."""
-    return _text(line.motion)
+    return _compact_json(line.motion)
 
 
-def written_unit(inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str, level: int) -> str:
+def unit_text(inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str, level: int) -> str:
     """Return the text of a unit at a level from the texts of its parts.
 
     The text of its motion is laid out one level deeper, the texts of its objects two levels. ``price`` is
     empty for a unit without a price.
     """
     key = "\n" + STEP * (level + 1)
-    lists = (written_list(objects, level + 1) for objects in (inputs, outputs))
-    last = f',{key}"price": {_text(_number(price))}' if price else ""
+    lists = (list_text(objects, level + 1) for objects in (inputs, outputs))
+    last = f',{key}"price": {_compact_json(_json_number(price))}' if price else ""
     return '{{{0}"input_nodes": {1},{0}"motion_node": {3},{0}"output_nodes": {2}{4}{5}}}'.format(
         key, *lists, motion, last, "\n" + STEP * level
     )
 
 
-def written_network(videos: Sequence[str], units: Sequence[str]) -> str:
+def network_text(videos: Sequence[str], units: Sequence[str]) -> str:
     """Return the text of a whole file from the texts of its units, laid out for level 2."""
-    source = f'    "source": {written_list(list(map(_text, videos)), 1)},\n' if videos else ""
-    return f'{{\n{source}    "functional_units": {written_list(units, 1)}\n}}\n'
+    source = f'    "source": {list_text(list(map(_compact_json, videos)), 1)},\n' if videos else ""
+    return f'{{\n{source}    "functional_units": {list_text(units, 1)}\n}}\n'
 
 
-def written_list(values: Sequence[str], level: int) -> str:
+def list_text(values: Sequence[str], level: int) -> str:
     """Return the text of a list from the texts of its values, laid out one level deeper."""
     if not values:
         return "[]"
@@ -204,18 +204,20 @@ def written_list(values: Sequence[str], level: int) -> str:
     return "[" + ",".join(start + value for value in values) + "\n" + STEP * level + "]"
 
 
-def _number(digits: str) -> object:
+def _json_number(digits: str) -> object:
     if not digits:
         return None
     return JsonNumber(digits) if _JSON_NUMBER.fullmatch(digits) else digits
 
 
-def _text(value: object) -> str:
+def _compact_json(value: object) -> str:
     """Return plain values as a JSON text of published layout."""
     if isinstance(value, JsonNumber):
         return value.text
     if isinstance(value, dict):
-        return "{" + ",".join(f"{_text(key)}:{_text(item)}" for key, item in value.items()) + "}"
+        return (
+            "{" + ",".join(f"{_compact_json(key)}:{_compact_json(item)}" for key, item in value.items()) + "}"
+        )
     if isinstance(value, list):
-        return "[" + ",".join(map(_text, value)) + "]"
+        return "[" + ",".join(map(_compact_json, value)) + "]"
     return json_line(value)

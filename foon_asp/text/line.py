@@ -137,7 +137,7 @@ class LineError(Exception):
         self.found = found
         self.expected = expected
 
-    def kept(self) -> Self:
+    def without_traceback(self) -> Self:
         """Return the error as a value to keep, without traceback and context."""
         self.__context__ = None
         return self.with_traceback(None)

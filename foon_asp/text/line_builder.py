@@ -8,7 +8,7 @@ from lark import Lark, Token, Transformer
 from lark.exceptions import UnexpectedCharacters, UnexpectedEOF, UnexpectedInput, UnexpectedToken
 
 from foon_asp.network import Contents, ObjectNode, Relation, unquoted
-from foon_asp.text.clean_line import items, no_tab
+from foon_asp.text.clean_line import no_tab_remark, split_ingredients
 from foon_asp.text.line import (
     MOTION_FLAGS,
     SLIPPED_FLAGS,
@@ -48,18 +48,18 @@ class _LineBuilder(Transformer[Token, object]):
     def object(self, tokens: list[Token]) -> ObjectLine:
         """Return an object line."""
         remarks: list[Remark] = []
-        id_ = _id(tokens[0], remarks)
-        label = _name(tokens[1], remarks)
-        fields = _fields(tokens[2:], remarks) if len(tokens) > 2 else ()
+        id_ = _id_after_letter(tokens[0], remarks)
+        label = _without_end_spaces(tokens[1], remarks)
+        fields = _nonempty_fields(tokens[2:], remarks) if len(tokens) > 2 else ()
         if len(fields) > 1 or (fields and fields[0] not in MOTION_FLAGS):
-            fields = _flag_and_tag(tokens, fields, remarks)
+            fields = _checked_flag_and_tag(tokens, fields, remarks)
         return ObjectLine(label, id_, fields, tuple(remarks))
 
     def motion(self, tokens: list[Token]) -> MotionLine:
         """Return a motion line."""
         remarks: list[Remark] = []
-        id_ = _id(tokens[0], remarks)
-        motion = _name(tokens[1], remarks)
+        id_ = _id_after_letter(tokens[0], remarks)
+        motion = _without_end_spaces(tokens[1], remarks)
         composite = motion[-1] == "*" and motion.strip("* ") != ""
         if composite:
             written, motion = motion, motion.rstrip("* ")
@@ -67,7 +67,7 @@ class _LineBuilder(Transformer[Token, object]):
                 remarks.append(
                     _remark(tokens[1], "outer-space", f"{written!r} read as '{motion}*'", len(motion))
                 )
-        fields = _fields(tokens[2:], remarks)
+        fields = _nonempty_fields(tokens[2:], remarks)
         times = MotionFields.of(fields).times
         mended = tuple(map(mended_time, times))
         column = (tokens[2].column or 1) + 1 if times else 1
@@ -82,9 +82,9 @@ class _LineBuilder(Transformer[Token, object]):
     def plain(self, tokens: list[Token]) -> StateLine:
         """Return the line of a state, or of a relation or contents whose brackets are missing."""
         remarks: list[Remark] = []
-        id_ = _id(tokens[0], remarks)
-        _blank_end(tokens, remarks)
-        word = _name(tokens[1], remarks)
+        id_ = _id_after_letter(tokens[0], remarks)
+        _drop_end_blanks(tokens, remarks)
+        word = _without_end_spaces(tokens[1], remarks)
         if len(tokens) == 2 or tokens[2].type != "BARE":
             return StateLine(word, id_, (), tuple(remarks))
         token = tokens[2]
@@ -98,14 +98,14 @@ class _LineBuilder(Transformer[Token, object]):
             Remark(column, "bracket", f"{name!r} is not in brackets; read as {assumption}, {shown}")
         )
         # the column of the first item is that of the remark, without a bracket before it
-        return _bracketed(word, Token("BARE", shown, column=column - 1), id_, remarks)
+        return _bracketed_line(word, Token("BARE", shown, column=column - 1), id_, remarks)
 
     def related(self, tokens: list[Token]) -> StateLine:
         """Return the line of a relation or of contents."""
         remarks: list[Remark] = []
-        id_ = _id(tokens[0], remarks)
-        _blank_end(tokens, remarks)
-        return _bracketed(*_tabbed(tokens, remarks), id_, remarks)
+        id_ = _id_after_letter(tokens[0], remarks)
+        _drop_end_blanks(tokens, remarks)
+        return _bracketed_line(*_word_and_bracket(tokens, remarks), id_, remarks)
 
     holding = related
 
@@ -133,7 +133,7 @@ def _bracketed_part(word: str, bracket: str) -> str | Relation | Contents:
     """Return the relation, contents or state of a bracket; quoted names are taken literally."""
     written = [item.strip(" ") for item in _ITEM.findall(bracket[1:-1])]
     if not any(item.startswith('"') for item in written):
-        return _bracketed(word, Token("PLACE", bracket), "", []).attribute
+        return _bracketed_line(word, Token("PLACE", bracket), "", []).attribute
     if bracket[0] == "[" and len(written) == 1:
         return Relation(word, unquoted(written[0]))
     return Contents(word, tuple(sorted(unquoted(item) for item in written if item)))
@@ -143,7 +143,7 @@ def _remark(token: Token, code: str, message: str, offset: int = 0) -> Remark:
     return Remark((token.column or 1) + offset, code, message)
 
 
-def _id(letter: Token, remarks: list[Remark]) -> str:
+def _id_after_letter(letter: Token, remarks: list[Remark]) -> str:
     """Return the id behind the letter of a line, with a remark unless exactly one tab follows."""
     if letter[-1] == "\t" and letter[-2] not in "\t ":
         return letter[1:-1]
@@ -158,7 +158,7 @@ def _id(letter: Token, remarks: list[Remark]) -> str:
     return id_
 
 
-def _fields(tokens: list[Token], remarks: list[Remark]) -> tuple[str, ...]:
+def _nonempty_fields(tokens: list[Token], remarks: list[Remark]) -> tuple[str, ...]:
     """Return the fields after a name, stripped of blanks, without empty fields."""
     fields: list[str] = []
     for token in tokens:
@@ -172,7 +172,9 @@ def _fields(tokens: list[Token], remarks: list[Remark]) -> tuple[str, ...]:
     return tuple(fields)
 
 
-def _flag_and_tag(tokens: list[Token], fields: tuple[str, ...], remarks: list[Remark]) -> tuple[str, ...]:
+def _checked_flag_and_tag(
+    tokens: list[Token], fields: tuple[str, ...], remarks: list[Remark]
+) -> tuple[str, ...]:
     """Return the fields after a label, checked: a motion flag, then the category or ``!`` of a goal."""
     field_tokens = [token for token in tokens[2:] if token.strip("\t ")]
     flag = fields[0]
@@ -190,29 +192,29 @@ def _flag_and_tag(tokens: list[Token], fields: tuple[str, ...], remarks: list[Re
     return fields
 
 
-def _blank_end(tokens: list[Token], remarks: list[Remark]) -> None:
+def _drop_end_blanks(tokens: list[Token], remarks: list[Remark]) -> None:
     """Drop the blanks at the end of a state line."""
     if tokens[-1].type == "BLANK":
         remarks.append(_remark(tokens.pop(), "outer-space", "blanks at the end of the line left out"))
 
 
-def _tabbed(tokens: list[Token], remarks: list[Remark]) -> tuple[str, Token]:
+def _word_and_bracket(tokens: list[Token], remarks: list[Remark]) -> tuple[str, Token]:
     """Return a word and the bracket after it, with a remark if there is no tab between them."""
     _, word, bracket = tokens
     column = bracket.column or 1
     if bracket[0] == "\t" and bracket[1] in "[{":
-        return _name(word, remarks), Token(bracket.type, bracket[1:], column=column + 1)
+        return _without_end_spaces(word, remarks), Token(bracket.type, bracket[1:], column=column + 1)
     bare = bracket.lstrip("\t ")
     column += len(bracket) - len(bare)
     if "\t" in bracket:
         remarks.append(Remark(column, "outer-space", f"blanks before {bare} left out"))
-        return _name(word, remarks), Token(bracket.type, bare, column=column)
+        return _without_end_spaces(word, remarks), Token(bracket.type, bare, column=column)
     gap = column - 1 if word[-1] == " " or bare != bracket else column
-    remarks.append(no_tab(bare, gap))
+    remarks.append(no_tab_remark(bare, gap))
     return word.strip(" "), Token(bracket.type, bare, column=column)
 
 
-def _name(token: Token, remarks: list[Remark]) -> str:
+def _without_end_spaces(token: Token, remarks: list[Remark]) -> str:
     """Return a name without the spaces after it, which are remarked on."""
     name = token.rstrip(" ")
     if name != token:
@@ -221,7 +223,7 @@ def _name(token: Token, remarks: list[Remark]) -> str:
     return str(token)
 
 
-def _bracketed(name: str, bracket: Token, id_: str, remarks: list[Remark]) -> StateLine:
+def _bracketed_line(name: str, bracket: Token, id_: str, remarks: list[Remark]) -> StateLine:
     """Return the state line of ``word [object]`` or ``word {list}``.
 
     A list in ``[]``, and anything in ``[]`` after the word ``contains``, is read as if it were in ``{}``.
@@ -236,16 +238,16 @@ def _bracketed(name: str, bracket: Token, id_: str, remarks: list[Remark]) -> St
         bracket = Token(bracket.type, closed, column=bracket.column)
     if closing == "]":
         if "," not in bracket and name != "contains":
-            return _related(name, bracket, id_, remarks)
-        listed = items(bracket[1:-1], (bracket.column or 1) + 1, remarks)
+            return _relation_line(name, bracket, id_, remarks)
+        listed = split_ingredients(bracket[1:-1], (bracket.column or 1) + 1, remarks)
         braces = "{" + ",".join(listed) + "}"
         remarks.append(_remark(bracket, "contents-bracket", f"{bracket} read as contents {braces}"))
     else:
-        listed = items(bracket[1:-1], (bracket.column or 1) + 1, remarks)
+        listed = split_ingredients(bracket[1:-1], (bracket.column or 1) + 1, remarks)
     return StateLine(Contents(name, tuple(sorted(listed))), id_, listed, tuple(remarks))
 
 
-def _related(name: str, bracket: Token, id_: str, remarks: list[Remark]) -> StateLine:
+def _relation_line(name: str, bracket: Token, id_: str, remarks: list[Remark]) -> StateLine:
     """Return the line of a relation; with empty brackets, that of a state."""
     related = bracket[1:-1].strip(" ")
     if not related:
@@ -264,7 +266,7 @@ def _parser() -> Lark:
     return Lark(grammar, start=["line", "node"], parser="lalr", transformer=_LineBuilder())
 
 
-def build(start: str, text: str) -> object:
+def parse_by_grammar(start: str, text: str) -> object:
     """Return the parsed line of a text with its line end, or the node of a one-line notation.
 
     Raises :class:`LineError` for a text that the grammar does not accept, taken as one line.

@@ -17,7 +17,7 @@ def parse_line(text: str) -> Line:
 
     Raises :class:`LineError` when the grammar does not accept it.
     """
-    return clean_line(text) or cast(Line, _build("line", text + "\n"))
+    return clean_line(text) or cast(Line, _parse_by_grammar("line", text + "\n"))
 
 
 @lru_cache(50_000)  # of the 35,576 lines of the universal FOON, 2,123 are different
@@ -29,7 +29,7 @@ def read_line(text: str) -> Line | LineError:
             raise LineError(max_letters + 1, f"a line of {len(text)} letters", (f"at most {max_letters}",))
         return parse_line(text)
     except LineError as error:
-        return error.kept()
+        return error.without_traceback()
 
 
 def parse_node(notation: str) -> ObjectNode:
@@ -54,7 +54,7 @@ def parse_node(notation: str) -> ObjectNode:
     if not isinstance(notation, str):
         raise UserError(f"found notation={notation!r}, expected text")
     notation = notation.rstrip(" ")
-    return clean_node(notation) or cast(ObjectNode, _build("node", notation))
+    return clean_node(notation) or cast(ObjectNode, _parse_by_grammar("node", notation))
 
 
 def parse_name(text: str) -> str | ObjectNode:
@@ -83,7 +83,7 @@ def read_state(text: str) -> StateLine:
     return cast(StateLine, line)._replace(remarks=remarks) if line.remarks else cast(StateLine, line)
 
 
-def _build(start: str, text: str) -> object:
-    from foon_asp.text.line_builder import build  # noqa: PLC0415 (imports Lark)
+def _parse_by_grammar(start: str, text: str) -> object:
+    from foon_asp.text.line_builder import parse_by_grammar  # noqa: PLC0415 (imports Lark)
 
-    return build(start, text)
+    return parse_by_grammar(start, text)

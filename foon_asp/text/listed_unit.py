@@ -80,12 +80,16 @@ class ListedUnit(NamedTuple):
     @property
     def without_repeats(self) -> "ListedUnit":
         """The unit with each node once on a side, with its greatest amount, as in FOON text."""
-        return self._replace(inputs=_each_once(self.inputs, max), outputs=_each_once(self.outputs, max))
+        return self._replace(
+            inputs=_merge_mentions(self.inputs, max), outputs=_merge_mentions(self.outputs, max)
+        )
 
     @property
     def with_totals(self) -> "ListedUnit":
         """The unit with each node once on a side, and with the sum of its amounts."""
-        return self._replace(inputs=_each_once(self.inputs, sum), outputs=_each_once(self.outputs, sum))
+        return self._replace(
+            inputs=_merge_mentions(self.inputs, sum), outputs=_merge_mentions(self.outputs, sum)
+        )
 
     @property
     def identity(self) -> ReadUnit:
@@ -93,7 +97,7 @@ class ListedUnit(NamedTuple):
         return ReadUnit(self.motion.motion, *self.sides, self.sources)
 
 
-def _each_once(
+def _merge_mentions(
     blocks: tuple[ObjectBlock, ...], combine: Callable[[Iterable[int]], int]
 ) -> tuple[ObjectBlock, ...]:
     """Return the first mention of each node, with the amounts of all its mentions combined."""

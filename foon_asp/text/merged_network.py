@@ -30,7 +30,7 @@ def merged_text(network: Network, comment: str, amounts: Amounts = MappingProxyT
         if not inputs:
             raise UserError(f"the unit {motion!r} has no inputs, which FOON text cannot hold; a store can")
         for source in dict.fromkeys(source._replace(column=1) for source in sources):
-            yield comments.get(source) or comments.setdefault(source, _copy(source))
+            yield comments.get(source) or comments.setdefault(source, _checked_copy_comment(source))
         of_unit = amounts.get(network.unit(number), ALL_ONE) if motion in counted_motions else None
         for side, nodes in enumerate((inputs, outputs)):
             yield motions[motion] if side else ""
@@ -41,7 +41,7 @@ def merged_text(network: Network, comment: str, amounts: Amounts = MappingProxyT
         yield "//\n"
 
 
-def _copy(source: Source) -> str:
+def _checked_copy_comment(source: Source) -> str:
     """Return the comment of a source; raises :class:`UserError` if it is not read back as the same source."""
     written = write_copy(source)
     if (

@@ -8,7 +8,7 @@ from foon_asp.network import ObjectNode
 from foon_asp.text.conversion_loss import CannotHoldError, Loss, lost_in_line
 from foon_asp.text.format import WrittenPart
 from foon_asp.text.json_value import json_line
-from foon_asp.text.json_writer import written_list
+from foon_asp.text.json_writer import list_text
 from foon_asp.text.line import MotionLine, ObjectLine
 from foon_asp.text.listed_unit import ObjectBlock
 from foon_asp.text.text_writer import with_word
@@ -17,17 +17,19 @@ from foon_asp.text.text_writer import with_word
 def write_neutral_unit(id_: str, inputs: Iterable[str], outputs: Iterable[str], price: str) -> str:
     """Write a unit as one line of plain names."""
     sides = ([(json_line(name), 1) for name in names] for names in (inputs, outputs))
-    return _line(id_, price, *sides)
+    return _unit_line(id_, price, *sides)
 
 
-def _line(id_: str, price: str, inputs: Sequence[tuple[str, int]], outputs: Sequence[tuple[str, int]]) -> str:
+def _unit_line(
+    id_: str, price: str, inputs: Sequence[tuple[str, int]], outputs: Sequence[tuple[str, int]]
+) -> str:
     """Write a unit from names as JSON, with their amounts."""
-    input_list, output_list = map(_names_text, (inputs, outputs))
+    input_list, output_list = map(_side_text, (inputs, outputs))
     last = f', "price": {Decimal(price):f}' if price else ""
     return f'{{"id": {json_line(id_)}, "inputs": {input_list}, "outputs": {output_list}{last}}}\n'
 
 
-def _names_text(names: Sequence[tuple[str, int]]) -> str:
+def _side_text(names: Sequence[tuple[str, int]]) -> str:
     """Write a list of names; or an object, where some amount is not 1."""
     if all(amount == 1 for _, amount in names):
         return f"[{', '.join(name for name, _ in names)}]"
@@ -68,7 +70,7 @@ class NeutralWriter:
 
     def unit(self, inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str) -> str:
         """Write a unit."""
-        return _line(motion, price, *(list(map(_amount, names)) for names in (inputs, outputs)))
+        return _unit_line(motion, price, *(list(map(_name_and_amount, names)) for names in (inputs, outputs)))
 
     def network(self, units: Sequence[str], videos: Sequence[str]) -> str:
         """Put a file together."""
@@ -76,14 +78,14 @@ class NeutralWriter:
 
     def objects(self, parts: Sequence[str]) -> str:
         """Put a JSON list of names together."""
-        return written_list(parts, 0) + "\n"
+        return list_text(parts, 0) + "\n"
 
     def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
         """Return no videos, since the neutral form cannot name any."""
         return ()
 
 
-def _amount(fragment: str) -> tuple[str, int]:
+def _name_and_amount(fragment: str) -> tuple[str, int]:
     """Split the JSON of a node into its name, still JSON, and its amount."""
     name, _, amount = (fragment, "", "1") if fragment.endswith('"') else fragment.rpartition(": ")
     return name, int(amount)

@@ -101,11 +101,11 @@ def find_goal(
     label = named if isinstance(named, str) else as_written.label
     entries = [entry for entry in listed if entry.pattern.label == label]
     if entries:
-        meant = list(dict.fromkeys(o for entry in entries for o in listed_nodes(entry, names)))
-        return _only(name, names, len(meant), meant, wording)
+        meant = list(dict.fromkeys(o for entry in entries for o in nodes_of_entry(entry, names)))
+        return _only_node(name, names, len(meant), meant, wording)
     count, labelled = names.labelled(label)
     if count:
-        return _only(name, names, count, labelled, wording)
+        return _only_node(name, names, count, labelled, wording)
     if fault is not None:
         raise GoalError(
             f"the {wording.thing} {name!r} cannot be read: at column {fault.column}, {fault}; "
@@ -114,8 +114,8 @@ def find_goal(
     count, labelled = names.labelled(node.label)
     if count:
         message = f"no object node is exactly {str(node)!r}; with that label there are"
-        raise _unclear(message, names, count, _most_similar_first(node, labelled, names), wording)
-    raise _unknown(f"no object node has the label {node.label!r}", node, names, wording)
+        raise _ambiguity_error(message, names, count, _most_similar_first(node, labelled, names), wording)
+    raise _unknown_error(f"no object node has the label {node.label!r}", node, names, wording)
 
 
 def nodes_beginning(start: str, names: NodeNames, max_nodes: int) -> list[int]:
@@ -152,13 +152,13 @@ def entry_names(listed: Sequence[ListedObject], names: NodeNames) -> Iterator[st
             yield str(names.node(nodes[0]))
 
 
-def listed_goal(entry: ListedObject, names: NodeNames) -> int:
+def node_of_entry(entry: ListedObject, names: NodeNames) -> int:
     """Return the only node that matches an entry of a goals file; raises :class:`UserError` for several."""
-    nodes = listed_nodes(entry, names)
-    return _only(str(entry.pattern), names, len(nodes), nodes, _GOAL)
+    nodes = nodes_of_entry(entry, names)
+    return _only_node(str(entry.pattern), names, len(nodes), nodes, _GOAL)
 
 
-def listed_nodes(entry: ListedObject, names: NodeNames) -> Sequence[int]:
+def nodes_of_entry(entry: ListedObject, names: NodeNames) -> Sequence[int]:
     """Return the nodes that match an entry of a goals file; raises :class:`UserError` if there are none."""
     nodes = names.find(entry.pattern)
     if not nodes:
@@ -166,19 +166,19 @@ def listed_nodes(entry: ListedObject, names: NodeNames) -> Sequence[int]:
         position = f"{entry.source}:{entry.source.column}"
         message = f"{position}: error: the goal {str(entry.pattern)!r} matches no object node"
         if count:
-            raise _unclear(f"{message}; with that label there are", names, count, labelled, _GOAL)
-        raise _unknown(f"{message} of the network", ObjectNode(entry.pattern.label), names, _GOAL)
+            raise _ambiguity_error(f"{message}; with that label there are", names, count, labelled, _GOAL)
+        raise _unknown_error(f"{message} of the network", ObjectNode(entry.pattern.label), names, _GOAL)
     return nodes
 
 
-def _only(name: str, names: NodeNames, count: int, nodes: Sequence[int], wording: Wording) -> int:
+def _only_node(name: str, names: NodeNames, count: int, nodes: Sequence[int], wording: Wording) -> int:
     """Return the only node of a name; raises :class:`GoalError` with candidates if there are several.
 
     ``count`` is the number of nodes with the name; ``nodes`` are the ids of at least the first ones.
     """
     if count > 1:
         message = f"the {wording.thing} {name!r} means {count} object nodes"
-        raise _unclear(f"{message}; paste the one you mean", names, count, nodes, wording)
+        raise _ambiguity_error(f"{message}; paste the one you mean", names, count, nodes, wording)
     return nodes[0]
 
 
@@ -195,7 +195,7 @@ def _most_similar_first(node: ObjectNode, nodes: Sequence[int], names: NodeNames
     ]
 
 
-def _unknown(message: str, node: ObjectNode, names: NodeNames, wording: Wording) -> GoalError:
+def _unknown_error(message: str, node: ObjectNode, names: NodeNames, wording: Wording) -> GoalError:
     """Return the error about an unknown node, with some nodes of each similar label."""
     labels = dict.fromkeys((*names.beginning(node.label, _MAX_CANDIDATES), *names.near(node.label, 3)))
     counted_nodes = [names.labelled(label) for label in labels]
@@ -204,9 +204,11 @@ def _unknown(message: str, node: ObjectNode, names: NodeNames, wording: Wording)
     share = max(1, _MAX_CANDIDATES // len(counted_nodes))
     total = sum(count for count, _ in counted_nodes)
     first = [o for _, nodes in counted_nodes for o in _most_similar_first(node, nodes, names)[:share]]
-    return _unclear(f"{message}; similar are", names, total, first, wording)
+    return _ambiguity_error(f"{message}; similar are", names, total, first, wording)
 
 
-def _unclear(message: str, names: NodeNames, count: int, first: Iterable[int], wording: Wording) -> GoalError:
+def _ambiguity_error(
+    message: str, names: NodeNames, count: int, first: Iterable[int], wording: Wording
+) -> GoalError:
     shown = [str(names.node(o)) for o in [*first][:_MAX_CANDIDATES]]
     return GoalError(message, shown, count - len(shown), wording.before)

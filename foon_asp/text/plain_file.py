@@ -38,12 +38,12 @@ def read_beginning(file: Path, length: int) -> bytes:
         return b""
 
 
-def opened(file: Path) -> BinaryIO:
+def open_bytes(file: Path) -> BinaryIO:
     """Open a file to read its bytes; raises :class:`UserError` when it cannot be."""
     try:
         return file.open("rb")
     except OSError as error:
-        raise _unreadable(file, error) from None
+        raise _unreadable_error(file, error) from None
 
 
 def read_content(file: Path) -> bytes:
@@ -51,10 +51,10 @@ def read_content(file: Path) -> bytes:
     try:
         return file.read_bytes()
     except OSError as error:
-        raise _unreadable(file, error) from None
+        raise _unreadable_error(file, error) from None
 
 
-def _unreadable(file: Path, error: OSError) -> UserError:
+def _unreadable_error(file: Path, error: OSError) -> UserError:
     return UserError(f"{file}: cannot be read: {error.strerror or error}")
 
 
@@ -63,7 +63,7 @@ def text_pieces(file: Path, size: int) -> Iterator[str]:
 
     Raises as :func:`read_plain_text` does, before it yields a piece.
     """
-    with opened(file) as stream:
+    with open_bytes(file) as stream:
         begins = stream.read(len(STORE_MAGIC))
         stream.seek(0)
         try:
@@ -86,7 +86,7 @@ def split_lines(text: str) -> list[str]:
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
-def each_line(text: str, write: Callable[[str], str]) -> str:
+def map_lines(text: str, write: Callable[[str], str]) -> str:
     """Return a text with each of its lines written anew; their ends stay."""
     return _LINE.sub(lambda match: write(match[1]) + match[2], text)
 
@@ -97,7 +97,7 @@ def usual_line_end(text: str) -> str:
     return max(("\n", "\r\n", "\r"), key=ends.count)
 
 
-def with_own_mark(text: str) -> str:
+def protect_byte_order_mark(text: str) -> str:
     """Return the text to write to a file.
 
     A byte order mark at its beginning belongs to the text, so the file gets another one before it.
@@ -105,7 +105,7 @@ def with_own_mark(text: str) -> str:
     return f"\ufeff{text}" if text.startswith("\ufeff") else text
 
 
-def beginning(file: Path, max_bytes: int = 1_000_000) -> str:
+def read_beginning_text(file: Path, max_bytes: int = 1_000_000) -> str:
     """Return the beginning of a file as text, by which its format is recognised.
 
     ``max_bytes`` has to hold the first line of a file in the neutral form, a whole unit.

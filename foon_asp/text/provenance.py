@@ -14,7 +14,7 @@ def read_video(comment: str) -> str | None:
     """Return the video that a comment line names; ``None`` for another comment, or one that names none."""
     if not comment.startswith(_VIDEO):
         return None
-    return " ".join(_fields(comment[len(_VIDEO) :])) or None  # a tab ends it in a # From: line
+    return " ".join(_nonempty_fields(comment[len(_VIDEO) :])) or None  # a tab ends it in a # From: line
 
 
 def is_video(comment: str) -> bool:
@@ -30,7 +30,7 @@ def read_copy(comment: str) -> Source | None:
     file, colon, line = (position if videos else position.rstrip()).rpartition(":")
     if not (file and colon and line.isascii() and line.isdigit() and len(line) <= 9):
         return None
-    return Source(file, int(line), 1, tuple(_fields("\t".join(videos))))
+    return Source(file, int(line), 1, tuple(_nonempty_fields("\t".join(videos))))
 
 
 def write_copy(source: Source) -> str:
@@ -38,6 +38,6 @@ def write_copy(source: Source) -> str:
     return "\t".join((f"{_COPY}\t{source.file}:{source.line}", *source.videos)) + "\n"
 
 
-def _fields(text: str) -> list[str]:
+def _nonempty_fields(text: str) -> list[str]:
     """Return the texts between tabs without blanks around them, in linear time."""
     return [field.strip() for field in text.split("\t") if field.strip()]

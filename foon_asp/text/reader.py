@@ -9,7 +9,7 @@ from foon_asp.text.formats import format_of
 from foon_asp.text.line import Line, LineError
 from foon_asp.text.line_parser import read_line
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, ReadUnit
-from foon_asp.text.plain_file import beginning, plain_text, read_plain_text, split_lines
+from foon_asp.text.plain_file import plain_text, read_beginning_text, read_plain_text, split_lines
 from foon_asp.text.reading import Reading
 from foon_asp.text.repeated_node import RepeatedNode, repeated_node
 from foon_asp.text.text_units import TextUnits
@@ -95,7 +95,7 @@ class FoonReader(Reading):
             file: The path of the file.
         """
         is_pipe = not file.is_file()  # which can be read only once
-        begins = self.text(file) if is_pipe else beginning(file)
+        begins = self.text(file) if is_pipe else read_beginning_text(file)
         format_ = format_of(begins, file.name)
         try:
             for unit in format_.units(begins, str(file), self) if is_pipe else format_.file_units(file, self):

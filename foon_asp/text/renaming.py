@@ -55,10 +55,10 @@ class Renaming:
         parsed = read_line(line)
         if isinstance(parsed, LineError):
             return line
-        renamed = self._renamed(parsed)
+        renamed = self._rename_in_line(parsed)
         if renamed == parsed:
             return line
-        if self._names_it(parsed):
+        if self._id_belongs_to_old_name(parsed):
             renamed = renamed._replace(id=self.id(parsed.id))
         letter = line.partition("\t")[0]
         fields = line[len(letter) :]
@@ -74,7 +74,7 @@ class Renaming:
         ) == renamed._replace(remarks=())
         return text if is_same else write_line(renamed)
 
-    def _names_it(self, line: Line) -> bool:
+    def _id_belongs_to_old_name(self, line: Line) -> bool:
         """Whether the id of a line belongs to the old name."""
         return name_of(line) == self.rename.old and self.rename.kind == kind_of(line)
 
@@ -89,24 +89,26 @@ class Renaming:
         """Return a name of a kind, renamed if it is the old one."""
         return self.rename.new if (kind, name) == self.rename[:2] else name
 
-    def _renamed(self, line: Line) -> Line:
+    def _rename_in_line(self, line: Line) -> Line:
         """Return a line in which the name is replaced."""
         if isinstance(line, ObjectLine):
             return line._replace(label=self.name(NameKind.OBJECT, line.label))
         if isinstance(line, MotionLine):
             return line._replace(motion=self.name(NameKind.MOTION, line.motion))
-        return line._replace(attribute=self._attribute(line.attribute), listed=self._items(line.listed))
+        return line._replace(
+            attribute=self._rename_in_attribute(line.attribute), listed=self._rename_ingredients(line.listed)
+        )
 
-    def _attribute(self, attribute: str | Relation | Contents) -> str | Relation | Contents:
+    def _rename_in_attribute(self, attribute: str | Relation | Contents) -> str | Relation | Contents:
         """Return a state, relation or contents in which the name is replaced."""
         if isinstance(attribute, str):
             return self.name(NameKind.STATE, attribute)
         word = self.name(NameKind.WORD, attribute.word)
         if isinstance(attribute, Relation):
             return Relation(word, self.name(NameKind.OBJECT, attribute.object))
-        return Contents(word, tuple(sorted(self._items(attribute.ingredients))))
+        return Contents(word, tuple(sorted(self._rename_ingredients(attribute.ingredients))))
 
-    def _items(self, items: tuple[str, ...]) -> tuple[str, ...]:
+    def _rename_ingredients(self, items: tuple[str, ...]) -> tuple[str, ...]:
         """Return ingredients with the old name replaced, or removed where they already have the new name."""
         kind, old, new = self.rename
         if kind == NameKind.OBJECT and new in items:
@@ -122,8 +124,8 @@ class Renaming:
         renamed = ObjectNode.of(
             self.name(NameKind.OBJECT, node.label),
             (self.name(NameKind.STATE, state) for state in node.states),
-            (self._attribute(relation) for relation in node.relations),  # type: ignore[misc]
-            (self._attribute(contents) for contents in node.contents),  # type: ignore[misc]
+            (self._rename_in_attribute(relation) for relation in node.relations),  # type: ignore[misc]
+            (self._rename_in_attribute(contents) for contents in node.contents),  # type: ignore[misc]
         )
         return field if renamed == node else str(renamed) + ";" * field.rstrip().endswith(";")
 

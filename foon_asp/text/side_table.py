@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from foon_asp.errors import UserError
 from foon_asp.text.foon_text import FoonText
 from foon_asp.text.line import Mention
-from foon_asp.text.plain_file import each_line, split_lines
+from foon_asp.text.plain_file import map_lines, split_lines
 from foon_asp.text.tables import DURATIONS, RATES, TOOLS, UTENSILS
 from foon_asp.text.unit_amount_list import UNIT_AMOUNTS
 from foon_asp.text.unit_price_list import UNIT_PRICES
@@ -36,21 +36,21 @@ class SideTable(FoonText):
         """Whether the file has the name of a table."""
         return PurePath(file).name in TABLES
 
-    def normalised(self, text: str, file: str, lenient: bool = False) -> str:
+    def canonical_text(self, text: str, file: str, lenient: bool = False) -> str:
         """Return a table as it is; raises :class:`InputError` with the rows that cannot be understood."""
         if not lenient:
             TABLES[PurePath(file).name].rows(Path(file), text)
         return text
 
-    def names(self, text: str, file: str) -> Iterator[Mention]:
+    def mentions(self, text: str, file: str) -> Iterator[Mention]:
         """Yield the names in the first column."""
         for line in split_lines(text):
             if line.lstrip()[:1] not in {"", "#"}:
                 yield Mention(TABLES[PurePath(file).name].names, line.partition("\t")[0].strip())
 
-    def renamed(self, text: str, file: str, renaming: "Renaming") -> str:
+    def renamed_text(self, text: str, file: str, renaming: "Renaming") -> str:
         """Return a table with the new name; raises :class:`UserError` if the name gets two different rows."""
-        new = each_line(text, lambda line: _renamed_row(line, PurePath(file).name, renaming))
+        new = map_lines(text, lambda line: _renamed_row(line, PurePath(file).name, renaming))
         rows = (line.split("\t") for line in split_lines(new))
         name = renaming.rename.new
         if len({"\t".join(row) for row in rows if len(row) == 2 and row[0].strip() == name}) > 1:

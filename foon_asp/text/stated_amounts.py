@@ -24,7 +24,7 @@ class StatedAmounts:
         """Record the amounts of one copy, and where they are stated."""
         self._copies.setdefault(unit, {})[source] = amounts
 
-    def settled(self, network: Network | None = None) -> DataAmounts:
+    def amounts_by_unit(self, network: Network | None = None) -> DataAmounts:
         """Return the amounts of each unit, and a message about the first two copies that disagree.
 
         A copy that states no amounts has the amount 1 of each node. With ``network``, such copies are
@@ -47,7 +47,7 @@ class StatedAmounts:
         return DataAmounts(amounts, conflict)
 
 
-def with_table(
+def apply_amount_table(
     stated: DataAmounts, rows: Sequence[Row[UnitAmount, int]], units: Iterable[FunctionalUnit]
 ) -> tuple[DataAmounts, list[Diagnostic]]:
     """Return stated amounts with those of a table in their place, and warnings about rows that match no unit.
@@ -86,10 +86,10 @@ def counted_amounts(
     inputs: Iterable[tuple[ObjectNode, int]], outputs: Iterable[tuple[ObjectNode, int]]
 ) -> UnitAmounts:
     """Return the amounts of nodes that may come several times."""
-    return UnitAmounts(_above_one(inputs), _above_one(outputs))
+    return UnitAmounts(_totals_above_one(inputs), _totals_above_one(outputs))
 
 
-def _above_one(side: Iterable[tuple[ObjectNode, int]]) -> dict[ObjectNode, int]:
+def _totals_above_one(side: Iterable[tuple[ObjectNode, int]]) -> dict[ObjectNode, int]:
     totals: Counter[ObjectNode] = Counter()
     for node, amount in side:
         totals[node] += amount

@@ -26,7 +26,7 @@ class StatedPrices:
         if self._least.setdefault(unit, price) > price:
             self._least[unit] = price
 
-    def settled(self, chosen: Mapping[FunctionalUnit, Fraction]) -> dict[FunctionalUnit, Fraction]:
+    def price_by_unit(self, chosen: Mapping[FunctionalUnit, Fraction]) -> dict[FunctionalUnit, Fraction]:
         """Return the price of each unit; where copies disagree, it is the ``chosen`` one.
 
         For a unit recorded with :meth:`add_least`, it is the least price. Raises :class:`InputError` if

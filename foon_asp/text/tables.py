@@ -37,7 +37,7 @@ class Duration(NamedTuple):
     passive: bool = False
 
 
-def motion_column(name: str, what: str) -> str:
+def motion_in_first_column(name: str, what: str) -> str:
     """Return the motion in the first column; raises :class:`LineError` if it is empty."""
     if not name:
         raise LineError(1, what, ("the motion before it",))
@@ -61,18 +61,18 @@ def stated_name(name: str) -> str | ObjectNode:
         return name  # a label as it is
 
 
-def _rate(name: str, value: str, column: int) -> tuple[str, Fraction]:
+def _rate_row(name: str, value: str, column: int) -> tuple[str, Fraction]:
     """Read a row of success rates."""
-    motion = motion_column(name, "a success rate")
+    motion = motion_in_first_column(name, "a success rate")
     rate = read_decimal(value, column, "a success rate as a decimal such as 0.85")
     if not 0 < rate <= 1:
         raise LineError(column, f"the success rate {value}", ("a rate above 0 and at most 1",))
     return motion, rate
 
 
-def _duration(name: str, value: str, column: int) -> tuple[str, Duration]:
+def _duration_row(name: str, value: str, column: int) -> tuple[str, Duration]:
     """Read a row of durations."""
-    motion = motion_column(name, "a duration")
+    motion = motion_in_first_column(name, "a duration")
     written, tab, word = value.partition("\t")
     if tab and word.strip() != "passive":
         raise LineError(column + len(written) + 1, repr(word), ("passive", "the end of the line"))
@@ -91,7 +91,7 @@ def _seconds(written: str, column: int) -> Fraction:
     return seconds
 
 
-def _tool(name: str, value: str, column: int) -> tuple[str | ObjectNode, int | None]:
+def _tool_row(name: str, value: str, column: int) -> tuple[str | ObjectNode, int | None]:
     """Return the tool of a row, as a label or a node, and its number; ``None`` for the word ``free``.
 
     Raises :class:`LineError` at the column of another value.
@@ -101,52 +101,52 @@ def _tool(name: str, value: str, column: int) -> tuple[str | ObjectNode, int | N
     return stated_name(name), None if value == "free" else int(value)
 
 
-def _stays(name: str, value: str, column: int) -> tuple[str | ObjectNode, bool]:
+def _stays_row(name: str, value: str, column: int) -> tuple[str | ObjectNode, bool]:
     if value not in _STAYS:
         raise LineError(column, repr(value), tuple(_STAYS))
     return stated_name(name), _STAYS[value]
 
 
-def _copies(name: str, value: str, column: int) -> tuple[ObjectNode, int]:
+def _copies_row(name: str, value: str, column: int) -> tuple[ObjectNode, int]:
     max_copies = 1_000_000  # of a node; clingo's integers are limited
     if not _COPIES.fullmatch(value) or len(value) > len(str(max_copies)) or int(value) > max_copies:
         raise LineError(column, repr(value), (f"a number of copies, from 0 to {max_copies}",))
     return parse_node(name), int(value)
 
 
-def _price(name: str, value: str, column: int) -> tuple[str | ObjectNode, Fraction]:
+def _price_row(name: str, value: str, column: int) -> tuple[str | ObjectNode, Fraction]:
     if not _PRICE.fullmatch(value):
         raise LineError(column, repr(value[:40]), ("a price as a decimal such as 1.99",))
     return parse_name(name), Fraction(value)
 
 
-def _label(name: str, _: str, __: int) -> tuple[str, None]:
+def _label_row(name: str, _: str, __: int) -> tuple[str, None]:
     return name, None
 
 
-RATES = Table("rate", NameKind.MOTION, "a success rate", _rate, "a second success rate for {name!r}")
+RATES = Table("rate", NameKind.MOTION, "a success rate", _rate_row, "a second success rate for {name!r}")
 """``motion⇥0.85``: success rates of motions, decimals above 0 and at most 1, kept exactly."""
 
 DURATIONS = Table(
-    "duration", NameKind.MOTION, "a number of seconds", _duration, "a second duration for {name!r}"
+    "duration", NameKind.MOTION, "a number of seconds", _duration_row, "a second duration for {name!r}"
 )
 """``motion⇥90`` and ``motion⇥25 min⇥passive``: durations of motions, above 0, kept exactly."""
 
 TOOLS = Table(
-    "tool", NameKind.OBJECT, "a number from 1, or free,", _tool, "{value}, and something else above"
+    "tool", NameKind.OBJECT, "a number from 1, or free,", _tool_row, "{value}, and something else above"
 )
 """``NAME⇥2`` and ``NAME⇥free``: how many there are of tools and vessels; ``None`` is for what is free."""
 
-STAYS = Table("stays", NameKind.OBJECT, "stays or used-up", _stays, "{value}, and the opposite above")
+STAYS = Table("stays", NameKind.OBJECT, "stays or used-up", _stays_row, "{value}, and the opposite above")
 """``NAME⇥stays`` and ``NAME⇥used-up``: of items that are used up, which of them stay."""
 
-STOCK = Table("stock", NameKind.OBJECT, "a number of copies", _copies, "a second count for {name!r}")
+STOCK = Table("stock", NameKind.OBJECT, "a number of copies", _copies_row, "a second count for {name!r}")
 """``NODE⇥12``: how many copies of an object node there are."""
 
-PRICES = Table("price", NameKind.OBJECT, "a price", _price, "a second price for {name!r}")
+PRICES = Table("price", NameKind.OBJECT, "a price", _price_row, "a second price for {name!r}")
 """``NAME⇥1.99``: prices of things to buy, with up to nine digits before the point and six behind it."""
 
-UTENSILS = Table("utensil", NameKind.OBJECT, "", _label)
+UTENSILS = Table("utensil", NameKind.OBJECT, "", _label_row)
 """``LABEL``: labels of utensils, one on each line."""
 
 
@@ -181,7 +181,7 @@ def read_default_duration(written: str) -> Fraction:
         raise UserError(f"the default duration: {error}") from None
 
 
-def template_text(motions: Mapping[str, Duration | None]) -> str:
+def duration_template(motions: Mapping[str, Duration | None]) -> str:
     """Return a file of durations with the placeholder SECONDS for each unknown duration."""
     lines = ["# motion, tab, seconds (or 25 min, 1.5 h); behind another tab passive, if nobody stands by"]
     for motion, duration in motions.items():

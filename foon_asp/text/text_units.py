@@ -12,7 +12,7 @@ from typing import cast
 
 from foon_asp.network import ObjectNode, Source
 from foon_asp.text.amount_mark import is_amount, read_amount
-from foon_asp.text.json_list import before_json
+from foon_asp.text.json_list import fault_before_json
 from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine, StateLine
 from foon_asp.text.line_parser import read_line
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, ReadUnit, node_of
@@ -35,7 +35,7 @@ class _OpenBlock:
 
 
 @lru_cache(50_000)  # of the 11,625 object blocks of the universal FOON, 4,361 are different
-def _clean_node(block: str) -> ObjectNode | None:
+def _node_of_clean_block(block: str) -> ObjectNode | None:
     """Return the node of an object block, given without its first letter.
 
     ``None`` for a block with remarks, and for a goal, whose source has to be recorded.
@@ -46,21 +46,21 @@ def _clean_node(block: str) -> ObjectNode | None:
         return None
     if not line_end:
         return ObjectNode(line.label)
-    blank = _clean_blank(states)
+    blank = _blank_of_clean_states(states)
     return None if blank is None else ObjectNode(line.label, *blank[1:])
 
 
 @lru_cache(50_000)  # the states under very many objects are the same
-def _clean_blank(states: str) -> ObjectNode | None:
+def _blank_of_clean_states(states: str) -> ObjectNode | None:
     """Return a node without label with the attributes of state lines; ``None`` if a line has remarks."""
     lines = map(read_line, states.split("\n"))
     attributes = [line.attribute for line in lines if isinstance(line, StateLine) and not line.remarks]
     return node_of("", attributes) if len(attributes) == states.count("\n") + 1 else None
 
 
-def _clean_nodes(blocks: str) -> list[ObjectNode] | None:
+def _nodes_of_clean_blocks(blocks: str) -> list[ObjectNode] | None:
     """Return the nodes of the object blocks on one side of a unit; ``None`` if a block is not well-formed."""
-    nodes = list(map(_clean_node, blocks.split("\nO")))
+    nodes = list(map(_node_of_clean_block, blocks.split("\nO")))
     return cast(list[ObjectNode], nodes) if all(nodes) else None
 
 
@@ -87,12 +87,12 @@ class TextUnits:
                 self._sections += 1
                 yield unit
             else:
-                yield from map(_identity, self._line_by_line(chunk, last))
+                yield from map(_without_lines, self._units_line_by_line(chunk, last))
 
     def listed_units(self) -> Iterator[ListedUnit]:
         """Yield the units in order, with their lines as written."""
         for chunk, last in self._chunks():
-            yield from self._line_by_line(chunk, last)
+            yield from self._units_line_by_line(chunk, last)
 
     def objects(self) -> list[ObjectBlock]:
         """Return the objects of a kitchen or of goals."""
@@ -105,8 +105,8 @@ class TextUnits:
         """Yield the text between separators, each chunk with whether it is the last."""
         report, unreported = progress_report(), 0
         pieces = [next(self._pieces, "")]
-        if message := before_json(pieces[0]):
-            self._reject_json(message, pieces[0])
+        if message := fault_before_json(pieces[0]):
+            self._reject_text_before_json(message, pieces[0])
             return
         for piece in chain(self._pieces, [""]):
             pieces.append(piece)
@@ -127,7 +127,7 @@ class TextUnits:
         if report:
             report(unreported + len(pieces[0].encode()))
 
-    def _reject_json(self, message: str, text: str) -> None:
+    def _reject_text_before_json(self, message: str, text: str) -> None:
         """Record text before JSON as the only fault of the file."""
         begins = text.lstrip()
         line = text[: len(text) - len(begins)].count("\n") + 1
@@ -152,13 +152,13 @@ class TextUnits:
         motion = read_line(f"M{motion_line}")
         if not isinstance(motion, MotionLine) or motion.remarks:
             return None
-        inputs, outputs = _clean_nodes(head[1:]), _clean_nodes(tail)
+        inputs, outputs = _nodes_of_clean_blocks(head[1:]), _nodes_of_clean_blocks(tail)
         if inputs is None or outputs is None:
             return None
         sources = tuple(copies) or (Source(self.file, first, 1, self._videos),)
         return ReadUnit(motion.motion, inputs, outputs, sources)
 
-    def _line_by_line(self, chunk: str, last: bool) -> Iterator[ListedUnit]:
+    def _units_line_by_line(self, chunk: str, last: bool) -> Iterator[ListedUnit]:
         """Yield the units of a chunk, read line by line.
 
         Separators with blanks after ``//`` are recognised, too. ``last`` is true for the last chunk of a
@@ -173,14 +173,14 @@ class TextUnits:
                 self._videos = (*(self._videos if self._header_open else ()), *([video] if video else []))
                 self._header_open = True
             elif first == "/" and line.rstrip(" \t") == "//":
-                unit = self._unit(start, index, closed=True)
+                unit = self._read_unit(start, index, closed=True)
                 if line != "//":
                     self._warn("outer-space", "blanks after // left out", index, 3, "//")
                 if unit:
                     self._header_open = False
                     yield unit
                 start = index + 1
-        unit = self._unit(start, len(lines), closed=not last)
+        unit = self._read_unit(start, len(lines), closed=not last)
         if unit:
             self._header_open = False
             if last:
@@ -189,7 +189,7 @@ class TextUnits:
                 self._warn("missing-separator", message, end, len(lines[end]) + 1)
             yield unit
 
-    def _unit(self, start: int, end: int, closed: bool) -> ListedUnit | None:
+    def _read_unit(self, start: int, end: int, closed: bool) -> ListedUnit | None:
         """Read the lines between two separators as a unit; ``None`` if they are no unit."""
         section = _Section(end, closed, self.reading.left_out)
         for index in range(start, end):
@@ -199,16 +199,16 @@ class TextUnits:
                 copy = read_copy(line)
                 section.copies += [copy] if copy else []
                 if is_amount(line):
-                    self._amount(section, index)
+                    self._add_amount(section, index)
             elif letter and not line.isspace():
                 if section.first < 0:
                     section.first = index
-                self._line(section, index)
+                self._add_line(section, index)
         if section.first < 0:
             return None
         self._sections += 1
         if self._objects is not None:
-            self._objects += _blocks(section.inputs + section.outputs)
+            self._objects += _closed_blocks(section.inputs + section.outputs)
             return None
         if len(section.motions) != 1 or not section.inputs:
             self._warn_of_no_unit(section)
@@ -216,14 +216,14 @@ class TextUnits:
         index, motion = section.motions[0]
         if not section.outputs:
             self._warn("no-outputs", f"the unit {motion.motion!r} has no output objects", section.first)
-        inputs, outputs = _blocks(section.inputs), _blocks(section.outputs)
+        inputs, outputs = _closed_blocks(section.inputs), _closed_blocks(section.outputs)
         for block in (*inputs, *outputs):
             if block.object.is_goal:
                 self.reading.marked.setdefault(block.node, block.source)
         sources = tuple(section.copies) or (self._source(section.first)._replace(videos=self._videos),)
         return ListedUnit(motion, inputs, outputs, sources, self._source(index))
 
-    def _amount(self, section: "_Section", index: int) -> None:
+    def _add_amount(self, section: "_Section", index: int) -> None:
         """Add the amount of a comment to the object above it, or record its fault."""
         if section.lost:
             self.reading.left_out += self.reading.lenient
@@ -238,7 +238,7 @@ class TextUnits:
         except LineError as error:
             self._reject("amount", str(error), index, error.column)
 
-    def _line(self, section: "_Section", index: int) -> None:
+    def _add_line(self, section: "_Section", index: int) -> None:
         """Add a line to its section; record a fault if the line is broken or out of place."""
         line = self._lines[index]
         parsed = read_line(line)
@@ -247,7 +247,7 @@ class TextUnits:
             section.lost = section.lost or line[0] == "O"
             section.blamed = section.blamed or line[0] != "S"
             return
-        self._remark(parsed, index)
+        self._report_remarks(parsed, index)
         if isinstance(parsed, StateLine):
             if section.lost:
                 self.reading.left_out += self.reading.lenient
@@ -287,7 +287,7 @@ class TextUnits:
             message = f"found a motion, expected an object line before it: {unit} has no input objects"
             self._warn("no-inputs", message + "; left out", section.motions[0][0])
         elif not section.closed and self._sections == 1:
-            self._warn("no-motion", no_motion(len(section.inputs)), first)
+            self._warn("no-motion", no_motion_message(len(section.inputs)), first)
         else:
             fault = "found //" if section.closed else "the file ends"
             message = f"{fault}, expected a motion line: {unit} has no motion; left out"
@@ -296,7 +296,7 @@ class TextUnits:
     def _source(self, index: int, column: int = 1) -> Source:
         return Source(self.file, self._number + index, column)
 
-    def _remark(self, line: Line, index: int) -> None:
+    def _report_remarks(self, line: Line, index: int) -> None:
         """Report the remarks on a line, with the line in canonical form as their fix."""
         if line.remarks:
             mended = write_line(line)
@@ -333,19 +333,19 @@ class _Section:
         self.lost = self.blamed = False
 
 
-def no_motion(objects: int) -> str:
+def no_motion_message(objects: int) -> str:
     """Return the warning about a file of objects alone where a network was expected."""
     listed = "one object" if objects == 1 else f"{objects} objects"
     return f"{listed} and no motion: a list such as a kitchen or goals, without units"
 
 
-def _blocks(open_blocks: list[_OpenBlock]) -> tuple[ObjectBlock, ...]:
+def _closed_blocks(open_blocks: list[_OpenBlock]) -> tuple[ObjectBlock, ...]:
     return tuple(
         ObjectBlock(block.line, tuple(block.states), block.source, block.amount) for block in open_blocks
     )
 
 
-def _identity(unit: ListedUnit) -> ReadUnit:
+def _without_lines(unit: ListedUnit) -> ReadUnit:
     """Return a unit without its lines; a node that is listed twice counts once."""
     if all(block.amount is None for block in (*unit.inputs, *unit.outputs)):
         return unit.identity

@@ -6,7 +6,7 @@ from foon_asp.network import MAX_AMOUNT
 from foon_asp.text.line import LineError, NameKind
 from foon_asp.text.line_parser import parse_node
 from foon_asp.text.stated_amounts import UnitAmount
-from foon_asp.text.tables import motion_column
+from foon_asp.text.tables import motion_in_first_column
 from foon_asp.text.value_table import Table
 
 _ARROWS = ("→", "->")
@@ -15,7 +15,7 @@ _AMOUNT = re.compile(r"[1-9]\d{0,6}", re.ASCII)
 
 def _row(name: str, value: str, column: int) -> tuple[UnitAmount, int]:
     """Read a row of amounts of units."""
-    motion = motion_column(name, "an object node")
+    motion = motion_in_first_column(name, "an object node")
     *fields, written = value.split("\t")
     written = written.strip()
     if not _AMOUNT.fullmatch(written) or int(written) > MAX_AMOUNT:

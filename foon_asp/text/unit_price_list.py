@@ -8,7 +8,7 @@ from foon_asp.network import FunctionalUnit, ObjectNode, Source, UnitPrices, in_
 from foon_asp.text.exact_number import decimal_text, read_price
 from foon_asp.text.line import LineError, NameKind
 from foon_asp.text.line_parser import parse_node
-from foon_asp.text.tables import motion_column
+from foon_asp.text.tables import motion_in_first_column
 from foon_asp.text.value_table import Table
 
 _ARROWS = ("→", "->")
@@ -38,10 +38,10 @@ def read_unit_prices(file: Path) -> UnitPriceList:
 
 
 def _row(name: str, value: str, column: int) -> tuple[str | FunctionalUnit, Fraction]:
-    motion = motion_column(name, "a price")
+    motion = motion_in_first_column(name, "a price")
     *fields, written = value.split("\t")
     price = read_price(written.strip(), column + len(value) - len(written))
-    return _unit(motion, fields, column) if fields else motion, price
+    return _parse_unit(motion, fields, column) if fields else motion, price
 
 
 UNIT_PRICES = Table("unit-price", NameKind.MOTION, "a price", _row, "a second price for {name!r}")
@@ -53,21 +53,21 @@ def write_unit_prices(prices: UnitPrices) -> str:
     for unit, price in prices.units.items():
         fields = [
             unit.motion,
-            *map(_field, unit.inputs),
+            *map(_node_field, unit.inputs),
             _ARROWS[0],
-            *map(_field, unit.outputs),
+            *map(_node_field, unit.outputs),
             decimal_text(price),
         ]
         lines.append("\t".join(fields) + "\n")
     return "".join(lines)
 
 
-def _field(node: ObjectNode) -> str:
+def _node_field(node: ObjectNode) -> str:
     """Write a node as a field; a label that is an arrow is quoted."""
     return in_quotes(node.label) if str(node) in _ARROWS else str(node)
 
 
-def _unit(motion: str, fields: list[str], column: int) -> FunctionalUnit:
+def _parse_unit(motion: str, fields: list[str], column: int) -> FunctionalUnit:
     """Read a unit from its input, arrow and output fields, which begin at a column."""
     sides: list[list[ObjectNode]] = [[]]
     for field in fields:

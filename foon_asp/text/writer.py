@@ -47,27 +47,27 @@ def write_node(node: ObjectNode) -> str:
     """
     states = [*map(StateLine, sorted(node.states)), *map(StateLine, sorted(node.relations))]
     states += [StateLine(contents, listed=contents.ingredients) for contents in node.contents]
-    written = [_readable(line) for line in (ObjectLine(node.label), *states)]
+    written = [_line_if_readable(line) for line in (ObjectLine(node.label), *states)]
     if None in written or node_of(node.label, [state.attribute for state in states]) != node:
         raise UserError(f"the object node {str(node)!r} has a name that FOON text cannot hold; JSON can")
     return "".join(filter(None, written))
 
 
-def counted_node(node: ObjectNode, amount: int | None) -> str:
+def write_counted_node(node: ObjectNode, amount: int | None) -> str:
     """Return the object block of a node, with its amount unless ``amount`` is ``None``."""
     return write_node(node) + ("" if amount is None else write_amount(amount))
 
 
 def write_motion(motion: str) -> str:
     """Return the line of a motion; raises :class:`UserError` for a name that FOON text cannot hold."""
-    written = _readable(MotionLine(motion))
+    written = _line_if_readable(MotionLine(motion))
     if written is None:
         raise UserError(f"the motion {motion!r} is a name that FOON text cannot hold; JSON can")
     return written
 
 
 @lru_cache(10_000, typed=True)  # many units have equal lines
-def _readable(line: Line) -> str | None:
+def _line_if_readable(line: Line) -> str | None:
     """Return the text of a line; ``None`` where it would not be read back as the same line."""
     written = write_line(line)
     try:
@@ -86,7 +86,7 @@ def write_unit(unit: FunctionalUnit, amounts: UnitAmounts = ALL_ONE) -> str:
     if not unit.inputs:
         raise UserError(f"the unit {unit.motion!r} has no inputs, which FOON text cannot hold; JSON can")
     inputs, outputs = (
-        "".join(counted_node(node, amounts_of_side.get(node)) for node in nodes)
+        "".join(write_counted_node(node, amounts_of_side.get(node)) for node in nodes)
         for nodes, amounts_of_side in zip((unit.inputs, unit.outputs), amounts, strict=True)
     )
     return f"{inputs}{write_motion(unit.motion)}{outputs}//\n"
