@@ -1,6 +1,6 @@
-"""Fast reading of well-formed lines of FOON text and of labels, which need no parser.
+"""Fast reading of usual lines of FOON text and of labels, by regular expressions in place of the parser.
 
-Most lines are well-formed, and importing Lark and building the parser takes a third of a cold ``solve``.
+Most lines are usual, and importing Lark and building the parser takes a third of a cold ``solve``.
 """
 
 import re
@@ -21,7 +21,11 @@ _LABEL = re.compile(r' *[^ ";\t\r\n\[\]{}][^;\t\r\n\[\]{}]*')
 
 
 def clean_line(text: str) -> Line | None:
-    """Return the parsed line of a well-formed text; ``None`` for any other text."""
+    """Return the parsed line of a text without line end, or ``None`` where the parser has to read it.
+
+    ``None`` also stands for faulty lines. Few slips are read here, with remarks: blanks between ingredients,
+    and a space for the tab before a bracket.
+    """
     if match := _STATE_LINE.fullmatch(text):
         return _state(match)
     if match := _OBJECT_LINE.fullmatch(text):
@@ -34,12 +38,12 @@ def clean_line(text: str) -> Line | None:
 
 
 def clean_node(notation: str) -> ObjectNode | None:
-    """Return the node of a label alone, without quotes; ``None`` for any other notation."""
+    """Return the node of a notation that is a label alone, without quotes; ``None`` for another notation."""
     return ObjectNode(notation.strip(" ")) if _LABEL.fullmatch(notation) else None
 
 
 def _state(match: re.Match[str]) -> StateLine:
-    """Return the state line of a match."""
+    """Return the state line that ``_STATE_LINE`` matched, with remarks on slips."""
     id_, name, gap, related, listed = match.groups()
     end = match.end(2)
     remarks: list[Remark] = []
@@ -54,14 +58,15 @@ def _state(match: re.Match[str]) -> StateLine:
 
 
 def no_tab_remark(bracket: str, column: int) -> Remark:
-    """Return the remark that a bracket has no tab before it."""
+    """Return the remark that no tab stands before ``bracket``, such as ``[bowl]``."""
     return Remark(column, "space-for-tab", f"no tab before {bracket}; read as if there were one")
 
 
 def split_ingredients(listed: str, column: int, remarks: list[Remark]) -> tuple[str, ...]:
-    """Split the text in brackets at its commas; ``column`` is that of its first letter.
+    """Return the ingredients between brackets, split at commas, without spaces around them.
 
-    Adds to ``remarks`` a remark on dropped items and one on doubtful items, if there are any.
+    Empty ingredients are left out, repeated ones stay. ``column`` is that of the first letter of ``listed``.
+    Adds to ``remarks`` at most one remark each on empty, on spaced and on repeated ingredients.
     """
     split = listed.split(",")
     if len(set(split)) == len(split) and all(item and item[0] != " " != item[-1] for item in split):
@@ -71,6 +76,7 @@ def split_ingredients(listed: str, column: int, remarks: list[Remark]) -> tuple[
     remarked: set[str] = set()
 
     def remark(code: str, message: str) -> None:
+        """Add a remark at the current column, unless there is one of this code."""
         if code not in remarked:
             remarks.append(Remark(column, code, message))
             remarked.add(code)

@@ -21,14 +21,14 @@ from foon_asp.text.writer import write_line
 
 
 class Lost(NamedTuple):
-    """The losses of one kind: their number, and the place of the first one."""
+    """The losses of one kind: their number, and the source of the first one in the file."""
 
     occurrences: int
     first: Source
 
 
 class Converted(NamedTuple):
-    """A text in another dialect, the dialect it was in, and what was lost."""
+    """A converted text, the ``dialect`` of the original text, and the losses by kind."""
 
     text: str
     dialect: Dialect
@@ -36,7 +36,7 @@ class Converted(NamedTuple):
 
 
 class Converter:
-    """Converts any number of files to one dialect, with the same ids for the same names in all of them.
+    """A converter of any number of files to one dialect, with the same ids for equal names in all of them.
 
     If ``lenient``, a part that cannot be understood, or that the dialect cannot hold, causes a warning in
     ``diagnostics`` instead of an error. It is left out; in a conversion from text to text it stays unchanged.
@@ -57,20 +57,24 @@ class Converter:
 
     @property
     def left_out(self) -> int:
-        """The number of lines left out."""
+        """The number of lines left out of all files so far."""
         return self._reading.left_out
 
     def learn(self, text: str) -> None:
-        """Record the ids of a text that will be converted, so that new ids differ from them."""
+        """Record the ids in a text that will be converted, so that new ids differ from them.
+
+        Does nothing unless the target is the dialect ``ids``.
+        """
         if self.target is Dialect.IDS:
             for line in format_of(text).lines(text):
                 self._numbering.learn(line)
 
     def convert(self, text: str, file: str) -> Converted:
-        """Return a converted text, which has the same functional units or listed objects.
+        """Return a converted text, which has the same functional units or listed objects, and its losses.
 
-        Raises :class:`InputError` with the places of all parts that cannot be understood, or whose meaning
-        the target cannot hold.
+        JSON or neutral lines that are in the target dialect already are laid out anew. Raises
+        :class:`InputError` with the places of all parts that cannot be understood, or whose meaning the
+        target cannot hold.
         """
         earlier = len(self.diagnostics)
         lost = _Tally(file)
@@ -88,10 +92,14 @@ class Converter:
         return Converted(converted, dialect, lost.found)
 
     def _converted_lines(self, text: str, file: str, writer: TextWriter, lost: "_Tally") -> str:
-        """Return FOON text in another dialect, line by line, which keeps comments and blank lines."""
+        """Return FOON text in another dialect of FOON text; losses go to ``lost``.
+
+        Comments and blank lines stay.
+        """
         losses_by_line: dict[str, list[Loss]] = {}
 
         def rewrite(line: Line, written: str) -> str:
+            """Return a line as the target writes it, and record its losses under the text that it had."""
             target_line = writer.in_dialect(line)
             losses_by_line[written] = lost_in_line(line, target_line)
             return write_line(target_line)
@@ -102,7 +110,10 @@ class Converter:
         return protect_byte_order_mark(converted)
 
     def _converted_objects(self, text: str, file: str, format_: Format, lost: "_Tally") -> str:
-        """Convert a list of objects."""
+        """Return a list of objects in the other dialect; losses go to ``lost``.
+
+        Objects that the dialect cannot hold are left out, and recorded as faults.
+        """
         blocks = [with_container(*entry) for entry in format_.objects(text, file, self._reading)]
         if format_.has_comments:
             lost.add_comments(text, ())
@@ -115,7 +126,11 @@ class Converter:
         return self._writer.objects(texts)
 
     def _converted_network(self, text: str, file: str, format_: Format, lost: "_Tally") -> str:
-        """Return a network in the other dialect; losses are counted in ``lost``."""
+        """Return a network in the other dialect; losses go to ``lost``.
+
+        A node that a unit lists twice is written once. Its amounts are added up in machine-written formats;
+        elsewhere the greatest of them counts.
+        """
         listed = list(format_.listed_units(text, file, self._reading))
         videos = self._kept_videos(text, format_, listed, lost)
         meant = [unit.with_totals if format_.machine_written else unit.without_repeats for unit in listed]
@@ -123,7 +138,10 @@ class Converter:
         return self._writer.network([unit for unit in written if unit], videos)
 
     def _converted_unit(self, unit: ListedUnit, lost: "_Tally") -> str:
-        """Write a unit; the text is empty, and an error is recorded, if the target cannot hold it."""
+        """Return the text of a unit; losses go to ``lost``.
+
+        If the target cannot hold the unit, the text is empty, and a fault is recorded.
+        """
         try:
             if not unit.inputs and not self._writer.holds_no_inputs:
                 raise CannotHoldError(f"the unit {unit.motion.motion!r} has no input objects")
@@ -141,7 +159,10 @@ class Converter:
     def _element_text(
         self, element: ObjectBlock | MotionLine, source: Source, lost: "_Tally", in_list: bool = False
     ) -> str:
-        """Return the text of an object or a motion, cached for equal elements, and count its losses."""
+        """Return the text of an object or a motion, cached for equal ones; losses go to ``lost``.
+
+        Raises :class:`CannotHoldError` if the target cannot hold it.
+        """
         key = (
             element
             if isinstance(element, MotionLine)
@@ -160,7 +181,10 @@ class Converter:
     def _kept_videos(
         self, text: str, format_: Format, units: list[ListedUnit], lost: "_Tally"
     ) -> tuple[str, ...]:
-        """Return the source videos of the file that the result can name; count its other videos as lost."""
+        """Return the source videos that all units share and the target can name; other videos go to ``lost``.
+
+        The other comments of the file go to ``lost``, too.
+        """
         video_lists = {unit.sources[0].videos for unit in units}
         common = video_lists.pop() if len(video_lists) == 1 else ()
         comments = [line for line in split_lines(text) if line[:1] == "#"]
@@ -172,17 +196,19 @@ class Converter:
         return kept
 
     def _reject(self, problem: CannotHoldError, source: Source) -> None:
+        """Record a part that the target cannot hold: as an error, or as a warning if ``lenient``."""
         self._reading.reject("cannot-hold", f"{self.target} cannot hold this: {problem}", source)
 
 
 class _Tally:
-    """Counts the losses of one file."""
+    """The losses of one file so far, by kind."""
 
     def __init__(self, file: str) -> None:
         self.file = file
         self.found: dict[Loss, Lost] = {}
 
     def add(self, losses: list[Loss] | tuple[()], source: Source) -> None:
+        """Count losses at a place; the first place in the file is kept for each kind."""
         for loss in losses:
             count, first = self.found.get(loss, (0, source))
             self.found[loss] = Lost(count + 1, min(first, source))

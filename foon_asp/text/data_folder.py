@@ -51,7 +51,8 @@ STARTING = Path("@starting")
 class DataFiles(NamedTuple):
     """The files of the network and of the data beside it; ``None`` for a file that does not exist.
 
-    ``stand_ins`` is read only where stand-ins are asked for.
+    ``kitchen`` may be ``STARTING`` in place of a file. ``stand_ins`` is read only where stand-ins are asked
+    for.
     """
 
     network: tuple[Path, ...]
@@ -67,14 +68,14 @@ class DataFiles(NamedTuple):
 class Data(NamedTuple):
     """All data read: the merged network and the data beside it.
 
-    ``kitchen``: the ids of the object nodes that match ``kitchen_items``.
+    ``kitchen``: the ids of the object nodes that match ``kitchen_items``, or of the starting kitchen.
     ``rates``: the success rates of motions; ``None`` without a rates file.
     ``warnings``: the assumptions made while reading.
-    ``left_out``: the number of lines that were dropped.
+    ``left_out``: the number of lines that were left out.
     ``unit_prices``: the prices of units; ``None`` without any price.
-    ``starting``: true without a kitchen file; the kitchen is then the starting kitchen.
-    ``goals_from``: empty if a file lists the goals, else the origin of the assumed ``goals``: the *marked*
-    nodes, or the *last* unit of each file.
+    ``starting``: whether the kitchen is the starting kitchen, since there is no kitchen file.
+    ``goals_from``: empty if a file lists the goals; *marked* if they are the nodes marked with ``!`` in the
+    network; *last* if they are outputs of the last unit of each file.
     ``repeated``: the nodes that a unit lists twice.
     ``amounts``: how many copies of nodes units take and make, where this is not 1.
     """
@@ -104,15 +105,16 @@ def find_data(
     unit_prices: Path | None = None,
     unit_amounts: Path | None = None,
 ) -> DataFiles:
-    """Find the files of a question: a file that is named precedes the folder's file of the same kind.
+    """Return the files of a question; a named file takes precedence over the folder's file of its kind.
 
     Without a folder and a network, the files are those of the bundled kitchen. A network without a folder
     gets no bundled kitchen or rates, since those belong to the bundled network.
 
     A folder has its network in ``FOON.txt`` or else in its other ``*.txt``, ``*.json`` and ``*.jsonl``
-    files, and may have ``kitchen.json`` or ``kitchen.txt``, ``motion.txt``, ``utensils.txt``,
+    files. It may have ``kitchen.json`` or ``kitchen.txt``, ``motion.txt``, ``utensils.txt``,
     ``unit_prices.txt``, ``unit_amounts.txt``, ``stand_ins.txt``, and ``goal_nodes.json`` or
-    ``goal_nodes.txt``. Raises :class:`UserError` for a path that does not exist.
+    ``goal_nodes.txt``. Raises :class:`UserError` for a path that does not exist, and without any network
+    file.
     """
     if folder is None and not network:
         folder = bundled_kitchen()
@@ -134,6 +136,7 @@ def find_data(
         raise UserError("no network: name a recipe, a folder or a store")
 
     def own_or_in_folder(file: Path | None, *names: str) -> Path | None:
+        """Return the named ``file``, else the first of ``names`` in the folder; ``None`` without either."""
         if file is None and folder is not None:
             return next((folder / name for name in names if (folder / name).exists()), None)
         return file
@@ -151,12 +154,15 @@ def find_data(
 
 
 def kitchen_file(folder: Path) -> Path | None:
-    """Return the kitchen of a folder, if it has one."""
+    """Return the kitchen file of a folder, ``None`` if it has none."""
     return next((folder / name for name in _KITCHENS if (folder / name).is_file()), None)
 
 
 def network_files(path: Path) -> list[Path]:
-    """Return the network files of a path: itself, or those of a folder in order of name."""
+    """Return the network files of a path: of a folder ``FOON.txt`` alone, or else all networks by name.
+
+    A path that is no folder is returned itself. Raises :class:`UserError` for a folder without a network.
+    """
     if not path.is_dir():
         return [path]
     if (path / "FOON.txt").is_file():
@@ -169,7 +175,10 @@ def network_files(path: Path) -> list[Path]:
 
 
 def _may_be_network(file: Path) -> bool:
-    """Whether a file may be a network: JSON if it names an object, other files by their suffix."""
+    """Whether a file of a folder may be a network, by its suffix and content; hidden files are none.
+
+    JSON has to name an object, and neutral lines have to begin with a unit.
+    """
     if file.name[0] == "." or not file.is_file():
         return False
     if file.suffix == ".json":
@@ -183,8 +192,9 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
     """Read the network and the data beside it; raises :class:`InputError` for input that is not understood.
 
     With ``lenient`` the lines of a network that are not understood are left out with a warning. Below
-    ``level`` 3, network, kitchen and goals are taken at that level, where an entry matches all nodes
-    with the same remaining parts.
+    ``level`` 3, network, kitchen and goals are reduced to that level. An entry then matches all nodes that
+    agree with it in the remaining parts. Kitchen items, prices and amounts that match nothing in the network
+    cause warnings.
     """
     with uncollected():
         reader = FoonReader(lenient)
@@ -235,12 +245,18 @@ def _assumed_goals(reader: FoonReader, network: Network) -> tuple[list[ListedObj
 
 
 def kitchen_nodes(network: Network, items: Iterable[ListedObject]) -> frozenset[int]:
-    """Return the object nodes that match kitchen items, at the level of the network."""
+    """Return the ids of the object nodes that match kitchen items.
+
+    Items are taken at the level of the network.
+    """
     return frozenset(o for item in items for o in network.find(pattern_at_level(item.pattern, network.level)))
 
 
 def amounts_of_items(names: NodeNames, items: Iterable[ListedObject]) -> dict[ObjectNode, int]:
-    """Return the amounts of nodes that match entries with an amount, at the level of the network."""
+    """Return the amount of each node that matches an item with an amount; items without one are skipped.
+
+    Items are taken at the level of ``names``.
+    """
     return {
         names.node(o): item.amount
         for item in items
@@ -250,9 +266,10 @@ def amounts_of_items(names: NodeNames, items: Iterable[ListedObject]) -> dict[Ob
 
 
 def unit_prices(stated: StatedPrices, listed: UnitPriceList | None) -> UnitPrices | None:
-    """Return the prices of units, from a file and as stated in networks; the file takes precedence.
+    """Return the prices of units, ``None`` if there are none.
 
-    Raises :class:`InputError` if copies of a unit state different prices and the file has none for the unit.
+    A price in the file ``listed`` takes precedence over one ``stated`` in networks. Raises
+    :class:`InputError` if copies of a unit state different prices and the file has none for the unit.
     """
     chosen = listed.units if listed else {}
     settled = stated.price_by_unit(chosen)
@@ -262,7 +279,7 @@ def unit_prices(stated: StatedPrices, listed: UnitPriceList | None) -> UnitPrice
 def amounts_of_units(
     stated: StatedAmounts, file: Path | None, network: Network, warnings: list[Diagnostic]
 ) -> DataAmounts:
-    """Return the amounts that networks state for their units, replaced by those of the table in ``file``.
+    """Return the amounts that networks state for their units, overridden by those of the table in ``file``.
 
     Appends to ``warnings`` a warning for each row of the table that matches no unit.
     """

@@ -40,7 +40,7 @@ class FoonText(Format):
         return True
 
     def dialect(self, text: str) -> Dialect:
-        """Return the dialect: one line with an id, flag or time is enough."""
+        """Return ``IDS`` if a line has an id, else ``NO_IDS`` if one has a flag or a time, else ``PLAIN``."""
         dialect = Dialect.PLAIN
         for line in self.lines(text):
             if line.id:
@@ -55,11 +55,11 @@ class FoonText(Format):
         return "O" in starts and "M" not in starts
 
     def file_units(self, file: Path, reading: Reading) -> Iterator[ReadUnit]:
-        """Yield the units of a file, read in pieces."""
+        """Yield the units of a file in order; the file is read in pieces of a million letters."""
         return TextUnits(text_pieces(file, self.piece_letters), str(file), reading).units()
 
     def units(self, text: str, file: str, reading: Reading) -> Iterator[ReadUnit]:
-        """Yield the units of a text in order."""
+        """Yield the units of a text in order; a node that a unit lists twice counts once."""
         return _text_units(text, file, reading).units()
 
     def listed_units(self, text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
@@ -78,36 +78,41 @@ class FoonText(Format):
                 yield line
 
     def canonical_text(self, text: str, file: str, lenient: bool = False) -> str:
-        """Return a text in canonical form, line by line, as :func:`rewrite_lines` does."""
+        """Return a text in canonical form, line by line.
+
+        A line whose only remarks are on blanks keeps its inner blanks. Raises as :func:`rewrite_lines` does.
+        """
         return rewrite_lines(text, file, lenient, _mend_line)
 
     def mentions(self, text: str, file: str) -> Iterator[Mention]:
-        """Yield every mention of a name."""
+        """Yield every mention of a name in lines that can be understood."""
         for line in self.lines(text):
             yield from line_names(line)
 
     def renamed_text(self, text: str, file: str, renaming: "Renaming") -> str:
-        """Return a text with the new name."""
+        """Return a text with the new name; see :class:`~foon_asp.text.renaming.Renaming`."""
         return map_lines(text, renaming.line)
 
     def writer(self, target: Dialect, numbering: "Numbering") -> Writer:
-        """Return a writer of networks and lists of objects as lines."""
+        """Return a writer of FOON text in the dialect ``target``; ids come from ``numbering``."""
         from foon_asp.text.text_writer import TextWriter  # noqa: PLC0415 (only for conversions)
 
         return TextWriter(target, numbering)
 
 
 def _text_units(text: str, file: str, reading: Reading) -> TextUnits:
+    """Return the reader of the units of a text, whose line ends may be of any kind."""
     return TextUnits([text.replace("\r\n", "\n").replace("\r", "\n")], file, reading)
 
 
 def rewrite_lines(text: str, file: str, lenient: bool, rewrite: Rewrite) -> str:
-    """Return a text rewrite_lines line by line; ``rewrite`` rewrites object, state and motion lines.
+    """Return a text in which ``rewrite`` has rewritten each object, state and motion line.
 
-    Blanks at the ends of lines are removed, all lines get the most frequent line end, and a last unit without
-    ``//`` gets it. Comments, blank lines and the order of lines stay, also where lines form no unit. For
-    lines that cannot be understood, one :class:`InputError` is raised with all of them; if ``lenient``, such
-    lines stay unchanged.
+    Comments, blank lines and the order of lines stay, also where lines form no unit. Blanks at the ends of
+    lines are removed. All lines get the most frequent line end. A last unit without ``//`` gets it.
+
+    Raises one :class:`InputError` with all lines that cannot be understood; if ``lenient``, these stay
+    unchanged.
     """
     lines = split_lines(text)
     errors: list[Diagnostic] = []
@@ -136,7 +141,7 @@ def rewrite_lines(text: str, file: str, lenient: bool, rewrite: Rewrite) -> str:
 
 
 def _mend_line(line: Line, written: str) -> str:
-    """Return the canonical form of a line; a line whose only remarks are on blanks stays unchanged.
+    """Return the canonical form of a line; a line whose only remarks are on blanks stays, but for end blanks.
 
     Blanks within a line stay, since the published universal FOON has them: ``{jelly, peanut butter}``, and a
     space for the tab before a bracket. Linting reports such blanks.
@@ -147,7 +152,10 @@ def _mend_line(line: Line, written: str) -> str:
 
 
 def _rewrite_line(line: str, rewrite: Rewrite) -> tuple[str, LineError | None]:
-    """Return a line as ``rewrite`` writes it, or unchanged with an error; comments and blank lines stay."""
+    """Return a line as ``rewrite`` writes it, and ``None``; a faulty line itself, and its error.
+
+    Comments stay. Blanks are removed from blank lines and behind ``//``.
+    """
     if line[:1] == "#":
         return line, None
     if not line or line.isspace():
@@ -161,7 +169,7 @@ def _rewrite_line(line: str, rewrite: Rewrite) -> tuple[str, LineError | None]:
 
 
 def _ends_in_open_unit(lines: list[str]) -> bool:
-    """Whether the lines after the last ``//`` form a unit: one motion, with an object before it."""
+    """Whether the lines after the last ``//`` form a unit: they have one motion, and an object before it."""
     start = len(lines)
     while start > 0 and not re.fullmatch(r"//[ \t]*", lines[start - 1]):
         start -= 1

@@ -94,7 +94,7 @@ def test_each_kind_in_each_file_is_told_once_with_the_lines_of_the_others() -> N
         warning(2, "outer-space"),
         warning(9, "outer-space"),
     ]
-    assert summarize(found, places=1) == [
+    assert summarize(found, max_lines=1) == [
         f"{found[0]}\n    2 warnings of this kind (time); others on line 6",
         f"{found[1]}\n    3 warnings of this kind (outer-space); others on line 2, ...",
         str(found[3]),
