@@ -10,7 +10,7 @@ from foon_asp.warning import warn
 
 
 def copy_permissions(old: os.stat_result, file: Path) -> None:
-    """Set the permissions of a file to those of ``old``, and its owner where the system allows it."""
+    """Set the permissions of a file to those in ``old``, and its owner and group where this is allowed."""
     new = file.stat()
     if (old.st_uid, old.st_gid) != (new.st_uid, new.st_gid):
         try:
@@ -22,7 +22,10 @@ def copy_permissions(old: os.stat_result, file: Path) -> None:
 
 
 def warn_of_replaced(file: Path, old: os.stat_result) -> None:
-    """Warn where a replaced file had hard links, or an owner that only root can set."""
+    """Warn if a replaced file had other names (hard links), or another owner than the new file has.
+
+    ``old`` is the status of the replaced file.
+    """
     name = escaped(str(file))
     if old.st_nlink > 1:
         others = "another name" if old.st_nlink == 2 else f"{old.st_nlink - 1} other names"

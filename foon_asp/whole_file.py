@@ -21,12 +21,13 @@ _PARTIAL = re.compile(r"\.foon-asp\.[0-9a-f]{16}")
 
 
 def write_whole(file: Path, content: bytes) -> None:
-    """Write a new file beside the old one and rename it; after a failure, the old file is unchanged.
+    """Replace the content of a file, completely or not at all: after a failure, the file is unchanged.
 
-    The new file gets the permissions of the old one, and its owner where that is allowed. A write-protected
-    file is not replaced. Where the path is a link, the linked file is written. Of a file with several names
-    (hard links), only this name gets the new content, with a warning. A pipe or device is written to
-    directly. Raises :class:`UserError` where the file cannot be written.
+    A new file is written beside the old one and renamed. It gets the permissions of the old one, and its
+    owner where that is allowed. A write-protected file is not replaced. Where the path is a link, the linked
+    file is written. Of a file with several names (hard links), only this name gets the new content, with a
+    warning. A pipe or device is written to directly. Raises :class:`UserError` where the file cannot be
+    written.
     """
     try:
         if file.exists() and not file.is_file():
@@ -41,10 +42,11 @@ def write_whole(file: Path, content: bytes) -> None:
 
 
 def write_all_whole(contents: Mapping[Path, bytes]) -> None:
-    """Replace several files: all new files are written beside the old ones before the first is replaced.
+    """Replace the contents of several files; if one cannot be written, none is changed.
 
-    Raises :class:`UserError` when one of the files cannot be written; then, and after ctrl-C, all files are
-    unchanged. If the process is killed in the middle, each file is the old one or the new one.
+    All new files are written beside the old ones before the first is renamed. After an error, which is
+    raised as :class:`UserError`, and after ctrl-C, all files are as before. If the process is killed in the
+    middle, each file is the old one or the new one.
     """
     replaced: dict[Path, bytes] = {}
     try:
@@ -68,7 +70,7 @@ def write_all_whole(contents: Mapping[Path, bytes]) -> None:
 
 
 def utf_8(text: str) -> bytes:
-    """Return a text in UTF-8.
+    """Return the bytes of a text in UTF-8.
 
     Raises :class:`UserError` for half of a surrogate pair, which UTF-8 cannot hold.
     """
@@ -84,15 +86,17 @@ def utf_8(text: str) -> bytes:
 
 
 def _replace(target: Path, content: bytes) -> None:
+    """Replace a file by a new one, which is written beside it and renamed."""
     with _staged_file(target, content) as partial:
         partial.replace(target)
 
 
 @contextlib.contextmanager
 def _staged_file(target: Path, content: bytes) -> Iterator[Path]:
-    """Write a new file beside the target, and yield it; afterwards remove it if it was not renamed.
+    """Return a context with the path of a new file beside the target, for the caller to rename.
 
-    Refuse a target that may not be replaced.
+    The file is removed at the end if it was not renamed. Raises :class:`OSError` for a target that may not
+    be written. Warns if the replaced file had other names or another owner.
     """
     old = None
     if target.exists():
@@ -118,7 +122,7 @@ def _staged_file(target: Path, content: bytes) -> Iterator[Path]:
 
 
 def _create_locked_file(folder: Path) -> tuple[Path, BinaryIO]:
-    """Create and open a file with an unused name; it is locked as long as it is open."""
+    """Return the path of a new file with an unused name, and the open file, which is locked until closed."""
     while True:
         partial = folder / f".foon-asp.{os.urandom(8).hex()}"
         written = partial.open("xb")
@@ -129,7 +133,10 @@ def _create_locked_file(folder: Path) -> tuple[Path, BinaryIO]:
 
 @functools.cache  # once for each folder: fmt writes many files
 def _remove_leftovers(folder: Path) -> None:
-    """Remove the temporary files of killed processes from a folder: no process has locked them."""
+    """Remove the temporary files in a folder that no process has locked: their processes were killed.
+
+    Does nothing when it is called again with the same folder. Errors are ignored.
+    """
     with contextlib.suppress(OSError):
         for name in filter(_PARTIAL.fullmatch, os.listdir(folder)):
             with contextlib.suppress(OSError):
@@ -137,7 +144,7 @@ def _remove_leftovers(folder: Path) -> None:
 
 
 def _remove_unlocked(file: Path) -> None:
-    """Remove a partial file unless the process that writes it has locked it."""
+    """Remove a temporary file unless another process, which writes it, has locked it."""
     found = os.open(file, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
     try:
         if stat.S_ISREG(os.fstat(found).st_mode) and _try_lock(found, otherwise=False):
@@ -146,12 +153,15 @@ def _remove_unlocked(file: Path) -> None:
         os.close(found)
 
 
-def _try_lock(number: int, otherwise: bool) -> bool:
-    """Lock an open file; return whether it is locked, or ``otherwise`` where files cannot be locked."""
+def _try_lock(descriptor: int, otherwise: bool) -> bool:
+    """Lock an open file, given by its descriptor, and return whether it is locked now.
+
+    Returns ``otherwise`` where files cannot be locked.
+    """
     if fcntl is None:
         return otherwise
     try:
-        fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         return False
     except OSError:

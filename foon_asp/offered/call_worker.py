@@ -1,4 +1,4 @@
-"""The process that calls the functions of another package, until its parent ends."""
+"""The process that calls the functions of another package, until the process that started it ends."""
 
 import json
 import pickle
@@ -12,7 +12,7 @@ from foon_asp.processes.pipe import receive_packed, requests, write
 
 
 def serve() -> None:
-    """Call the functions that requests on standard input name, and send their replies."""
+    """Call the functions that requests on standard input name, and write their replies, without end."""
     received, answers = requests(receive_packed)
     functions: dict[Offer, Callable[..., object]] = {}
     while True:
@@ -23,7 +23,11 @@ def serve() -> None:
 def _call(
     offer: Offer, arguments: tuple[object, ...], functions: dict[Offer, Callable[..., object]]
 ) -> bytes:
-    """Call a function, and return a line of JSON: its reply, its exception, or what is wrong with it."""
+    """Call the function of an offer, and return a line of JSON with a kind and a value.
+
+    The kind is ``reply``, ``raised`` for an exception, or ``fault`` for a function or reply that cannot be
+    used. ``functions`` are those imported so far; a new one is added.
+    """
     if offer not in functions:
         try:
             function: Any = EntryPoint(offer.name, offer.function, offer.group).load()
@@ -54,14 +58,17 @@ def _call(
 
 
 def _message_line(kind: str, value: object) -> bytes:
+    """Return a kind and a value as a line of JSON."""
     return json.dumps([kind, value], allow_nan=False).encode("ascii") + b"\n"
 
 
 def _error_text(error: BaseException) -> str:
+    """Return the class and the message of an exception."""
     return f"{type(error).__name__}: {_error_message(error)}"
 
 
 def _error_message(error: BaseException) -> str:
+    """Return the beginning of the message of an exception; empty if this raises itself."""
     try:
         return _shortened(str(error))
     except Exception:
@@ -69,6 +76,7 @@ def _error_message(error: BaseException) -> str:
 
 
 def _shortened_repr(value: object) -> str:
+    """Return the beginning of the ``repr`` of a value; if this raises, the value's class."""
     try:
         return _shortened(repr(value))
     except Exception:
@@ -76,5 +84,5 @@ def _shortened_repr(value: object) -> str:
 
 
 def _shortened(message: str, max_letters: int = 1000) -> str:
-    """Return the beginning of a message: some contain all data."""
+    """Return the beginning of a message, since some messages contain all data."""
     return message[:max_letters]

@@ -52,15 +52,16 @@ class ListedTree(NamedTuple):
         """
         if not self.numbers:
             return self
-        whole = network()
+        whole_network = network()
         units = []
         for number in self.numbers:
-            unit = whole.unit_of_number(number)
+            unit = whole_network.unit_of_number(number)
             if unit is None:
                 raise UserError(
-                    f"{file}: use({number}): the network has no unit {number}, only 0 to {len(whole) - 1}"
+                    f"{file}: use({number}): the network has no unit {number}, "
+                    f"only 0 to {len(whole_network) - 1}"
                 )
-            units.append((whole.unit(unit), whole.sources[unit][0]))
+            units.append((whole_network.unit(unit), whole_network.sources[unit][0]))
         return self._replace(units=tuple(units), numbers=())
 
 

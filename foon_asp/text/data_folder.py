@@ -45,7 +45,7 @@ _TABLES = {_RATES, _UTENSILS, _UNIT_PRICES, _UNIT_AMOUNTS, _STAND_INS}
 _SIDE_TABLES = {*_TABLES, *_KITCHENS, *_GOALS, *_FOR_SCHEDULES}
 
 STARTING = Path("@starting")
-"""In place of a kitchen file: the starting kitchen."""
+"""Stands in ``DataFiles.kitchen`` for the starting kitchen, in place of a file."""
 
 
 class DataFiles(NamedTuple):
@@ -198,8 +198,8 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
     """
     with uncollected():
         reader = FoonReader(lenient)
-        whole = reader.read_network(files.network)
-    network = network_at_level(whole, level)
+        whole_network = reader.read_network(files.network)
+    network = network_at_level(whole_network, level)
     warnings = reader.diagnostics
     starting = files.kitchen in {None, STARTING}
     items = () if files.kitchen is None or starting else tuple(read_object_list(files.kitchen, warnings))
@@ -212,14 +212,16 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
     if files.goals:
         listed_goals, goals_from = read_object_list(files.goals, warnings), ""
     else:
-        listed_goals, goals_from = _assumed_goals(reader, whole)
+        listed_goals, goals_from = _assumed_goals(reader, whole_network)
     goals = tuple(entry._replace(pattern=pattern_at_level(entry.pattern, level)) for entry in listed_goals)
-    listed = read_unit_prices(files.unit_prices) if files.unit_prices else None
-    if listed:
+    price_list = read_unit_prices(files.unit_prices) if files.unit_prices else None
+    if price_list:
         warnings += (
-            unit_price_warning(*entry) for entry in listed.sources.items() if whole.unit_id(entry[0]) is None
+            unit_price_warning(*entry)
+            for entry in price_list.sources.items()
+            if whole_network.unit_id(entry[0]) is None
         )
-    amounts = amounts_of_units(reader.amounts, files.unit_amounts, whole, warnings)
+    amounts = amounts_of_units(reader.amounts, files.unit_amounts, whole_network, warnings)
     return Data(
         network,
         frozenset(kitchen),
@@ -229,7 +231,7 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
         read_utensils(files.utensils) if files.utensils else frozenset(),
         tuple(warnings),
         reader.left_out,
-        unit_prices(reader.prices, listed),
+        unit_prices(reader.prices, price_list),
         starting,
         goals_from,
         tuple(reader.repeated),

@@ -7,7 +7,7 @@ from foon_asp.text.line import LineError
 
 _DECIMAL = re.compile(r"\d+(\.\d*)?|\.\d+", re.ASCII)
 MAX_LETTERS = 1000
-"""Letters of a number in a file."""
+"""The greatest number of letters of a number in a file."""
 
 
 def read_price(written: str, column: int = 1) -> Fraction:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _BLANKS = {"outer-space", "space-for-tab"}
 
 Rewrite = Callable[[Line, str], str]
-"""Returns the new text of a line from the parsed line and its text."""
+"""A function that returns the new text of a line from the parsed line and its text."""
 
 
 class FoonText(Format):
@@ -33,7 +33,7 @@ class FoonText(Format):
     suffix = list_suffix = ".txt"
     has_comments = True
     piece_letters: ClassVar[int] = 1_000_000
-    """Letters of a file that are read at a time."""
+    """The number of letters of a file that are read at a time."""
 
     def recognises(self, text: str, file: str) -> bool:
         """Return true, since any text may be FOON text."""

@@ -1,4 +1,4 @@
-"""A JSON list with the place of every element."""
+"""A JSON list that is read element by element, with the place of each."""
 
 import json
 import re
@@ -25,10 +25,11 @@ class JsonElement(NamedTuple):
 
 
 class JsonList:
-    """The elements of a list, read one by one; faults are collected in ``errors``.
+    """The elements of a list in a JSON text; iterating reads them one by one.
 
-    Without ``key``, the list is the whole file. With ``key``, the file is an object, and the list is the
-    value of this key; the object's other values are in ``others`` once all elements have been read.
+    Faults are collected in ``errors``, with the name ``file``. Without ``key``, the list is the whole text.
+    With ``key``, the list may also be the value of this key in an object. The object's other values are in
+    ``others`` once all elements have been read.
     """
 
     def __init__(self, text: str, file: Path, key: str | None = None) -> None:
@@ -53,12 +54,12 @@ class JsonList:
             self.add_error(self.position_of(0), "found lists nested too deeply, expected a list of objects")
 
     def add_error(self, source: Source, message: str) -> None:
-        """Record an error at a place of the file."""
+        """Add an error at a line and column of the file to ``errors``, with the text of the line."""
         excerpt = self._text.split("\n", source.line)[source.line - 1].rstrip("\r")
         self.errors.append(Diagnostic(Severity.ERROR, "json", message, source, excerpt))
 
     def position_of(self, offset: int) -> Source:
-        """Return the line and column of an offset, fastest for ascending offsets."""
+        """Return the line and column, from 1, of an offset in the text; fastest for ascending offsets."""
         if offset < self._counted:
             self._line, self._counted = 1, 0
         self._line += self._text.count("\n", self._counted, offset)
@@ -66,7 +67,7 @@ class JsonList:
         return Source(self._file, self._line, offset - self._text.rfind("\n", 0, offset))
 
     def _elements(self) -> Iterator[tuple[int, object]]:
-        """Yield each element of the list, or of the list in an object, with its position."""
+        """Yield each element of the list, or of the list in an object, with its offset in the text."""
         start = self._skip_blanks(0)
         if self._key is not None and self._text[start : start + 1] == "{":
             yield from self._elements_under_key(start + 1)
@@ -75,7 +76,10 @@ class JsonList:
         self._expect_end(end)
 
     def _elements_under_key(self, position: int) -> Iterator[tuple[int, object]]:
-        """Yield the elements of the list under the key; the values of other keys are kept aside."""
+        """Yield the elements of the list under the key; values of other keys go to ``others``.
+
+        ``position`` is the one after the opening bracket of the object.
+        """
         seen: set[str] = set()
         position = self._skip_blanks(position)
         while self._text[position : position + 1] != "}":
@@ -101,7 +105,7 @@ class JsonList:
         self._expect_end(position + 1)
 
     def _list_elements(self, position: int) -> Generator[tuple[int, object], None, int]:
-        """Yield the elements of the list that begins at a position, and return the position of its end."""
+        """Yield the elements of the list that begins at a position; return the position after the list."""
         position = self._expect("[", position, "a list, [ ... ]")
         first = True
         while self._text[position : position + 1] != "]":
@@ -122,12 +126,16 @@ class JsonList:
             raise
 
     def _expect(self, character: str, position: int, what: str = "") -> int:
+        """Return the position after a character and the blanks behind it.
+
+        Raises :class:`JsonFaultError` where another character stands; ``what`` describes the expected one.
+        """
         if self._text[position : position + 1] != character:
             raise self._unexpected(what or character, position)
         return self._skip_blanks(position + 1)
 
     def _expect_end(self, end: int) -> None:
-        """Raise :class:`JsonFaultError` where anything but blanks follows."""
+        """Raise :class:`JsonFaultError` where anything but blanks follows a position."""
         position = self._skip_blanks(end)
         if position != len(self._text):
             raise self._unexpected(
@@ -135,7 +143,10 @@ class JsonList:
             )
 
     def _unexpected(self, expected: str, position: int) -> "JsonFaultError":
-        """Return the error that something else was expected at a position."""
+        """Return the error that something else was expected at a position.
+
+        At the beginning of the text, it is the message of :func:`fault_before_json`, if there is one.
+        """
         if position == self._skip_blanks(0) and (message := fault_before_json(self._text)):
             return JsonFaultError(message, position)
         text = self._text[position:].split("\n", 1)[0].rstrip("\r")
@@ -144,6 +155,7 @@ class JsonList:
         return JsonFaultError(f"found {shown}, expected {expected}", position)
 
     def _skip_blanks(self, position: int) -> int:
+        """Return the position of the first character from ``position`` that is no blank."""
         match = _SPACE.match(self._text, position)
         return match.end() if match else position
 
@@ -156,7 +168,7 @@ class JsonNumber:
 
 
 class JsonFaultError(Exception):
-    """A fault of a well-formed JSON text, and its offset."""
+    """A fault of a JSON text that its decoder does not report, and its offset in the text."""
 
     def __init__(self, message: str, position: int) -> None:
         super().__init__(message)
@@ -164,11 +176,12 @@ class JsonFaultError(Exception):
 
 
 def _repeated_key(key: str, position: int) -> JsonFaultError:
+    """Return the error that an object has a key twice."""
     return JsonFaultError(f"found the key {key!r} twice in one object", position)
 
 
 def _object(pairs: list[tuple[str, object]]) -> dict[str, object]:
-    """Return an object of JSON; raises :class:`JsonFaultError` for a repeated key."""
+    """Return an object of JSON from its pairs; raises :class:`JsonFaultError` for a repeated key."""
     value = dict(pairs)
     if len(value) < len(pairs):
         keys = [key for key, _ in pairs]
@@ -182,14 +195,14 @@ DECODER: Final = json.JSONDecoder(
 
 
 def begins_json(text: str) -> bool:
-    """Whether a text is JSON; no line of FOON text begins with a bracket."""
+    """Whether a text begins with a bracket, as JSON does; no line of FOON text does."""
     return text[:1_000].lstrip(_BLANKS)[:1] in {"{", "["}
 
 
 def fault_before_json(text: str) -> str:
-    """Return an error message if other text stands before JSON, else an empty text.
+    """Return an error message if a text is JSON with other text before it; empty for any other text.
 
-    JSON is searched for in the first 2,000 letters.
+    JSON is searched for in the first 2,000 letters. A text that begins with a line of FOON is no JSON.
     """
     begins = text[:2_000].lstrip(_BLANKS)
     first = begins.split("\n", 1)[0].rstrip()
@@ -212,7 +225,7 @@ class JsonFault(NamedTuple):
 
 
 def json_fault(error: json.JSONDecodeError) -> JsonFault:
-    """Return the fault that the standard library found.
+    """Return the fault that the standard library found in a JSON text.
 
     A comma before the end of a list or an object is reported at the comma, since Python versions report
     different places.

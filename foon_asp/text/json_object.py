@@ -31,9 +31,10 @@ _STATE_KEYS = {*_STATE_LABEL, *_RELATED, "state_id"}
 
 
 class JsonObject(NamedTuple):
-    """An object node read from JSON: an object line, state lines, and the container named without a word.
+    """An object node read from JSON, as lines of FOON text.
 
-    ``remarks`` are repairs, and parts of the node that lines cannot hold.
+    ``container`` is an object that the node is in, on or at, by an unknown word; ``None`` without one.
+    ``remarks`` are messages on repairs, and on parts that lines cannot hold.
     """
 
     line: ObjectLine
@@ -43,11 +44,11 @@ class JsonObject(NamedTuple):
 
 
 def read_object(value: object, keys: set[str] = KEYS) -> JsonObject:
-    """Read a node from ``{"label", "states", "ingredients", "container"}`` or the names of the other form.
+    """Return the node of a JSON object, in either form; ``keys`` are the allowed keys.
 
     States are names, also ``in [bowl]``, or objects with ``state_label`` and ``relative_object``. Listed
-    ingredients are read under the word ``contains``; a state with this name may be missing. A missing, null
-    or empty value and ``"None"`` are no value. Raises :class:`ValueError` for a value of another form.
+    ingredients become contents with the word ``contains``; a state with this name may be missing. A missing,
+    null or empty value and ``"None"`` are no value. Raises :class:`ValueError` for a value of another form.
     """
     if not isinstance(value, dict):
         raise ValueError(f'found {excerpt_of(value)}, expected an object {{"label": ..., "states": [...]}}')
@@ -56,8 +57,8 @@ def read_object(value: object, keys: set[str] = KEYS) -> JsonObject:
     label = _checked_name(label_value, label_key).strip(" ")
     if not label:
         raise ValueError(f'found {excerpt_of(label_value)} as "{label_key}", expected a name')
-    states = [_state(state) for state in _list_under(value, *key_and_value(value, _STATES))]
-    listed = _list_under(value, "ingredients", value.get("ingredients"))
+    states = [_state(state) for state in _checked_list(*key_and_value(value, _STATES))]
+    listed = _checked_list("ingredients", value.get("ingredients"))
     ingredients = tuple(item for item in map(_ingredient_name, listed) if item)
     if ingredients:
         states = _add_contents(states, ingredients)
@@ -73,7 +74,7 @@ def read_object(value: object, keys: set[str] = KEYS) -> JsonObject:
 
 
 def read_json_objects(text: str, file: str, reading: Reading) -> Iterator[tuple[ObjectBlock, NodePattern]]:
-    """Yield the objects of a list with their patterns; diagnostics are added to ``reading``.
+    """Yield the objects of a JSON list with their patterns; diagnostics are added to ``reading``.
 
     A ``container`` is in the pattern of an object, and not among its states.
     """
@@ -86,10 +87,10 @@ def read_json_objects(text: str, file: str, reading: Reading) -> Iterator[tuple[
 
 
 def read_objects(elements: JsonList) -> Iterator[tuple[ObjectBlock, NodePattern, tuple[str, ...]]]:
-    """Yield the entries of a list with their patterns and remarks.
+    """Yield the entries of a list, each with its pattern and the messages on its repairs.
 
-    Faulty entries become errors of the list. An entry is a node as :func:`read_object` reads it, a node in
-    one-line notation, or a node of an answer in JSON.
+    An entry is a node as :func:`read_object` reads it, a node in one-line notation, or a node of an answer
+    in JSON. Faulty entries are left out, and become errors of the list.
     """
     for value, source in elements:
         try:
@@ -109,7 +110,10 @@ def read_objects(elements: JsonList) -> Iterator[tuple[ObjectBlock, NodePattern,
 
 
 def _node_of_notation_or_answer(value: object) -> ObjectNode | None:
-    """Return a node in one-line notation or as in an answer; ``None`` for another form."""
+    """Return a node in one-line notation or as in an answer; ``None`` for another form.
+
+    Raises :class:`ValueError` for a fault in the notation or the node.
+    """
     if isinstance(value, str):
         try:
             return parse_node(value)
@@ -129,13 +133,14 @@ def _node_of_notation_or_answer(value: object) -> ObjectNode | None:
 
 
 def _block_of_node(node: ObjectNode, source: Source) -> ObjectBlock:
+    """Return the object block of a node, with its state lines sorted and without ids."""
     states = [*map(StateLine, sorted(node.states)), *map(StateLine, sorted(node.relations))]
     states += [StateLine(contents, listed=contents.ingredients) for contents in node.contents]
     return ObjectBlock(ObjectLine(node.label), tuple(states), source)
 
 
 def check_keys(value: dict[str, object], allowed: set[str]) -> None:
-    """Raise :class:`ValueError` for a key that is not allowed."""
+    """Raise :class:`ValueError` if an object has a key that is not allowed."""
     if not value.keys() <= allowed:
         unknown = min(value.keys() - allowed)
         raise ValueError(f"found the key {unknown!r}, expected one of {', '.join(sorted(allowed))}")
@@ -153,7 +158,10 @@ def key_and_value(value: dict[str, object], keys: tuple[str, ...]) -> tuple[str,
 
 
 def optional_name(value: object, key: str) -> str | None:
-    """Return a name; ``None`` for null, an empty text and ``"None"`` in letters of any case."""
+    """Return the name under a key, without blanks around it; ``None`` for no value, see :func:`is_none`.
+
+    Raises :class:`ValueError`, which names ``key``, for a value that is no text.
+    """
     if value is None:
         return None
     name = _checked_name(value, key, "a name or null").strip(" ")
@@ -166,7 +174,10 @@ def is_none(name: str) -> bool:
 
 
 def digits_under(value: dict[str, object], key: str) -> str:
-    """Return the digits of a number, which may be written as text; empty if the key has no value."""
+    """Return the digits of the number under a key, which may be a text; empty if the key has no value.
+
+    Raises :class:`ValueError` for any other value.
+    """
     field = value.get(key)
     if field is None or (isinstance(field, str) and is_none(field)):
         return ""
@@ -177,7 +188,10 @@ def digits_under(value: dict[str, object], key: str) -> str:
 
 
 def amount_from_json(value: object) -> int:
-    """Read an amount from a number or a text of digits; raises :class:`ValueError` for another value."""
+    """Return an amount from a number or a text of digits.
+
+    Raises :class:`ValueError` for another value.
+    """
     written = value.text if isinstance(value, JsonNumber) else str(value)
     try:
         return parse_amount(written, 1)
@@ -186,15 +200,19 @@ def amount_from_json(value: object) -> int:
 
 
 def stated_amount(value: dict[str, object]) -> int | None:
-    """Return the amount of an object, ``None`` for none; raises :class:`ValueError` for a wrong one."""
+    """Return the value of the key ``amount`` of an object, ``None`` without it.
+
+    Raises :class:`ValueError` for a value that is no amount.
+    """
     stated = value.get("amount")
     return None if stated is None else amount_from_json(stated)
 
 
 def price_from_json(value: object, exponents: bool = False) -> str:
-    """Return the price of a unit, in JSON a number or a text; empty for a unit without a price.
+    """Return a price as a decimal text, from a number or a text of JSON; empty for null.
 
-    If the form has ``exponents``, a number may be written with one; the price is returned without it.
+    If the form has ``exponents``, a number may have one: ``1e2`` becomes ``100``. Raises :class:`ValueError`
+    for a value that is no price.
     """
     if value is None:
         return ""
@@ -216,7 +234,10 @@ def price_from_json(value: object, exponents: bool = False) -> str:
 
 
 def _state(value: object) -> StateLine:
-    """Return a state as a state line, from a name or an object of JSON."""
+    """Return the state line of a state in JSON: a name, also with brackets, or an object.
+
+    Raises :class:`ValueError` for another value.
+    """
     if isinstance(value, dict):
         check_keys(value, _STATE_KEYS)
         label_key, label_value = key_and_value(value, _STATE_LABEL)
@@ -239,7 +260,7 @@ def _state(value: object) -> StateLine:
 
 
 def _add_contents(states: list[StateLine], ingredients: tuple[str, ...]) -> list[StateLine]:
-    """Return states with the ingredients as contents, in place of the state ``contains`` or at the end."""
+    """Return the states with ``contains`` and the ingredients, in place of the state ``contains`` or last."""
     contents = Contents(LISTED_UNDER, tuple(sorted(ingredients)))
     for index, state in enumerate(states):
         if state.attribute == contents.word:
@@ -250,7 +271,10 @@ def _add_contents(states: list[StateLine], ingredients: tuple[str, ...]) -> list
 def _remarks_on_losses(
     value: dict[str, object], flag: str, category: str, ingredients: list[object]
 ) -> Iterator[str]:
-    """Yield remarks on parts of an object that lines cannot hold."""
+    """Yield messages on parts of an object that lines cannot hold, or that are unusual there.
+
+    ``flag``, ``category`` and ``ingredients`` are parts of the object ``value`` that have been read before.
+    """
     if flag not in {"", *MOTION_FLAGS}:
         yield f"the motion flag {flag!r} is not 0 or 1"
     if category and not flag:
@@ -263,14 +287,17 @@ def _remarks_on_losses(
 
 
 def _ingredient_name(value: object) -> str:
-    """Return the name of an ingredient; for a whole object, its label."""
+    """Return the name of an ingredient, without blanks around it; an object is named by its label."""
     if isinstance(value, dict):
         return read_object(value).line.label
     return _checked_name(value, "ingredients").strip(" ")
 
 
-def _list_under(value: dict[str, object], key: str, items: object) -> list[object]:
-    """Return the list under a key, empty for a missing one; raises :class:`ValueError` for another value."""
+def _checked_list(key: str, items: object) -> list[object]:
+    """Return a value that is a list; an empty list for ``None``, which stands for a missing key.
+
+    Raises :class:`ValueError`, which names ``key``, for another value.
+    """
     if items is None:
         return []
     if not isinstance(items, list):
@@ -279,17 +306,19 @@ def _list_under(value: dict[str, object], key: str, items: object) -> list[objec
 
 
 def _checked_name(value: object, key: str, expected: str = "a name") -> str:
+    """Return a value that is a text; raises :class:`ValueError`, which names ``key``, for any other value."""
     if not isinstance(value, str):
         raise ValueError(f'found {excerpt_of(value)} as "{key}", expected {expected}')
     return value
 
 
 def excerpt_of(value: object) -> str:
-    """Return a value as it is written, for a message; a long one is cut."""
+    """Return the first 40 letters of a value in JSON, for a message."""
     if isinstance(value, JsonNumber):
         return value.text[:40]
     return json_line(value, _plain_number)[:40]
 
 
 def _plain_number(value: JsonNumber) -> object:
+    """Return a number as Python has it, so that it is written as in the file; a long one as text."""
     return json.loads(value.text) if len(value.text) < 20 else value.text

@@ -1,8 +1,9 @@
 """FOON units in JSON, in the two published forms.
 
-The one is ``{"source": [...], "functional_units": [...]}`` with ``object_label``, ``object_states`` and ids;
-the other a bare list of units whose objects have ``label``, ``states``, ``ingredients`` and ``container``.
-Both are read into the lines of FOON text, so that all later stages are independent of the form.
+The first form is ``{"source": [...], "functional_units": [...]}`` with ``object_label``, ``object_states``
+and ids. The second is a bare list of units whose objects have ``label``, ``states``, ``ingredients`` and
+``container``. Both are read into the lines of FOON text, so that all later stages are independent of the
+form.
 """
 
 from collections.abc import Iterator
@@ -32,9 +33,10 @@ _MOTION_KEYS = {"motion_id", "motion_label", "start_time", "end_time", "robot_ty
 
 
 def read_json_units(text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
-    """Yield the units in order; diagnostics are added to ``reading``.
+    """Yield the units of a JSON text in order; diagnostics are added to ``reading``.
 
-    A ``container`` without a word is read as the relation ``in``.
+    A ``container`` without a word is read as the relation ``in``. Units without input objects are left out,
+    with a warning. A list of objects alone has no units, and causes a warning.
     """
     elements = JsonList(text, Path(file), "functional_units")
     listed = list(elements)
@@ -62,17 +64,21 @@ def read_json_units(text: str, file: str, reading: Reading) -> Iterator[ListedUn
 
 
 def _is_object(value: object) -> bool:
+    """Whether a value is a JSON object with the label of an object node, and with no key of a unit."""
     return isinstance(value, dict) and not value.keys() & _NEEDED and bool(value.keys() & _LABELS)
 
 
 def _videos(value: object) -> tuple[str, ...]:
-    """Return the addresses of the annotated videos from one address or a list."""
+    """Return the addresses of the annotated videos from one address or a list; other values are skipped."""
     values = value if isinstance(value, list) else [value]
     return tuple(" ".join(video.split()) for video in values if isinstance(video, str) and video.strip())
 
 
 def _unit(element: JsonElement, videos: tuple[str, ...]) -> tuple[ListedUnit, list[str]]:
-    """Read a unit, with remarks on what was left out or assumed."""
+    """Return the unit of an element, and messages on what was left out or assumed, each once.
+
+    Raises :class:`ValueError` for an element of another form.
+    """
     value, source = element
     if not isinstance(value, dict) or not value.keys() >= _NEEDED:
         raise ValueError(f"found no functional unit, expected an object with {', '.join(sorted(_NEEDED))}")
@@ -86,7 +92,11 @@ def _unit(element: JsonElement, videos: tuple[str, ...]) -> tuple[ListedUnit, li
 
 
 def _blocks(unit: dict[str, object], key: str, source: Source, remarks: list[str]) -> tuple[ObjectBlock, ...]:
-    """Return the object blocks of one side of a unit."""
+    """Return the object blocks of a side of a unit, which is the list under ``key``.
+
+    Messages on what was left out or assumed are added to ``remarks``. Raises :class:`ValueError` for objects
+    of another form.
+    """
     objects = unit[key]
     if not isinstance(objects, list):
         raise ValueError(f'found no list as "{key}", expected a list of objects')
@@ -101,11 +111,16 @@ def _blocks(unit: dict[str, object], key: str, source: Source, remarks: list[str
 
 
 def _relates_to(state: StateLine, container: str) -> bool:
+    """Whether a state line is a relation to an object, by any word."""
     return isinstance(state.attribute, Relation) and state.attribute.object == container
 
 
 def _motion_line(value: object, remarks: list[str]) -> MotionLine:
-    """Return the motion line of a unit, with the fields that its JSON has."""
+    """Return the motion line of a unit, with the times, entity and success rate that its JSON has.
+
+    ``value`` is the JSON object of the motion, or its label alone. Messages on what was left out or assumed
+    are added to ``remarks``. Raises :class:`ValueError` for a motion without a label, and for other faults.
+    """
     if not isinstance(value, dict):
         value = {"motion_label": value}
     check_keys(value, _MOTION_KEYS)

@@ -1,4 +1,4 @@
-"""Writing units and objects in JSON, in the two published forms.
+"""Writing of units and objects in JSON, in the two published forms.
 
 The texts are laid out like the published files, and read by :mod:`foon_asp.text.json_units`.
 """
@@ -26,7 +26,10 @@ _JSON_NUMBER = re.compile(r"(0|[1-9][0-9]*)(\.[0-9]+)?")
 
 
 class JsonWriter:
-    """A writer of one of the JSON forms, which reads each part back to find changed meanings and losses."""
+    """A writer of one of the JSON forms, which reads each part back to find changed meanings and losses.
+
+    See :class:`~foon_asp.text.format.Writer` for its methods.
+    """
 
     holds_prices = True
     holds_no_inputs = False
@@ -36,7 +39,11 @@ class JsonWriter:
         self._level = 1 if self._is_list else 2  # at which a unit stands
 
     def block(self, block: ObjectBlock, in_list: bool) -> WrittenPart:
-        """Write an object."""
+        """Return the JSON of an object, laid out for its place, and its losses.
+
+        An amount is written in a list, and above 1 in a unit. Raises :class:`CannotHoldError` where the text
+        would be read as another object.
+        """
         line, states = block.object, block.states
         text = (object_without_ids if self._is_list else object_with_ids)(line, states)
         if block.amount is not None and (in_list or block.amount > 1):
@@ -46,38 +53,54 @@ class JsonWriter:
         return lay_out(text, 1 if in_list else self._level + 2), losses
 
     def motion(self, line: MotionLine) -> WrittenPart:
-        """Write a motion."""
+        """Return the JSON of a motion, laid out for its place in a unit, and its losses.
+
+        Raises :class:`CannotHoldError` where the text would be read as another motion.
+        """
         text = (motion_without_ids if self._is_list else motion_with_ids)(line)
         back = _read_back_unit('{"label":"x"}', text).motion
         return lay_out(text, self._level + 1), lost_in_line(line, back)
 
     def unit(self, inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str) -> str:
-        """Put a unit together."""
+        """Return the JSON of a unit from that of its parts; ``price`` is empty for a unit without one."""
         return unit_text(inputs, motion, outputs, price, self._level)
 
     def network(self, units: Sequence[str], videos: Sequence[str]) -> str:
-        """Put a file together."""
+        """Return the JSON of a file from that of its units.
+
+        The form ``json-list`` leaves out ``videos``, for which it has no key.
+        """
         return self.objects(units) if self._is_list else network_text(videos, units)
 
     def objects(self, parts: Sequence[str]) -> str:
-        """Put a list together."""
+        """Return the JSON of a list from that of its values, with a line end."""
         return list_text(parts, 0) + "\n"
 
     def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
-        """Return ``videos`` if the form has a key for videos and the file has no other videos, else none."""
+        """Return ``videos`` if the file can name them as its own, else none.
+
+        The form has to have a key for videos, and the comments have to name these videos and no copies of
+        units.
+        """
         named = tuple(video for video in map(read_video, comments) if video)
         return videos if not self._is_list and named == videos and not any(map(read_copy, comments)) else ()
 
 
 def with_container(block: ObjectBlock, pattern: NodePattern) -> ObjectBlock:
-    """Return a listed object with its container as a relation without a word, which comes last."""
+    """Return a listed object with its container as a relation without a word, the last of its states.
+
+    An object whose pattern has no container is returned as it is.
+    """
     if pattern.container is None:
         return block
     return block._replace(states=(*block.states, StateLine(Relation("", pattern.container))))
 
 
 def _read_back_object(text: str) -> ObjectBlock:
-    """Read back an object from the JSON of a list; raises :class:`CannotHoldError` for an error."""
+    """Return the object that the JSON of an object in a list is read as.
+
+    Raises :class:`CannotHoldError` if it is read with an error.
+    """
     reading = Reading()
     blocks = [with_container(*entry) for entry in read_json_objects(f"[{text}]", "", reading)]
     _raise_first_error(reading)
@@ -85,7 +108,10 @@ def _read_back_object(text: str) -> ObjectBlock:
 
 
 def _read_back_unit(node: str, motion: str) -> ListedUnit:
-    """Return a unit of one node and one motion, read back from JSON."""
+    """Return the unit that the JSON of a node and of a motion is read as; the node is input and output.
+
+    Raises :class:`CannotHoldError` if it is read with an error.
+    """
     text = f'[{{"input_nodes":[{node}],"motion_node":{motion},"output_nodes":[{node}]}}]'
     reading = Reading()
     units = list(read_json_units(text, "", reading))
@@ -101,10 +127,10 @@ def _raise_first_error(reading: Reading) -> None:
 
 
 def object_with_ids(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
-    """Write an object with its ids and flag, every state line as a state.
+    """Return the JSON of an object in the form ``json``: with ids, flag, and each state line as a state.
 
     A relation without a word becomes the ``container``. The first contents with the word ``contains`` become
-    the ingredients; other contents become a state such as ``coated {salt}``.
+    the ingredients. Other contents become a state such as ``coated {salt}``.
     """
     ingredients: tuple[str, ...] = ()
     container = None
@@ -139,7 +165,10 @@ def object_with_ids(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
 
 
 def motion_with_ids(line: MotionLine) -> str:
-    """Write a motion with its id, its times, who moves and the success rate."""
+    """Return the JSON of a motion in the form ``json``: with id, times, moving entity and success rate.
+
+    Of two times, one or none, the missing ones are null.
+    """
     times, entity, rate = MotionFields.of(line.fields)
     begin, end, *_ = (*in_two_fields(times), None, None)
     return _compact_json(
@@ -155,7 +184,10 @@ def motion_with_ids(line: MotionLine) -> str:
 
 
 def object_without_ids(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
-    """Write an object with label, states, ingredients and one container, preferably the one of ``in``."""
+    """Return the JSON of an object in the form ``json-list``: label, states, ingredients and one container.
+
+    The container is the object of the first relation ``in``, or else of the first relation.
+    """
     attributes = [state.attribute for state in states]
     relations = sorted(
         (attribute for attribute in attributes if isinstance(attribute, Relation)),
@@ -172,15 +204,15 @@ def object_without_ids(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
 
 
 def motion_without_ids(line: MotionLine) -> str:
-    """Write a motion as its name alone."""
+    """Return the JSON of a motion in the form ``json-list``: its name alone."""
     return _compact_json(line.motion)
 
 
 def unit_text(inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str, level: int) -> str:
-    """Return the text of a unit at a level from the texts of its parts.
+    """Return the JSON of a unit, laid out for nesting ``level``, from that of its parts.
 
-    The text of its motion is laid out one level deeper, the texts of its objects two levels. ``price`` is
-    empty for a unit without a price.
+    The motion is laid out one level deeper, the objects two levels. ``price`` is empty for a unit without
+    one.
     """
     key = "\n" + STEP * (level + 1)
     lists = (list_text(objects, level + 1) for objects in (inputs, outputs))
@@ -191,13 +223,13 @@ def unit_text(inputs: Sequence[str], motion: str, outputs: Sequence[str], price:
 
 
 def network_text(videos: Sequence[str], units: Sequence[str]) -> str:
-    """Return the text of a whole file from the texts of its units, laid out for level 2."""
+    """Return the JSON of a file in the form ``json``; its ``units`` are JSON laid out for level 2."""
     source = f'    "source": {list_text(list(map(_compact_json, videos)), 1)},\n' if videos else ""
     return f'{{\n{source}    "functional_units": {list_text(units, 1)}\n}}\n'
 
 
 def list_text(values: Sequence[str], level: int) -> str:
-    """Return the text of a list from the texts of its values, laid out one level deeper."""
+    """Return the JSON of a list at nesting ``level`` from that of its values, laid out one level deeper."""
     if not values:
         return "[]"
     start = "\n" + STEP * (level + 1)
@@ -205,13 +237,14 @@ def list_text(values: Sequence[str], level: int) -> str:
 
 
 def _json_number(digits: str) -> object:
+    """Return digits as a number of JSON, or as a text where JSON has no such number; ``None`` for none."""
     if not digits:
         return None
     return JsonNumber(digits) if _JSON_NUMBER.fullmatch(digits) else digits
 
 
 def _compact_json(value: object) -> str:
-    """Return plain values as a JSON text of published layout."""
+    """Return plain values and numbers of ``JsonNumber`` as JSON without blanks."""
     if isinstance(value, JsonNumber):
         return value.text
     if isinstance(value, dict):

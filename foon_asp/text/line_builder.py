@@ -1,4 +1,4 @@
-"""Parsing of lines of FOON text and of node notation with the Lark grammar ``foon.lark``."""
+"""Parsing of lines of FOON text and of one-line notation with the Lark grammar ``foon.lark``."""
 
 import re
 from functools import cache
@@ -43,10 +43,13 @@ _TERMINALS = {
 
 
 class _LineBuilder(Transformer[Token, object]):
-    """A transformer of parse trees into lines and nodes; columns in remarks come from the tokens."""
+    """A transformer of parse trees into lines and nodes, with a method for each rule of the grammar.
+
+    Remarks on slips get their columns from the tokens.
+    """
 
     def object(self, tokens: list[Token]) -> ObjectLine:
-        """Return an object line."""
+        """Return the object line of its tokens: a letter with id, a label, and fields."""
         remarks: list[Remark] = []
         id_ = _id_after_letter(tokens[0], remarks)
         label = _without_end_spaces(tokens[1], remarks)
@@ -56,7 +59,10 @@ class _LineBuilder(Transformer[Token, object]):
         return ObjectLine(label, id_, fields, tuple(remarks))
 
     def motion(self, tokens: list[Token]) -> MotionLine:
-        """Return a motion line."""
+        """Return the motion line of its tokens: a letter with id, a motion, and fields.
+
+        Times with an obvious slip are mended. Other faults in times are remarked on.
+        """
         remarks: list[Remark] = []
         id_ = _id_after_letter(tokens[0], remarks)
         motion = _without_end_spaces(tokens[1], remarks)
@@ -80,7 +86,11 @@ class _LineBuilder(Transformer[Token, object]):
         return MotionLine(motion, id_, composite, mended + fields[len(times) :], tuple(remarks))
 
     def plain(self, tokens: list[Token]) -> StateLine:
-        """Return the line of a state, or of a relation or contents whose brackets are missing."""
+        """Return the line of a name alone, a state, or of a name and text without brackets.
+
+        Such a text is read as contents if it has a comma or follows ``contains``, else as the object of a
+        relation.
+        """
         remarks: list[Remark] = []
         id_ = _id_after_letter(tokens[0], remarks)
         _drop_end_blanks(tokens, remarks)
@@ -101,7 +111,7 @@ class _LineBuilder(Transformer[Token, object]):
         return _bracketed_line(word, Token("BARE", shown, column=column - 1), id_, remarks)
 
     def related(self, tokens: list[Token]) -> StateLine:
-        """Return the line of a relation or of contents."""
+        """Return the line of a relation or of contents, with brackets."""
         remarks: list[Remark] = []
         id_ = _id_after_letter(tokens[0], remarks)
         _drop_end_blanks(tokens, remarks)
@@ -110,7 +120,7 @@ class _LineBuilder(Transformer[Token, object]):
     holding = related
 
     def node(self, parts: list[Token | str | Relation | Contents]) -> ObjectNode:
-        """Return an object node in one-line notation."""
+        """Return the object node of one-line notation."""
         label, *notes = (token for token in parts if not isinstance(token, Token) or token.type == "NAME")
         return ObjectNode(
             unquoted(str(label)),
@@ -120,9 +130,11 @@ class _LineBuilder(Transformer[Token, object]):
         )
 
     def note_plain(self, tokens: list[Token]) -> str:
+        """Return a state of one-line notation."""
         return unquoted(tokens[0])
 
     def note_related(self, tokens: list[Token]) -> str | Relation | Contents:
+        """Return a relation or contents of one-line notation; with empty ``[]``, the word is a state."""
         word, bracket = tokens
         return _bracketed_part(unquoted(word), bracket.strip("\t "))
 
@@ -130,7 +142,10 @@ class _LineBuilder(Transformer[Token, object]):
 
 
 def _bracketed_part(word: str, bracket: str) -> str | Relation | Contents:
-    """Return the relation, contents or state of a bracket; quoted names are taken literally."""
+    """Return the relation, contents or state of a word and a bracket in one-line notation.
+
+    Names in quotes are taken literally. Without such names, the bracket is read as on a state line.
+    """
     written = [item.strip(" ") for item in _ITEM.findall(bracket[1:-1])]
     if not any(item.startswith('"') for item in written):
         return _bracketed_line(word, Token("PLACE", bracket), "", []).attribute
@@ -140,11 +155,12 @@ def _bracketed_part(word: str, bracket: str) -> str | Relation | Contents:
 
 
 def _remark(token: Token, code: str, message: str, offset: int = 0) -> Remark:
+    """Return a remark on the column ``offset`` letters behind the begin of a token."""
     return Remark((token.column or 1) + offset, code, message)
 
 
 def _id_after_letter(letter: Token, remarks: list[Remark]) -> str:
-    """Return the id behind the letter of a line, with a remark unless exactly one tab follows."""
+    """Return the id behind the letter of a line; adds a remark unless exactly one tab follows."""
     if letter[-1] == "\t" and letter[-2] not in "\t ":
         return letter[1:-1]
     id_ = letter[1:].rstrip("\t ")
@@ -159,7 +175,7 @@ def _id_after_letter(letter: Token, remarks: list[Remark]) -> str:
 
 
 def _nonempty_fields(tokens: list[Token], remarks: list[Remark]) -> tuple[str, ...]:
-    """Return the fields after a name, stripped of blanks, without empty fields."""
+    """Return fields without blanks around them, and without empty ones; adds a remark on each slip."""
     fields: list[str] = []
     for token in tokens:
         field = token[1:].strip(" ")
@@ -175,7 +191,10 @@ def _nonempty_fields(tokens: list[Token], remarks: list[Remark]) -> tuple[str, .
 def _checked_flag_and_tag(
     tokens: list[Token], fields: tuple[str, ...], remarks: list[Remark]
 ) -> tuple[str, ...]:
-    """Return the fields after a label, checked: a motion flag, then the category or ``!`` of a goal."""
+    """Return the fields after a label: a motion flag, then the category or the ``!`` of a goal.
+
+    The slips ``00`` and ``01`` of a flag are mended. Adds a remark for each field that is none of these.
+    """
     field_tokens = [token for token in tokens[2:] if token.strip("\t ")]
     flag = fields[0]
     if flag in SLIPPED_FLAGS:
@@ -193,13 +212,13 @@ def _checked_flag_and_tag(
 
 
 def _drop_end_blanks(tokens: list[Token], remarks: list[Remark]) -> None:
-    """Drop the blanks at the end of a state line."""
+    """Remove the token of blanks at the end of a state line, if there is one, and add a remark."""
     if tokens[-1].type == "BLANK":
         remarks.append(_remark(tokens.pop(), "outer-space", "blanks at the end of the line left out"))
 
 
 def _word_and_bracket(tokens: list[Token], remarks: list[Remark]) -> tuple[str, Token]:
-    """Return a word and the bracket after it, with a remark if there is no tab between them."""
+    """Return the word and the bracket of a state line; adds a remark unless exactly one tab parts them."""
     _, word, bracket = tokens
     column = bracket.column or 1
     if bracket[0] == "\t" and bracket[1] in "[{":
@@ -215,7 +234,7 @@ def _word_and_bracket(tokens: list[Token], remarks: list[Remark]) -> tuple[str, 
 
 
 def _without_end_spaces(token: Token, remarks: list[Remark]) -> str:
-    """Return a name without the spaces after it, which are remarked on."""
+    """Return a name without the spaces after it, on which it adds a remark."""
     name = token.rstrip(" ")
     if name != token:
         remarks.append(_remark(token, "outer-space", f"spaces after {name!r} left out", len(name)))
@@ -227,8 +246,8 @@ def _bracketed_line(name: str, bracket: Token, id_: str, remarks: list[Remark]) 
     """Return the state line of ``word [object]`` or ``word {list}``.
 
     A list in ``[]``, and anything in ``[]`` after the word ``contains``, is read as if it were in ``{}``.
-
-    With empty ``[]``, the word alone is a state, such as ``on``.
+    With empty ``[]``, the word alone is a state, such as ``on``. A bracket that is not closed, or by the
+    wrong one, is closed. Adds a remark for each slip.
     """
     closing = "]" if bracket[0] == "[" else "}"
     if bracket[-1] != closing or len(bracket) == 1:
@@ -248,7 +267,10 @@ def _bracketed_line(name: str, bracket: Token, id_: str, remarks: list[Remark]) 
 
 
 def _relation_line(name: str, bracket: Token, id_: str, remarks: list[Remark]) -> StateLine:
-    """Return the line of a relation; with empty brackets, that of a state."""
+    """Return the line of a relation; with empty brackets, the word is a state.
+
+    Adds a remark for each slip.
+    """
     related = bracket[1:-1].strip(" ")
     if not related:
         remarks.append(
@@ -262,14 +284,15 @@ def _relation_line(name: str, bracket: Token, id_: str, remarks: list[Remark]) -
 
 @cache
 def _parser() -> Lark:
+    """Return the parser of ``foon.lark``, which is built on the first call."""
     grammar = _GRAMMAR.read_text(encoding="utf-8")
     return Lark(grammar, start=["line", "node"], parser="lalr", transformer=_LineBuilder())
 
 
 def parse_by_grammar(start: str, text: str) -> object:
-    """Return the parsed line of a text with its line end, or the node of a one-line notation.
+    """Return the parsed line of a text for ``start="line"``, or the node of a notation for ``start="node"``.
 
-    Raises :class:`LineError` for a text that the grammar does not accept, taken as one line.
+    A line has its line end. Raises :class:`LineError` for a text that the grammar does not accept.
     """
     try:
         return _parser().parse(text, start=start)
@@ -279,7 +302,10 @@ def parse_by_grammar(start: str, text: str) -> object:
 
 
 def _line_error(error: UnexpectedInput, text: str, in_file: bool) -> LineError:
-    """Return the error of Lark in words: what was found at which column, and what is expected."""
+    """Return an error of Lark in words: what was found at which column, and what is expected.
+
+    ``in_file`` is true for a line of a file, false for one-line notation.
+    """
     column = len(text) + 1
     names: set[str] = set()
     if isinstance(error, UnexpectedCharacters):
@@ -307,7 +333,7 @@ def _line_error(error: UnexpectedInput, text: str, in_file: bool) -> LineError:
 
 
 def _advice(line: str) -> str:
-    """Return advice on a line without a letter at its beginning; empty if no advice can be guessed."""
+    """Return advice on a line that does not begin with the letter of a line; empty if none can be guessed."""
     if not line.replace("\t", " ").isprintable():
         return ""
     if line.startswith(FENCE):

@@ -12,7 +12,7 @@ from foon_asp.text.writer import write_motion, write_node
 
 
 def merged_text(network: Network, comment: str, amounts: Amounts = MappingProxyType({})) -> Iterator[str]:
-    """Yield the text piece by piece: a comment, then the units in order of first reading, in plain form.
+    """Yield a network as plain FOON text in pieces: a comment, then the units in order of first reading.
 
     Above each unit stands a line ``# From:`` for every copy of the unit, with file, line and videos. A copy
     that was read twice, from a file and from a merge of that file, is listed once. The text is read back as
@@ -42,7 +42,10 @@ def merged_text(network: Network, comment: str, amounts: Amounts = MappingProxyT
 
 
 def _checked_copy_comment(source: Source) -> str:
-    """Return the comment of a source; raises :class:`UserError` if it is not read back as the same source."""
+    """Return the line ``# From:`` of a source.
+
+    Raises :class:`UserError` if the line would not be read back as the same source.
+    """
     written = write_copy(source)
     if (
         "\n" in written[:-1]

@@ -1,8 +1,8 @@
 """Networks in the neutral form: a unit on each line, as JSON with plain names.
 
-``{"id": "drive a b", "inputs": ["at a"], "outputs": ["at b"], "price": 3}``: the id is the motion, and a name
-is the label of an object node without states, and is never read as notation. A side may also be an object of
-amounts by name, ``{"plank": 2}``; a name that is listed twice is meant twice.
+An example is ``{"id": "drive a b", "inputs": ["at a"], "outputs": ["at b"], "price": 3}``. The id is the
+motion. A name is the label of an object node without states, and is never read as notation. A side may also
+be an object of amounts by name, ``{"plank": 2}``. A name that is listed twice means two copies.
 """
 
 import json
@@ -32,13 +32,13 @@ _KEYS = {*_NEEDED, "price"}
 
 
 class NeutralLines(FoonJson):
-    """Neutral units, read line by line."""
+    """The neutral form, of which each line is read on its own."""
 
     dialects = (Dialect.NEUTRAL,)
     suffix = NEUTRAL_SUFFIXES[0]
 
     def recognises(self, text: str, file: str) -> bool:
-        """Whether a file has the suffix of neutral files, or its first line is a neutral unit."""
+        """Whether the file has a suffix of neutral files, or the first line of the text is a neutral unit."""
         if file.endswith(NEUTRAL_SUFFIXES):
             return True
         start = len(text[:1_000]) - len(text[:1_000].lstrip("\ufeff \t\r\n"))
@@ -52,23 +52,23 @@ class NeutralLines(FoonJson):
         return isinstance(unit, dict) and unit.keys() >= {"inputs", "outputs"} and "schema" not in unit
 
     def dialect(self, text: str) -> Dialect:
-        """Return the neutral form."""
+        """Return ``NEUTRAL``, the only dialect."""
         return Dialect.NEUTRAL
 
     def lists_objects(self, text: str) -> bool:
-        """Return false: neutral files have units only."""
+        """Return false, since neutral files have units only."""
         return False
 
     def file_units(self, file: Path, reading: Reading) -> Iterator[ReadUnit]:
-        """Yield the units of a file in order, a line at a time."""
+        """Yield the units of a file in order, read line by line; prices are recorded in ``reading``."""
         return _record_prices(_units_and_prices(_read_lines(file), str(file), reading), reading)
 
     def units(self, text: str, file: str, reading: Reading) -> Iterator[ReadUnit]:
-        """Yield the units of a text in order."""
+        """Yield the units of a text in order; prices are recorded in ``reading``."""
         return _record_prices(_units_and_prices(split_lines(text), file, reading), reading)
 
     def listed_units(self, text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
-        """Yield the units of a text in order, with the lines that they would have."""
+        """Yield the units of a text in order, with the lines that they would have in FOON text."""
         for unit, price in _units_and_prices(split_lines(text), file, reading):
             inputs, outputs = (
                 tuple(
@@ -80,7 +80,10 @@ class NeutralLines(FoonJson):
             yield ListedUnit(MotionLine(unit.motion), inputs, outputs, unit.sources, unit.source, price)
 
     def canonical_text(self, text: str, file: str, lenient: bool = False) -> str:
-        """Return each line laid out anew; if ``lenient``, lines that cannot be understood stay unchanged."""
+        """Return each line laid out anew, without the blanks that are not needed.
+
+        Raises :class:`InputError` for lines that cannot be understood; if ``lenient``, they stay unchanged.
+        """
         lines = split_lines(text.removeprefix("\ufeff"))
         reading = Reading(lenient)
         understood = {unit.source.line for unit, _ in _units_and_prices(lines, file, reading)}
@@ -91,18 +94,18 @@ class NeutralLines(FoonJson):
         return usual_line_end(text).join(new)
 
     def mentions(self, text: str, file: str) -> Iterator[Mention]:
-        """Yield every mention of a name."""
+        """Yield every mention of a name; faulty lines are not noticed."""
         return json_mentions(text)
 
     def writer(self, target: Dialect, numbering: "Numbering") -> Writer:
-        """Return a writer of networks, and of lists of their names."""
+        """Return a writer of networks, and of lists of their names; ``numbering`` is not used."""
         from foon_asp.text.neutral_writer import NeutralWriter  # noqa: PLC0415 (only for conversions)
 
         return NeutralWriter()
 
 
 def _record_prices(units: Iterable[tuple[ReadUnit, str]], reading: Reading) -> Iterator[ReadUnit]:
-    """Yield the units, and record their prices in ``reading``; the cheapest copy of a unit counts."""
+    """Yield the units, and record their prices in ``reading``, where the cheapest copy of a unit counts."""
     exact = cache(read_price)
     for unit, price in units:
         if price:
@@ -112,7 +115,7 @@ def _record_prices(units: Iterable[tuple[ReadUnit, str]], reading: Reading) -> I
 
 
 def _read_lines(file: Path) -> Iterator[str]:
-    """Yield the lines of a file, read lazily.
+    """Yield the lines of a file with their line ends, as they are read; progress is reported.
 
     Raises :class:`InputError` with line and column of the first byte that is not UTF-8.
     """
@@ -132,7 +135,10 @@ def _read_lines(file: Path) -> Iterator[str]:
 
 
 def _units_and_prices(lines: Iterable[str], file: str, reading: Reading) -> Iterator[tuple[ReadUnit, str]]:
-    """Yield the units in order with their prices, exact decimals as text, empty for none."""
+    """Yield the units in order, each with its price as an exact decimal text, empty for none.
+
+    Faulty lines are recorded in ``reading`` and left out. Blank lines are skipped.
+    """
     nodes: dict[str, ObjectNode] = {}
     for number, line in enumerate(lines, 1):
         line = line.rstrip("\r\n")  # noqa: PLW2901 (a fault at the end is on this line)
@@ -149,15 +155,18 @@ def _units_and_prices(lines: Iterable[str], file: str, reading: Reading) -> Iter
 
 
 class _NeutralFaultError(Exception):
+    """A fault of a neutral line, and its column, from 1."""
+
     def __init__(self, message: str, column: int) -> None:
         super().__init__(message)
         self.column = column
 
 
 def _unit_and_price(line: str, source: Source, nodes: dict[str, ObjectNode]) -> tuple[ReadUnit, str]:
-    """Return the unit of a line, and its price as written, which may be empty.
+    """Return the unit of a line, and its price as an exact decimal text, empty for none.
 
-    ``nodes`` has the nodes read before, by name; new nodes are added.
+    ``nodes`` has the nodes read before, by name; new nodes are added. Raises :class:`_NeutralFaultError` for
+    a line of another form.
     """
     try:
         value = DECODER.decode(line)
@@ -190,16 +199,20 @@ def _unit_and_price(line: str, source: Source, nodes: dict[str, ObjectNode]) -> 
 
 @lru_cache(10_000)
 def _price_of_number(written: str) -> str:
+    """Return the price that a JSON number states, as a decimal without exponent.
+
+    Raises :class:`ValueError` for a number that is no price. Results are cached.
+    """
     return price_from_json(JsonNumber(written), exponents=True)
 
 
 def _nodes_and_amounts(
     value: object, key: str, nodes: dict[str, ObjectNode]
 ) -> tuple[list[ObjectNode], dict[ObjectNode, int]]:
-    """Read one side of a unit: a list of names, or an object of amounts by name.
+    """Return the nodes of a side of a unit, each once, and the amounts above 1.
 
-    Returns the nodes, each once, and the amounts above 1. ``nodes`` has the nodes read before, by name; new
-    nodes are added.
+    The side is a list of names, or an object of amounts by name. ``nodes`` has the nodes read before, by
+    name; new nodes are added. Raises :class:`ValueError`, which names ``key``, for a side of another form.
     """
     if not isinstance(value, list | dict):
         raise ValueError(
@@ -215,6 +228,10 @@ def _nodes_and_amounts(
 
 
 def _checked_name(value: object, key: str) -> str:
+    """Return a value that is a name without blanks around it.
+
+    Raises :class:`ValueError`, which names ``key``, for any other value.
+    """
     if not isinstance(value, str) or not value or value != value.strip(" "):
         raise ValueError(f'found {excerpt_of(value)} in "{key}", expected a name, without blanks around it')
     return value

@@ -17,10 +17,10 @@ _IN_QUOTES = re.compile(r' *"(?:\\(?:["\\/bfnrt]|u[0-9a-fA-F]{4})|[^"\\])*("?)')
 
 
 class Wording(NamedTuple):
-    """The noun for the node in messages, and the option that precedes each candidate to paste."""
+    """The words for a node in messages: a noun, and the option that precedes each candidate to paste."""
 
-    thing: str
-    before: str
+    noun: str
+    option: str
 
 
 _GOAL = Wording("goal", "--goal")
@@ -29,14 +29,14 @@ _GOAL = Wording("goal", "--goal")
 class GoalError(UserError):
     """A name that means no object node, or several.
 
-    ``message`` is without candidates, ``candidates`` are those shown, in one-line notation, and ``hidden``
-    counts the others. The text of the error has the candidates ready to paste, behind the option ``before``.
+    ``message`` is without candidates. ``candidates`` are those shown, in one-line notation, and ``hidden``
+    counts the others. The text of the error has the candidates ready to paste, behind ``option``.
     """
 
     def __init__(
-        self, message: str, candidates: Sequence[str] = (), hidden: int = 0, before: str = _GOAL.before
+        self, message: str, candidates: Sequence[str] = (), hidden: int = 0, option: str = _GOAL.option
     ) -> None:
-        lines = [message, *(f"  {before} {shlex.quote(candidate)}" for candidate in candidates)]
+        lines = [message, *(f"  {option} {shlex.quote(candidate)}" for candidate in candidates)]
         if hidden:
             lines.append(f"  ... and {hidden} more")
         super().__init__("\n".join(lines))
@@ -44,23 +44,23 @@ class GoalError(UserError):
 
 
 class NodeNames(Protocol):
-    """The names of nodes: a :class:`~foon_asp.network.Network`, or a store."""
+    """A network whose nodes are looked up by name: a :class:`~foon_asp.network.Network`, or a store."""
 
     @property
     def level(self) -> int:
         """The level of FOON, from 1 to 3."""
 
     def object_id(self, node: ObjectNode) -> int | None:
-        """Return the id of a node, or ``None`` if it does not exist."""
+        """Return the id of a node, ``None`` if it does not exist."""
 
     def node(self, object_id: int) -> ObjectNode:
         """Return the node with an id."""
 
     def find(self, pattern: NodePattern) -> Sequence[int]:
-        """Return the ids of the nodes that match a kitchen or goals entry."""
+        """Return the ids of the nodes that match an entry of a kitchen or goals file."""
 
     def labelled(self, label: str) -> tuple[int, Sequence[int]]:
-        """Return the number of nodes with a label, and the ids of at least the first twelve."""
+        """Return how many nodes have a label, and the ids of these or at least of the first twelve."""
 
     def beginning(self, start: str, max_labels: int) -> Sequence[str]:
         """Return labels that begin with ``start``, in alphabetical order, at most ``max_labels``."""
@@ -77,14 +77,14 @@ def find_goal(
 ) -> int:
     """Return the id of the object node that a goal names.
 
-    A name is tried in this order: the one-line notation of a node (``sweet potato; chopped;
-    in [cutting board]``), as ``str(node)`` returns it; the label of an entry of the goals file ``listed``;
-    the label of a single node.
+    A name is tried in this order: the one-line notation of a node (``sweet potato; chopped; in [cutting
+    board]``), as ``str(node)`` returns it; the label of an entry of the goals file ``listed``; the label of
+    a single node.
 
-    A text that is no notation, or the notation of no node, is also tried literally as a label. A label with a
-    semicolon after it (``onion;``) is only tried as notation: it is the node without states. Raises
+    A text that is no notation, or the notation of no node, is also tried literally as a label. A label with
+    a semicolon after it (``onion;``) is only tried as notation: it is the node without states. Raises
     :class:`GoalError` with candidates ready to paste if the name is unknown or means several nodes.
-    ``wording`` has the noun for messages, by default that of a goal.
+    ``wording`` has the words for a goal in messages.
     """
     named: str | ObjectNode = name
     fault = None
@@ -108,7 +108,7 @@ def find_goal(
         return _only_node(name, names, count, labelled, wording)
     if fault is not None:
         raise GoalError(
-            f"the {wording.thing} {name!r} cannot be read: at column {fault.column}, {fault}; "
+            f"the {wording.noun} {name!r} cannot be read: at column {fault.column}, {fault}; "
             f"a name with such letters in it is in quotes: {in_quotes(as_written.label)}"
         )
     count, labelled = names.labelled(node.label)
@@ -119,9 +119,9 @@ def find_goal(
 
 
 def nodes_beginning(start: str, names: NodeNames, max_nodes: int) -> list[int]:
-    """Return the ids of nodes whose one-line notation, or whose label, begins with ``start``, by label.
+    """Return the ids of nodes whose one-line notation or label begins with ``start``, in order of labels.
 
-    At most ``max_nodes`` are returned. The text before the first semicolon is a whole label; without a
+    At most ``max_nodes`` are returned. The text before the first semicolon is a whole label. Without a
     semicolon, ``start`` is the beginning of a label. The label may be in quotes.
     """
     label, semicolon, _ = start.partition(";")
@@ -140,7 +140,7 @@ def nodes_beginning(start: str, names: NodeNames, max_nodes: int) -> list[int]:
 
 
 def entry_names(listed: Sequence[ListedObject], names: NodeNames) -> Iterator[str]:
-    """Yield a name for each entry of a goals file: its label, or if that is ambiguous its notation."""
+    """Yield a name for each entry of a goals file: its label, or if this is ambiguous its node's notation."""
     counts = Counter(entry.pattern.label for entry in listed)
     for entry in listed:
         label = entry.pattern.label
@@ -153,13 +153,19 @@ def entry_names(listed: Sequence[ListedObject], names: NodeNames) -> Iterator[st
 
 
 def node_of_entry(entry: ListedObject, names: NodeNames) -> int:
-    """Return the only node that matches an entry of a goals file; raises :class:`UserError` for several."""
+    """Return the id of the only node that matches an entry of a goals file.
+
+    Raises :class:`GoalError` if several nodes match, or none.
+    """
     nodes = nodes_of_entry(entry, names)
     return _only_node(str(entry.pattern), names, len(nodes), nodes, _GOAL)
 
 
 def nodes_of_entry(entry: ListedObject, names: NodeNames) -> Sequence[int]:
-    """Return the nodes that match an entry of a goals file; raises :class:`UserError` if there are none."""
+    """Return the ids of the nodes that match an entry of a goals file.
+
+    Raises :class:`GoalError` with similar candidates if there are none.
+    """
     nodes = names.find(entry.pattern)
     if not nodes:
         count, labelled = names.labelled(entry.pattern.label)
@@ -172,18 +178,18 @@ def nodes_of_entry(entry: ListedObject, names: NodeNames) -> Sequence[int]:
 
 
 def _only_node(name: str, names: NodeNames, count: int, nodes: Sequence[int], wording: Wording) -> int:
-    """Return the only node of a name; raises :class:`GoalError` with candidates if there are several.
+    """Return the only one of ``nodes``; raises :class:`GoalError` with candidates if there are several.
 
-    ``count`` is the number of nodes with the name; ``nodes`` are the ids of at least the first ones.
+    ``count`` is the number of nodes that ``name`` means. ``nodes`` are the ids of at least the first ones.
     """
     if count > 1:
-        message = f"the {wording.thing} {name!r} means {count} object nodes"
+        message = f"the {wording.noun} {name!r} means {count} object nodes"
         raise _ambiguity_error(f"{message}; paste the one you mean", names, count, nodes, wording)
     return nodes[0]
 
 
 def _most_similar_first(node: ObjectNode, nodes: Sequence[int], names: NodeNames) -> Sequence[int]:
-    """Return nodes sorted by similarity to an unknown ``node``; unsorted if ``node`` is a label alone."""
+    """Return ids of nodes sorted by similarity of notation to ``node``; unsorted if this is a label alone."""
     if node == ObjectNode(node.label):
         return nodes
     import difflib  # noqa: PLC0415 (only for error messages)
@@ -196,7 +202,7 @@ def _most_similar_first(node: ObjectNode, nodes: Sequence[int], names: NodeNames
 
 
 def _unknown_error(message: str, node: ObjectNode, names: NodeNames, wording: Wording) -> GoalError:
-    """Return the error about an unknown node, with some nodes of each similar label."""
+    """Return the error about an unknown node, with some nodes of each similar label as candidates."""
     labels = dict.fromkeys((*names.beginning(node.label, _MAX_CANDIDATES), *names.near(node.label, 3)))
     counted_nodes = [names.labelled(label) for label in labels]
     if not counted_nodes:
@@ -208,7 +214,8 @@ def _unknown_error(message: str, node: ObjectNode, names: NodeNames, wording: Wo
 
 
 def _ambiguity_error(
-    message: str, names: NodeNames, count: int, first: Iterable[int], wording: Wording
+    message: str, names: NodeNames, count: int, candidates: Iterable[int], wording: Wording
 ) -> GoalError:
-    shown = [str(names.node(o)) for o in [*first][:_MAX_CANDIDATES]]
-    return GoalError(message, shown, count - len(shown), wording.before)
+    """Return the error with the first twelve of ``candidates``; ``count`` is how many nodes there are."""
+    shown = [str(names.node(o)) for o in [*candidates][:_MAX_CANDIDATES]]
+    return GoalError(message, shown, count - len(shown), wording.option)

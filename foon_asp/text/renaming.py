@@ -1,4 +1,4 @@
-"""Renaming of a name everywhere in a file: FOON text, JSON, and the tables beside them."""
+"""Renaming of a name everywhere in a file: in FOON text, JSON, and the tables beside a network."""
 
 import re
 from collections import Counter
@@ -24,7 +24,7 @@ _FIELD = re.compile(r"[^\t\[\]{},]+")
 
 
 class Renaming:
-    """A renaming of one name, applied after all mentions in all files have been learnt.
+    """A renaming of one name, to be applied after :meth:`learn` has read all mentions in all files.
 
     If the new name already has an id, lines with the old name get this id; else they keep their own.
     ``mentions`` counts the mentions of the old name, ``already`` the mentions of the new name.
@@ -36,7 +36,7 @@ class Renaming:
         self._ids: Counter[str] = Counter()
 
     def learn(self, mentions: Iterable[Mention]) -> None:
-        """Count the mentions in a file, and record the ids of the new name."""
+        """Count mentions of the old and of the new name, and record the ids of the new name."""
         kind, old, new = self.rename
         for name_kind, name, id_ in mentions:
             if name_kind == kind and name == new:
@@ -45,11 +45,14 @@ class Renaming:
             self.mentions += name_kind == kind and name == old
 
     def learn_ids(self, ids: Mapping[str, int]) -> None:
-        """Add counts of the ids of the new name."""
+        """Record ids of the new name, with the number of lines that have each."""
         self._ids.update(ids)
 
     def line(self, line: str) -> str:
-        """Return a line of FOON text with the new name."""
+        """Return a line of FOON text with the new name, spelt as before in all else where that is possible.
+
+        Lines without the old name, and lines that cannot be understood, are returned as they are.
+        """
         if self.rename.old not in line or line[:1] not in {"O", "S", "M"}:
             return line
         parsed = read_line(line)
@@ -86,11 +89,11 @@ class Renaming:
         return self._ids.most_common(1)[0][0] if old_id and self._ids else old_id
 
     def name(self, kind: NameKind, name: str) -> str:
-        """Return a name of a kind, renamed if it is the old one."""
+        """Return a name of a kind: the new name in place of the old one, any other name as it is."""
         return self.rename.new if (kind, name) == self.rename[:2] else name
 
     def _rename_in_line(self, line: Line) -> Line:
-        """Return a line in which the name is replaced."""
+        """Return a parsed line with the new name in place of the old one; its id stays."""
         if isinstance(line, ObjectLine):
             return line._replace(label=self.name(NameKind.OBJECT, line.label))
         if isinstance(line, MotionLine):
@@ -100,7 +103,7 @@ class Renaming:
         )
 
     def _rename_in_attribute(self, attribute: str | Relation | Contents) -> str | Relation | Contents:
-        """Return a state, relation or contents in which the name is replaced."""
+        """Return a state, relation or contents with the new name in place of the old one."""
         if isinstance(attribute, str):
             return self.name(NameKind.STATE, attribute)
         word = self.name(NameKind.WORD, attribute.word)
@@ -109,14 +112,20 @@ class Renaming:
         return Contents(word, tuple(sorted(self._rename_ingredients(attribute.ingredients))))
 
     def _rename_ingredients(self, items: tuple[str, ...]) -> tuple[str, ...]:
-        """Return ingredients with the old name replaced, or removed where they already have the new name."""
+        """Return ingredients with the new name in place of the old one.
+
+        If the new name is among them already, the old one is removed.
+        """
         kind, old, new = self.rename
         if kind == NameKind.OBJECT and new in items:
             return tuple(item for item in items if item != old)
         return tuple(self.name(NameKind.OBJECT, item) for item in items)
 
     def node(self, field: str) -> str:
-        """Return a node in one-line notation with the new name; other texts stay."""
+        """Return a node in one-line notation with the new name; any other text as it is.
+
+        A node without the old name is returned as it is written, too.
+        """
         try:
             node = parse_node(field.strip())
         except LineError:
@@ -131,7 +140,7 @@ class Renaming:
 
 
 def is_name(kind: str, name: str) -> bool:
-    """Whether a text can be a name of a kind in all positions of FOON text."""
+    """Whether a text can be a name of a kind in every position of FOON text where such a name may stand."""
     if not name or any(letter in name for letter in "\r\n"):
         return False
     letter, brackets = {"object": ("O", ("[", "]", "{", "}")), "motion": ("M", ())}.get(kind, ("S", ()))

@@ -28,28 +28,34 @@ TABLES: dict[str, Table[Any, Any]] = {
 
 
 class SideTable(FoonText):
-    """A table beside a network, which has names to rename and no units."""
+    """The format of a table beside a network, which has names to rename and no units."""
 
     dialects = ()
 
     def recognises(self, text: str, file: str) -> bool:
-        """Whether the file has the name of a table."""
+        """Whether the file has the name of a table, such as ``motion.txt``."""
         return PurePath(file).name in TABLES
 
     def canonical_text(self, text: str, file: str, lenient: bool = False) -> str:
-        """Return a table as it is; raises :class:`InputError` with the rows that cannot be understood."""
+        """Return a table as it is.
+
+        Raises :class:`InputError` with the rows that cannot be understood, unless ``lenient``.
+        """
         if not lenient:
             TABLES[PurePath(file).name].rows(Path(file), text)
         return text
 
     def mentions(self, text: str, file: str) -> Iterator[Mention]:
-        """Yield the names in the first column."""
+        """Yield a mention of each name in the first column; rows need not be well-formed."""
         for line in split_lines(text):
             if line.lstrip()[:1] not in {"", "#"}:
                 yield Mention(TABLES[PurePath(file).name].names, line.partition("\t")[0].strip())
 
     def renamed_text(self, text: str, file: str, renaming: "Renaming") -> str:
-        """Return a table with the new name; raises :class:`UserError` if the name gets two different rows."""
+        """Return a table with the new name.
+
+        Raises :class:`UserError` if the table would then have two different rows for the new name.
+        """
         new = map_lines(text, lambda line: _renamed_row(line, PurePath(file).name, renaming))
         rows = (line.split("\t") for line in split_lines(new))
         name = renaming.rename.new
@@ -59,7 +65,10 @@ class SideTable(FoonText):
 
 
 def _renamed_row(line: str, table: str, renaming: "Renaming") -> str:
-    """Return the row of a table in which the name is replaced."""
+    """Return a line of the table file ``table`` with the new name; blank lines and comments stay.
+
+    Nodes in one-line notation are renamed in the tables of tools, prices and amounts.
+    """
     if line.lstrip()[:1] in {"", "#"}:
         return line
     first, *fields = line.split("\t")

@@ -12,7 +12,7 @@ UnitAmount = tuple[str, bool, ObjectNode]
 
 
 class StatedAmounts:
-    """A collection of amounts of copies of units; ``len`` counts the units."""
+    """The amounts that copies of units state; ``len`` counts the units."""
 
     def __init__(self) -> None:
         self._copies: dict[FunctionalUnit, dict[Source, UnitAmounts]] = {}
@@ -21,14 +21,15 @@ class StatedAmounts:
         return len(self._copies)
 
     def add(self, unit: FunctionalUnit, amounts: UnitAmounts, source: Source) -> None:
-        """Record the amounts of one copy, and where they are stated."""
+        """Record the amounts of one copy of a unit, and where they are stated."""
         self._copies.setdefault(unit, {})[source] = amounts
 
     def amounts_by_unit(self, network: Network | None = None) -> DataAmounts:
-        """Return the amounts of each unit, and a message about the first two copies that disagree.
+        """Return the amounts of the first copy of each unit, and a message if another copy disagrees.
 
         A copy that states no amounts has the amount 1 of each node. With ``network``, such copies are
-        compared, too; without it, only copies that state amounts are.
+        compared, too; without it, only copies that state amounts are. The message is about the first
+        disagreement.
         """
         amounts: dict[FunctionalUnit, UnitAmounts] = {}
         conflict = ""
@@ -50,9 +51,9 @@ class StatedAmounts:
 def apply_amount_table(
     stated: DataAmounts, rows: Sequence[Row[UnitAmount, int]], units: Iterable[FunctionalUnit]
 ) -> tuple[DataAmounts, list[Diagnostic]]:
-    """Return stated amounts with those of a table in their place, and warnings about rows that match no unit.
+    """Return stated amounts overridden by a table, and warnings about rows that match no unit.
 
-    ``units`` are all units whose motion is in the table.
+    ``rows`` are those of the table. ``units`` are all units whose motion is in the table.
     """
     amounts = dict(stated.units)
     used: set[UnitAmount] = set()
@@ -85,11 +86,15 @@ def apply_amount_table(
 def counted_amounts(
     inputs: Iterable[tuple[ObjectNode, int]], outputs: Iterable[tuple[ObjectNode, int]]
 ) -> UnitAmounts:
-    """Return the amounts of nodes that may come several times."""
+    """Return the amounts above 1 of a unit from pairs of node and amount.
+
+    Amounts of a node that comes several times on a side are added up.
+    """
     return UnitAmounts(_totals_above_one(inputs), _totals_above_one(outputs))
 
 
 def _totals_above_one(side: Iterable[tuple[ObjectNode, int]]) -> dict[ObjectNode, int]:
+    """Return the sum of the amounts of each node, without sums of 1."""
     totals: Counter[ObjectNode] = Counter()
     for node, amount in side:
         totals[node] += amount

@@ -8,7 +8,7 @@ from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 
 
 class StatedPrices:
-    """A collection of prices of copies of units; ``len`` counts the units with a price."""
+    """The prices that copies of units state; ``len`` counts the units with a price."""
 
     def __init__(self) -> None:
         self._copies: dict[FunctionalUnit, dict[Fraction, Source]] = {}
@@ -18,11 +18,11 @@ class StatedPrices:
         return len(self._copies.keys() | self._least.keys()) if self._copies else len(self._least)
 
     def add(self, unit: FunctionalUnit, price: Fraction, source: Source) -> None:
-        """Record the price of one copy, and where it is stated."""
+        """Record the price of one copy of a unit, and where it is stated; copies have to agree."""
         self._copies.setdefault(unit, {}).setdefault(price, source)
 
     def add_least(self, unit: FunctionalUnit, price: Fraction) -> None:
-        """Record the price of one copy; the cheapest copy counts."""
+        """Record the price of one copy of a unit; of such copies, the cheapest counts."""
         if self._least.setdefault(unit, price) > price:
             self._least[unit] = price
 

@@ -1,4 +1,4 @@
-"""The kinds of tables beside a network, and how their columns are read."""
+"""The kinds of tables beside a network, and how their rows are read."""
 
 import re
 from collections.abc import Mapping
@@ -37,18 +37,21 @@ class Duration(NamedTuple):
     passive: bool = False
 
 
-def motion_in_first_column(name: str, what: str) -> str:
-    """Return the motion in the first column; raises :class:`LineError` if it is empty."""
+def motion_in_first_column(name: str, found: str) -> str:
+    """Return ``name``, the motion in the first column of a row.
+
+    Raises :class:`LineError` if it is empty; ``found`` describes the column behind it.
+    """
     if not name:
-        raise LineError(1, what, ("the motion before it",))
+        raise LineError(1, found, ("the motion before it",))
     return name
 
 
 def stated_name(name: str) -> str | ObjectNode:
-    """Return the name in the first column: a label, which means all nodes with the label, or a single node.
+    """Return the name in the first column: a label, which means all nodes with it, or a single node.
 
-    A label with a semicolon after it is the node without states, relations and contents. Raises
-    :class:`LineError` for a text that cannot be read as a name.
+    A label with a semicolon after it is the node without states, relations and contents. A text without
+    semicolon that is no notation is a label. Raises :class:`LineError` for other faults of notation.
     """
     name = name.strip()
     if not name:
@@ -62,7 +65,7 @@ def stated_name(name: str) -> str | ObjectNode:
 
 
 def _rate_row(name: str, value: str, column: int) -> tuple[str, Fraction]:
-    """Read a row of success rates."""
+    """Return the motion and the exact success rate of a row; raises :class:`LineError` at a fault."""
     motion = motion_in_first_column(name, "a success rate")
     rate = read_decimal(value, column, "a success rate as a decimal such as 0.85")
     if not 0 < rate <= 1:
@@ -71,7 +74,7 @@ def _rate_row(name: str, value: str, column: int) -> tuple[str, Fraction]:
 
 
 def _duration_row(name: str, value: str, column: int) -> tuple[str, Duration]:
-    """Read a row of durations."""
+    """Return the motion and the duration of a row; raises :class:`LineError` at a fault."""
     motion = motion_in_first_column(name, "a duration")
     written, tab, word = value.partition("\t")
     if tab and word.strip() != "passive":
@@ -80,7 +83,10 @@ def _duration_row(name: str, value: str, column: int) -> tuple[str, Duration]:
 
 
 def _seconds(written: str, column: int) -> Fraction:
-    """Read a duration, which may have a unit, in seconds."""
+    """Return the seconds of a duration such as ``90``, ``25 min`` or ``1.5 h``, exactly.
+
+    Raises :class:`LineError` for another form, and for 0; ``column`` is that of ``written`` in its line.
+    """
     number, _, unit = written.partition(" ")
     unit = unit.strip()
     if unit not in _TIME_UNITS:
@@ -102,12 +108,14 @@ def _tool_row(name: str, value: str, column: int) -> tuple[str | ObjectNode, int
 
 
 def _stays_row(name: str, value: str, column: int) -> tuple[str | ObjectNode, bool]:
+    """Return the item of a row, as a label or a node, and whether it stays; raises :class:`LineError`."""
     if value not in _STAYS:
         raise LineError(column, repr(value), tuple(_STAYS))
     return stated_name(name), _STAYS[value]
 
 
 def _copies_row(name: str, value: str, column: int) -> tuple[ObjectNode, int]:
+    """Return the node of a row and how many copies of it there are; raises :class:`LineError` at a fault."""
     max_copies = 1_000_000  # of a node; clingo's integers are limited
     if not _COPIES.fullmatch(value) or len(value) > len(str(max_copies)) or int(value) > max_copies:
         raise LineError(column, repr(value), (f"a number of copies, from 0 to {max_copies}",))
@@ -115,12 +123,14 @@ def _copies_row(name: str, value: str, column: int) -> tuple[ObjectNode, int]:
 
 
 def _price_row(name: str, value: str, column: int) -> tuple[str | ObjectNode, Fraction]:
+    """Return the item of a row, as a label or a node, and its exact price; raises :class:`LineError`."""
     if not _PRICE.fullmatch(value):
         raise LineError(column, repr(value[:40]), ("a price as a decimal such as 1.99",))
     return parse_name(name), Fraction(value)
 
 
 def _label_row(name: str, _: str, __: int) -> tuple[str, None]:
+    """Return the label of a row, which has no value."""
     return name, None
 
 
@@ -151,12 +161,12 @@ UTENSILS = Table("utensil", NameKind.OBJECT, "", _label_row)
 
 
 def read_utensils(file: Path) -> frozenset[str]:
-    """Read labels of utensils, one on each line."""
+    """Return the labels of utensils in a file, which has one on each line."""
     return frozenset(UTENSILS.read(file))
 
 
 def read_stock(file: Path) -> dict[ObjectNode, int]:
-    """Read how many copies of nodes there are, from a table, or from FOON text.
+    """Return how many copies of nodes there are, from a table, or from FOON text.
 
     In FOON text, each object block counts as one copy, or as its amount. Raises :class:`InputError` for a
     line of another form, and for a node with two different counts in a table.
@@ -174,7 +184,10 @@ def read_stock(file: Path) -> dict[ObjectNode, int]:
 
 
 def read_default_duration(written: str) -> Fraction:
-    """Read the default duration, written as in files; raises :class:`UserError` for another form."""
+    """Return the seconds of the default duration, ``90`` or ``25 min``.
+
+    Raises :class:`UserError` for another form.
+    """
     try:
         return _seconds(written.strip(), 1)
     except LineError as error:
@@ -182,7 +195,7 @@ def read_default_duration(written: str) -> Fraction:
 
 
 def duration_template(motions: Mapping[str, Duration | None]) -> str:
-    """Return a file of durations with the placeholder SECONDS for each unknown duration."""
+    """Return the text of a file of durations, with the placeholder SECONDS for each ``None``."""
     lines = ["# motion, tab, seconds (or 25 min, 1.5 h); behind another tab passive, if nobody stands by"]
     for motion, duration in motions.items():
         seconds = "SECONDS" if duration is None else decimal_text(Fraction(duration.seconds))

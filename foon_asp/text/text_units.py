@@ -1,4 +1,4 @@
-"""The units of FOON text, and the objects of one that lists them without motions.
+"""Reading of FOON text: its units, or the objects of a list without motions.
 
 A well-formed unit is read by its object blocks, and each distinct block is parsed once. Any other unit is
 read line by line, with remarks.
@@ -26,7 +26,7 @@ _SEPARATOR = "\n//\n"
 
 @dataclass(slots=True)
 class _OpenBlock:
-    """An object block, while lines may still be added."""
+    """An object block to which lines may still be added."""
 
     line: ObjectLine
     states: list[StateLine]
@@ -36,9 +36,9 @@ class _OpenBlock:
 
 @lru_cache(50_000)  # of the 11,625 object blocks of the universal FOON, 4,361 are different
 def _node_of_clean_block(block: str) -> ObjectNode | None:
-    """Return the node of an object block, given without its first letter.
+    """Return the node of a well-formed object block, given without its first ``O``; results are cached.
 
-    ``None`` for a block with remarks, and for a goal, whose source has to be recorded.
+    ``None`` stands for a block with remarks, and for a goal, whose source has to be recorded.
     """
     head, line_end, states = block.partition("\n")
     line = read_line(f"O{head}")
@@ -52,20 +52,27 @@ def _node_of_clean_block(block: str) -> ObjectNode | None:
 
 @lru_cache(50_000)  # the states under very many objects are the same
 def _blank_of_clean_states(states: str) -> ObjectNode | None:
-    """Return a node without label with the attributes of state lines; ``None`` if a line has remarks."""
+    """Return a node with an empty label and the attributes of state lines; results are cached.
+
+    ``None`` stands for lines with remarks or errors, and for other lines.
+    """
     lines = map(read_line, states.split("\n"))
     attributes = [line.attribute for line in lines if isinstance(line, StateLine) and not line.remarks]
     return node_of("", attributes) if len(attributes) == states.count("\n") + 1 else None
 
 
 def _nodes_of_clean_blocks(blocks: str) -> list[ObjectNode] | None:
-    """Return the nodes of the object blocks on one side of a unit; ``None`` if a block is not well-formed."""
+    """Return the nodes of object blocks, given without the first ``O``; ``None`` if one is not well-formed."""
     nodes = list(map(_node_of_clean_block, blocks.split("\nO")))
     return cast(list[ObjectNode], nodes) if all(nodes) else None
 
 
 class TextUnits:
-    """A pass over the text of a file, which may come in pieces whose lines end with a line feed."""
+    """A reader of one FOON text, which may come in pieces; it may be read once.
+
+    All line ends have to be line feeds. ``file`` is the name of the file in sources. Diagnostics and goal
+    marks are recorded in ``reading``.
+    """
 
     def __init__(self, pieces: Iterable[str], file: str, reading: Reading) -> None:
         self.reading = reading
@@ -79,7 +86,7 @@ class TextUnits:
         self._sections = 0  # between separators, with anything in them, so far
 
     def units(self) -> Iterator[ReadUnit]:
-        """Yield the units in order."""
+        """Yield the units in order, without their lines."""
         for chunk, last in self._chunks():
             unit = None if last else self._clean_unit(chunk)
             if unit:
@@ -95,14 +102,17 @@ class TextUnits:
             yield from self._units_line_by_line(chunk, last)
 
     def objects(self) -> list[ObjectBlock]:
-        """Return the objects of a kitchen or of goals."""
+        """Return the object blocks of a kitchen or of goals; a motion is recorded as a fault."""
         self._objects = []
         for _ in self.listed_units():
             pass
         return self._objects
 
     def _chunks(self) -> Iterator[tuple[str, bool]]:
-        """Yield the text between separators, each chunk with whether it is the last."""
+        """Yield the chunks between lines ``//``, each with whether it is the last; progress is reported.
+
+        If the text begins with JSON after other text, this fault is recorded, and there are no chunks.
+        """
         report, unreported = progress_report(), 0
         pieces = [next(self._pieces, "")]
         if message := fault_before_json(pieces[0]):
@@ -128,13 +138,13 @@ class TextUnits:
             report(unreported + len(pieces[0].encode()))
 
     def _reject_text_before_json(self, message: str, text: str) -> None:
-        """Record text before JSON as the only fault of the file."""
+        """Record ``message`` as the only fault of the file, at its first line that is not blank."""
         begins = text.lstrip()
         line = text[: len(text) - len(begins)].count("\n") + 1
         self.reading.reject("json", message, Source(self.file, line, 1), split_lines(begins)[0])
 
     def _clean_unit(self, chunk: str) -> ReadUnit | None:
-        """Read a unit by its object blocks; ``None`` where it has to be read line by line."""
+        """Return the unit of a well-formed chunk, read by its object blocks; ``None`` for another chunk."""
         first, copies = self._number, []
         while chunk[:1] == "#":
             comment, line_end, chunk = chunk.partition("\n")
@@ -159,9 +169,9 @@ class TextUnits:
         return ReadUnit(motion.motion, inputs, outputs, sources)
 
     def _units_line_by_line(self, chunk: str, last: bool) -> Iterator[ListedUnit]:
-        """Yield the units of a chunk, read line by line.
+        """Yield the units of a chunk, read line by line; remarks and faults are recorded.
 
-        Separators with blanks after ``//`` are recognised, too. ``last`` is true for the last chunk of a
+        A chunk has several units where blanks stand behind ``//``. ``last`` is true for the last chunk of a
         file.
         """
         self._lines = lines = chunk.split("\n")
@@ -190,7 +200,10 @@ class TextUnits:
             yield unit
 
     def _read_unit(self, start: int, end: int, closed: bool) -> ListedUnit | None:
-        """Read the lines between two separators as a unit; ``None`` if they are no unit."""
+        """Return the unit of the lines from index ``start`` to before ``end``; ``None`` if they are no unit.
+
+        ``closed`` is true if ``//`` follows. In a list without motions, the objects are collected instead.
+        """
         section = _Section(end, closed, self.reading.left_out)
         for index in range(start, end):
             line = self._lines[index]
@@ -224,7 +237,7 @@ class TextUnits:
         return ListedUnit(motion, inputs, outputs, sources, self._source(index))
 
     def _add_amount(self, section: "_Section", index: int) -> None:
-        """Add the amount of a comment to the object above it, or record its fault."""
+        """Give the amount in a comment line to the object above it, or record its fault."""
         if section.lost:
             self.reading.left_out += self.reading.lenient
             return
@@ -239,7 +252,10 @@ class TextUnits:
             self._reject("amount", str(error), index, error.column)
 
     def _add_line(self, section: "_Section", index: int) -> None:
-        """Add a line to its section; record a fault if the line is broken or out of place."""
+        """Add an object, state or motion line to its section.
+
+        A line that is broken or out of place is recorded as a fault. So are slips in any line, as warnings.
+        """
         line = self._lines[index]
         parsed = read_line(line)
         if isinstance(parsed, LineError):
@@ -274,7 +290,7 @@ class TextUnits:
             section.blamed = True
 
     def _warn_of_no_unit(self, section: "_Section") -> None:
-        """Warn that lines are no unit, unless an error among them explains it already."""
+        """Warn that lines are no unit, and count them as left out, unless a recorded error explains it."""
         if section.blamed and not self.reading.lenient:
             return
         lines, first = self._lines, section.first
@@ -294,10 +310,11 @@ class TextUnits:
             self._warn("no-motion", message, section.end if section.closed else meaningful[-1])
 
     def _source(self, index: int, column: int = 1) -> Source:
+        """Return the source of the line at an index of the chunk."""
         return Source(self.file, self._number + index, column)
 
     def _report_remarks(self, line: Line, index: int) -> None:
-        """Report the remarks on a line, with the line in canonical form as their fix."""
+        """Record the remarks on a line as warnings, with the line in canonical form as their fix."""
         if line.remarks:
             mended = write_line(line)
             fix = mended if mended != self._lines[index] else None
@@ -305,17 +322,26 @@ class TextUnits:
                 self._warn(code, message, index, column, fix)
 
     def _warn(self, code: str, message: str, index: int, column: int = 1, fix: str | None = None) -> None:
+        """Record a warning about the line at an index of the chunk."""
         line = self._lines[index] if index < len(self._lines) else "//"
         self.reading.warn(code, message, self._source(index, column), line, fix)
 
     def _reject(self, code: str, message: str, index: int, column: int = 1) -> None:
+        """Record a fault of the line at an index of the chunk.
+
+        If ``lenient``, it is a warning, and the line counts as left out.
+        """
         self.reading.left_out += self.reading.lenient
         self.reading.reject(code, message, self._source(index, column), self._lines[index])
 
 
 class _Section:
-    """The lines between two separators, while they are read one by one; positions are indices of lines.
+    """The lines between two separators ``//``, while they are read one by one.
 
+    ``end``, ``first``: the indices behind the last line, and of the first line with content (-1 without one).
+    ``closed``: true if ``//`` follows.
+    ``motions``: the motion lines, each with its index.
+    ``copies``: the sources that comment lines name.
     ``block``: the block of the current object line; ``None`` before the first object line.
     ``lost``: true if the current object line cannot be read; the states under it are then left out.
     ``blamed``: true if an error in a line may be the reason for a missing motion or object.
@@ -334,19 +360,20 @@ class _Section:
 
 
 def no_motion_message(objects: int) -> str:
-    """Return the warning about a file of objects alone where a network was expected."""
+    """Return the warning that a file of objects alone stands where a network was expected."""
     listed = "one object" if objects == 1 else f"{objects} objects"
     return f"{listed} and no motion: a list such as a kitchen or goals, without units"
 
 
 def _closed_blocks(open_blocks: list[_OpenBlock]) -> tuple[ObjectBlock, ...]:
+    """Return object blocks to which no more lines will be added."""
     return tuple(
         ObjectBlock(block.line, tuple(block.states), block.source, block.amount) for block in open_blocks
     )
 
 
 def _without_lines(unit: ListedUnit) -> ReadUnit:
-    """Return a unit without its lines; a node that is listed twice counts once."""
+    """Return a unit without its lines; a node that is listed twice has its greatest amount."""
     if all(block.amount is None for block in (*unit.inputs, *unit.outputs)):
         return unit.identity
     return unit.identity._replace(amounts=unit.without_repeats.amounts)

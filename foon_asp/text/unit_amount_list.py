@@ -1,4 +1,4 @@
-"""Amounts of units: ``unit_amounts.txt``, a motion, an object node and how many of it on each line."""
+"""The table ``unit_amounts.txt``: on each line a motion, an object node, and how many of it units have."""
 
 import re
 
@@ -14,7 +14,7 @@ _AMOUNT = re.compile(r"[1-9]\d{0,6}", re.ASCII)
 
 
 def _row(name: str, value: str, column: int) -> tuple[UnitAmount, int]:
-    """Read a row of amounts of units."""
+    """Return the motion, side and node of a row, and the amount; raises :class:`LineError` at a fault."""
     motion = motion_in_first_column(name, "an object node")
     *fields, written = value.split("\t")
     written = written.strip()

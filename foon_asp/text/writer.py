@@ -1,4 +1,4 @@
-"""Writing FOON text: lines as they were read, and units without ids, flags or times."""
+"""Writing of FOON text: lines as they were read, and nodes and units without ids, flags or times."""
 
 import re
 from collections.abc import Iterable
@@ -24,9 +24,10 @@ from foon_asp.text.listed_unit import node_of
 
 
 def write_line(line: Line) -> str:
-    """Return the canonical text of a line, which is unchanged for a line read without a remark.
+    """Return the canonical text of a line, without line end.
 
-    Ids, fields and the order of ingredients are kept, but not the parts that were left out with a remark.
+    It is unchanged for a line that was read without a remark. Ids, fields and the order of ingredients are
+    kept. Parts that were left out with a remark are missing.
     """
     if isinstance(line, ObjectLine):
         return "\t".join((f"O{line.id}", line.label, *line.fields))
@@ -41,7 +42,7 @@ def write_line(line: Line) -> str:
 
 
 def write_node(node: ObjectNode) -> str:
-    """Return the object block of a node: its object line and, sorted, its state lines.
+    """Return the lines of a node: its object line and, sorted, its state lines.
 
     Raises :class:`UserError` for a name that means something else in FOON text.
     """
@@ -54,12 +55,18 @@ def write_node(node: ObjectNode) -> str:
 
 
 def write_counted_node(node: ObjectNode, amount: int | None) -> str:
-    """Return the object block of a node, with its amount unless ``amount`` is ``None``."""
+    """Return the lines of a node, and the line of its amount unless this is ``None``.
+
+    Raises :class:`UserError` for a name that means something else in FOON text.
+    """
     return write_node(node) + ("" if amount is None else write_amount(amount))
 
 
 def write_motion(motion: str) -> str:
-    """Return the line of a motion; raises :class:`UserError` for a name that FOON text cannot hold."""
+    """Return the line of a motion, with its line end.
+
+    Raises :class:`UserError` for a name that FOON text cannot hold.
+    """
     written = _line_if_readable(MotionLine(motion))
     if written is None:
         raise UserError(f"the motion {motion!r} is a name that FOON text cannot hold; JSON can")
@@ -68,7 +75,7 @@ def write_motion(motion: str) -> str:
 
 @lru_cache(10_000, typed=True)  # many units have equal lines
 def _line_if_readable(line: Line) -> str | None:
-    """Return the text of a line; ``None`` where it would not be read back as the same line."""
+    """Return the text of a line with its line end; ``None`` if it is not read back as the same line."""
     written = write_line(line)
     try:
         back = None if "\n" in written or "\r" in written else parse_line(written)._replace(remarks=())
@@ -78,7 +85,7 @@ def _line_if_readable(line: Line) -> str | None:
 
 
 def write_unit(unit: FunctionalUnit, amounts: UnitAmounts = ALL_ONE) -> str:
-    """Return the lines of a unit with its amounts, the closing ``//`` included.
+    """Return the lines of a unit with its amounts, and a closing ``//``.
 
     Raises :class:`UserError` for a unit that cannot be read back: without inputs, or with names that FOON
     text cannot hold.
