@@ -23,7 +23,7 @@ _COMMAND = r"(?m)^([^\S\n]*):(?=:)|#(?=#(?:\[|vso\[))"
 
 def escaped(name: str) -> str:
     """Return a name with escapes for unsafe characters, line ends and tabs, to be shown within a line."""
-    return re.sub(_IN_A_LINE, _escape, name)
+    return re.sub(_IN_A_LINE, _escape_match, name)
 
 
 def escaped_lines(text: str, styled: bool = False) -> str:
@@ -31,7 +31,7 @@ def escaped_lines(text: str, styled: bool = False) -> str:
 
     Line ends and tabs stay. A ``styled`` text keeps its escape sequences, such as colours.
     """
-    shown = re.sub(_UNSAFE_BUT_ESCAPE, _escape, text) if styled else UNSAFE.sub(_escape, text)
+    shown = re.sub(_UNSAFE_BUT_ESCAPE, _escape_match, text) if styled else UNSAFE.sub(_escape_match, text)
     return re.sub(_COMMAND, _without_command, shown) if "::" in shown or "##" in shown else shown
 
 
@@ -58,13 +58,13 @@ def _encodes(encoding: str, letter: str) -> bool:
     return True
 
 
-def _escape(match: re.Match[str]) -> str:
+def _escape_match(match: re.Match[str]) -> str:
     """Return the escape of a matched letter."""
     return _escape_of(match[0])
 
 
 def _without_command(match: re.Match[str]) -> str:
-    """Return a matched beginning of a command in which the last letter is escaped."""
+    """Return a matched beginning of a command, with an escape for its last letter."""
     return f"{match[1] or ''}{_escape_of(match[0][-1])}"
 
 

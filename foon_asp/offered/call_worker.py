@@ -70,7 +70,7 @@ def _error_text(error: BaseException) -> str:
 def _error_message(error: BaseException) -> str:
     """Return the beginning of the message of an exception; empty if this raises itself."""
     try:
-        return _shortened(str(error))
+        return _first_letters(str(error))
     except Exception:
         return ""
 
@@ -78,11 +78,11 @@ def _error_message(error: BaseException) -> str:
 def _shortened_repr(value: object) -> str:
     """Return the beginning of the ``repr`` of a value; if this raises, the value's class."""
     try:
-        return _shortened(repr(value))
+        return _first_letters(repr(value))
     except Exception:
         return f"a {type(value).__name__}"
 
 
-def _shortened(message: str, max_letters: int = 1000) -> str:
+def _first_letters(message: str, max_letters: int = 1000) -> str:
     """Return the beginning of a message, since some messages contain all data."""
     return message[:max_letters]

@@ -57,7 +57,7 @@ class Offer(NamedTuple):
             error.add_note(trace)
         return error
 
-    def raised(self, exception: Raised) -> UserError:
+    def raised_error(self, exception: Raised) -> UserError:
         """Return the error that the function of an offer raised an exception.
 
         Of a ``UserError`` the message alone is shown, of other exceptions class, message and place.
@@ -112,9 +112,9 @@ def find_offers(group: str) -> list[Offer]:
 def offers_by_name(offers: Iterable[Offer], reserved: Iterable[str]) -> dict[str, Offer]:
     """Return offers by name.
 
-    Raises :class:`UserError` for a name that two offers have, or that is ``reserved``; case is ignored.
-    Raises it too for a name that is not made of up to 40 letters and digits with ``-``, ``_`` and ``.``
-    between.
+    Raises :class:`UserError` for a name that two offers have or that is ``reserved``, ignoring case. Raises
+    :class:`UserError` for a name of another form than up to 40 letters and digits, with ``-``, ``_`` and
+    ``.`` between them.
     """
     owners = {name.lower(): "foon-asp" for name in reserved}
     by_name: dict[str, Offer] = {}

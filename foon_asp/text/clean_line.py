@@ -23,11 +23,11 @@ _LABEL = re.compile(r' *[^ ";\t\r\n\[\]{}][^;\t\r\n\[\]{}]*')
 def clean_line(text: str) -> Line | None:
     """Return the parsed line of a text without line end, or ``None`` where the parser has to read it.
 
-    ``None`` also stands for faulty lines. Few slips are read here, with remarks: blanks between ingredients,
-    and a space for the tab before a bracket.
+    ``None`` also stands for faulty lines. Only slips in ingredients, and a space for the tab before a
+    bracket, are read here; the line then has remarks.
     """
     if match := _STATE_LINE.fullmatch(text):
-        return _state(match)
+        return _matched_state_line(match)
     if match := _OBJECT_LINE.fullmatch(text):
         id_, label, flag = match.groups()
         return ObjectLine(label, id_, (flag,) if flag else ())
@@ -42,7 +42,7 @@ def clean_node(notation: str) -> ObjectNode | None:
     return ObjectNode(notation.strip(" ")) if _LABEL.fullmatch(notation) else None
 
 
-def _state(match: re.Match[str]) -> StateLine:
+def _matched_state_line(match: re.Match[str]) -> StateLine:
     """Return the state line that ``_STATE_LINE`` matched, with remarks on slips."""
     id_, name, gap, related, listed = match.groups()
     end = match.end(2)
@@ -75,7 +75,7 @@ def split_ingredients(listed: str, column: int, remarks: list[Remark]) -> tuple[
     seen: set[str] = set()
     remarked: set[str] = set()
 
-    def remark(code: str, message: str) -> None:
+    def add_remark(code: str, message: str) -> None:
         """Add a remark at the current column, unless there is one of this code."""
         if code not in remarked:
             remarks.append(Remark(column, code, message))
@@ -84,12 +84,12 @@ def split_ingredients(listed: str, column: int, remarks: list[Remark]) -> tuple[
     for raw in split:
         item = raw.strip(" ")
         if not item:
-            remark("empty-ingredient", "empty ingredient left out")
+            add_remark("empty-ingredient", "empty ingredient left out")
         else:
             if item != raw:
-                remark("outer-space", f"spaces around {item!r} left out")
+                add_remark("outer-space", f"spaces around {item!r} left out")
             if item in seen:
-                remark("repeated-ingredient", f"ingredient {item!r} is listed twice")
+                add_remark("repeated-ingredient", f"ingredient {item!r} is listed twice")
             kept.append(item)
             seen.add(item)
         column += len(raw) + 1

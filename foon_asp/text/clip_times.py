@@ -37,7 +37,7 @@ def listed_clips(files: Iterable[Path], lenient: bool = False) -> Iterator[Liste
     for file in files:
         reader = FoonReader(lenient)
         for unit in reader.listed_units(reader.text(file), str(file)):
-            clips = tuple(_clips(MotionFields.of(unit.motion.fields).times))
+            clips = tuple(_paired_clips(MotionFields.of(unit.motion.fields).times))
             if clips:
                 yield ListedClips(unit.motion.motion, unit.sources, clips)
         reader.raise_errors()
@@ -54,8 +54,8 @@ def median_clips(files: Iterable[Path], lenient: bool = False) -> dict[str, Frac
     return {motion: median(times) for motion, times in seconds.items()}
 
 
-def _clips(times: tuple[str, ...]) -> Iterator[tuple[int, int]]:
-    """Yield the begin and the end of each clip in seconds; two times in turn are one clip.
+def _paired_clips(times: tuple[str, ...]) -> Iterator[tuple[int, int]]:
+    """Yield the begin and the end of each clip in seconds: of the first two times, then of the next two.
 
     A clip whose end is not after its begin is skipped.
     """

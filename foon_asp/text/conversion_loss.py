@@ -118,10 +118,14 @@ def _lost_attributes(before: tuple[StateLine, ...], after: tuple[StateLine, ...]
     if len(contents) > 1 and any(isinstance(attribute, Contents) for attribute in missing):
         lost.append(Loss.CONTENTS_LISTS)
     if _all_ingredients(old_attributes) != _all_ingredients(new_attributes):
-        raise CannotHoldError(f"{_joined(old_attributes)} would be read as {_joined(new_attributes)}")
+        raise CannotHoldError(
+            f"{_attributes_text(old_attributes)} would be read as {_attributes_text(new_attributes)}"
+        )
     unexpected = [attribute for attribute in extra.elements() if not isinstance(attribute, Contents)]
     if unexpected:
-        raise CannotHoldError(f"{_joined(old_attributes)} would be read as {_joined(new_attributes)}")
+        raise CannotHoldError(
+            f"{_attributes_text(old_attributes)} would be read as {_attributes_text(new_attributes)}"
+        )
     if _kept_in_order(before, kept) != _kept_in_order(after, kept):
         lost.append(Loss.ORDER)
     return lost
@@ -155,6 +159,6 @@ def _kept_in_order(
     return [(state.attribute, state.listed) for state in states if state.attribute in kept]
 
 
-def _joined(attributes: list[str | Relation | Contents]) -> str:
+def _attributes_text(attributes: list[str | Relation | Contents]) -> str:
     """Return attributes as text for a message, ``nothing`` for none."""
     return "; ".join(map(str, attributes)) or "nothing"

@@ -51,8 +51,8 @@ STARTING = Path("@starting")
 class DataFiles(NamedTuple):
     """The files of the network and of the data beside it; ``None`` for a file that does not exist.
 
-    ``kitchen`` may be ``STARTING`` in place of a file. ``stand_ins`` is read only where stand-ins are asked
-    for.
+    ``kitchen`` may be ``STARTING`` in place of a file. ``stand_ins``, a table of items that replace others,
+    is read only by questions that ask for them.
     """
 
     network: tuple[Path, ...]

@@ -141,10 +141,11 @@ def rewrite_lines(text: str, file: str, lenient: bool, rewrite: Rewrite) -> str:
 
 
 def _mend_line(line: Line, written: str) -> str:
-    """Return the canonical form of a line; a line whose only remarks are on blanks stays, but for end blanks.
+    """Return the canonical form of a line.
 
-    Blanks within a line stay, since the published universal FOON has them: ``{jelly, peanut butter}``, and a
-    space for the tab before a bracket. Linting reports such blanks.
+    A line whose only remarks are on blanks keeps the blanks within it, since the published universal FOON
+    has them: ``{jelly, peanut butter}``, and a space for the tab before a bracket. Linting reports such
+    blanks.
     """
     if all(remark.code in _BLANKS for remark in line.remarks):
         return written.rstrip(" \t")
@@ -152,9 +153,10 @@ def _mend_line(line: Line, written: str) -> str:
 
 
 def _rewrite_line(line: str, rewrite: Rewrite) -> tuple[str, LineError | None]:
-    """Return a line as ``rewrite`` writes it, and ``None``; a faulty line itself, and its error.
+    """Return a line as ``rewrite`` writes it, and ``None`` for no error.
 
-    Comments stay. Blanks are removed from blank lines and behind ``//``.
+    A line that cannot be understood is returned unchanged, with its error. Comments stay. Blanks are removed
+    from blank lines and behind ``//``.
     """
     if line[:1] == "#":
         return line, None

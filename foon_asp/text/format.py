@@ -38,10 +38,10 @@ class Dialect(StrEnum):
 class Format(Protocol):
     """A format of files, as the reader, ``fmt``, ``convert``, ``rename`` and ``lint`` use it.
 
-    ``dialects`` are its dialects; ``suffix`` and ``list_suffix`` are how the names of its networks and of its
-    lists of objects end. ``has_comments`` says whether it has comments. If ``machine_written``, a node that a
-    unit lists twice means two copies of the node. The parameter ``file`` of methods is the name of the file
-    in messages.
+    ``dialects`` are its dialects. File names of its networks end with ``suffix``, those of its lists of
+    objects with ``list_suffix``. ``has_comments`` says whether files may have comments. If
+    ``machine_written``, a node that a unit lists twice means two copies of the node. The parameter ``file``
+    of methods is the name of the file in messages.
     """
 
     dialects: tuple[Dialect, ...] = ()
@@ -108,10 +108,11 @@ WrittenPart = tuple[str, "list[Loss]"]
 
 
 class Writer(Protocol):
-    """A writer of files in a dialect: its methods return the texts of parts, and of a whole from its parts.
+    """A writer of files in a dialect, part by part.
 
-    ``holds_prices`` says whether these files can hold prices of units, ``holds_no_inputs`` whether they can
-    hold units without inputs.
+    ``block`` and ``motion`` return the text of a part; ``unit``, ``network`` and ``objects`` put such texts
+    together. ``holds_prices`` says whether these files can hold prices of units, ``holds_no_inputs`` whether
+    they can hold units without inputs.
     """
 
     holds_prices: bool
@@ -133,10 +134,10 @@ class Writer(Protocol):
         """Return the text of a unit from those of its parts; ``price`` is empty for a unit without one."""
 
     def network(self, units: Sequence[str], videos: Sequence[str]) -> str:
-        """Return the text of a file from the texts of its units, and its source videos."""
+        """Return the text of a file from the texts of its units and from its source videos."""
 
     def objects(self, parts: Sequence[str]) -> str:
-        """Return the text of a file that lists objects from the texts of these."""
+        """Return the text of a list of objects from the texts of these objects."""
 
     def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
         """Return the ``videos`` of a file that the written file can name.

@@ -27,9 +27,9 @@ class JsonElement(NamedTuple):
 class JsonList:
     """The elements of a list in a JSON text; iterating reads them one by one.
 
-    Faults are collected in ``errors``, with the name ``file``. Without ``key``, the list is the whole text.
-    With ``key``, the list may also be the value of this key in an object. The object's other values are in
-    ``others`` once all elements have been read.
+    Without ``key``, the list is the whole text. With ``key``, the list may also be the value of this key in
+    an object. The object's other values are in ``others`` once all elements have been read. Faults are
+    collected in ``errors``; ``file`` is the name of the file in their sources.
     """
 
     def __init__(self, text: str, file: Path, key: str | None = None) -> None:
@@ -84,7 +84,7 @@ class JsonList:
         position = self._skip_blanks(position)
         while self._text[position : position + 1] != "}":
             start = position
-            key, position = self._value(position)
+            key, position = self._value_at(position)
             if not isinstance(key, str):
                 raise self._unexpected("a key in quotes", start)
             if key in seen:
@@ -94,7 +94,7 @@ class JsonList:
             if key == self._key:
                 position = yield from self._list_elements(position)
             else:
-                self.others[key], position = self._value(position)
+                self.others[key], position = self._value_at(position)
             position = self._skip_blanks(position)
             if self._text[position : position + 1] != "}":
                 position = self._expect(",", position, "a comma or }")
@@ -112,12 +112,12 @@ class JsonList:
             if not first:
                 position = self._expect(",", position, "a comma or ]")
             first = False
-            value, end = self._value(position)
+            value, end = self._value_at(position)
             yield position, value
             position = self._skip_blanks(end)
         return position + 1
 
-    def _value(self, position: int) -> tuple[object, int]:
+    def _value_at(self, position: int) -> tuple[object, int]:
         """Return the JSON value at a position, and the position after it."""
         try:
             return DECODER.raw_decode(self._text, position)
@@ -126,7 +126,7 @@ class JsonList:
             raise
 
     def _expect(self, character: str, position: int, what: str = "") -> int:
-        """Return the position after a character and the blanks behind it.
+        """Return the position behind ``character`` and blanks; the character has to stand at ``position``.
 
         Raises :class:`JsonFaultError` where another character stands; ``what`` describes the expected one.
         """
@@ -180,7 +180,7 @@ def _repeated_key(key: str, position: int) -> JsonFaultError:
     return JsonFaultError(f"found the key {key!r} twice in one object", position)
 
 
-def _object(pairs: list[tuple[str, object]]) -> dict[str, object]:
+def _object_without_repeats(pairs: list[tuple[str, object]]) -> dict[str, object]:
     """Return an object of JSON from its pairs; raises :class:`JsonFaultError` for a repeated key."""
     value = dict(pairs)
     if len(value) < len(pairs):
@@ -190,7 +190,10 @@ def _object(pairs: list[tuple[str, object]]) -> dict[str, object]:
 
 
 DECODER: Final = json.JSONDecoder(
-    object_pairs_hook=_object, parse_int=JsonNumber, parse_float=JsonNumber, parse_constant=JsonNumber
+    object_pairs_hook=_object_without_repeats,
+    parse_int=JsonNumber,
+    parse_float=JsonNumber,
+    parse_constant=JsonNumber,
 )
 
 

@@ -88,7 +88,7 @@ class _Level:
     """A list or an object while JSON is read.
 
     ``owner`` is the key that it is under, ``key`` the key whose value is read. ``first`` is the number of
-    names before it. ``names`` and ``ids`` are those directly in it, each with its key.
+    names that were read before it. ``names`` and ``ids`` are those directly in it, each with its key.
     """
 
     def __init__(self, owner: str, is_list: bool, first: int = 0) -> None:

@@ -8,7 +8,7 @@ def read_node_json(value: Json) -> ObjectNode:
     """Return the node of a JSON object that was written from a :class:`foon_asp.results.values.Node`.
 
     Raises :class:`KeyError` or :class:`TypeError` for an object of another form. Raises :class:`ValueError`
-    if its key ``node``, the one-line notation, is another node than its other keys.
+    if its key ``node``, in one-line notation, means another node than its other keys state.
     """
     node = ObjectNode.of(
         value["label"],

@@ -57,7 +57,7 @@ def read_object(value: object, keys: set[str] = KEYS) -> JsonObject:
     label = _checked_name(label_value, label_key).strip(" ")
     if not label:
         raise ValueError(f'found {excerpt_of(label_value)} as "{label_key}", expected a name')
-    states = [_state(state) for state in _checked_list(*key_and_value(value, _STATES))]
+    states = [_state_line(state) for state in _checked_list(*key_and_value(value, _STATES))]
     listed = _checked_list("ingredients", value.get("ingredients"))
     ingredients = tuple(item for item in map(_ingredient_name, listed) if item)
     if ingredients:
@@ -158,7 +158,7 @@ def key_and_value(value: dict[str, object], keys: tuple[str, ...]) -> tuple[str,
 
 
 def optional_name(value: object, key: str) -> str | None:
-    """Return the name under a key, without blanks around it; ``None`` for no value, see :func:`is_none`.
+    """Return a value that is a name, without blanks around it; ``None`` for null and where :func:`is_none`.
 
     Raises :class:`ValueError`, which names ``key``, for a value that is no text.
     """
@@ -233,7 +233,7 @@ def price_from_json(value: object, exponents: bool = False) -> str:
     return written
 
 
-def _state(value: object) -> StateLine:
+def _state_line(value: object) -> StateLine:
     """Return the state line of a state in JSON: a name, also with brackets, or an object.
 
     Raises :class:`ValueError` for another value.
@@ -241,7 +241,7 @@ def _state(value: object) -> StateLine:
     if isinstance(value, dict):
         check_keys(value, _STATE_KEYS)
         label_key, label_value = key_and_value(value, _STATE_LABEL)
-        state = _state(_checked_name(label_value, label_key))
+        state = _state_line(_checked_name(label_value, label_key))
         related = optional_name(key_and_value(value, _RELATED)[1], _RELATED[0])
         if related:
             if not isinstance(state.attribute, str):
@@ -320,5 +320,5 @@ def excerpt_of(value: object) -> str:
 
 
 def _plain_number(value: JsonNumber) -> object:
-    """Return a number as Python has it, so that it is written as in the file; a long one as text."""
+    """Return a number as a value that Python writes as JSON; a number of 20 letters or more as text."""
     return json.loads(value.text) if len(value.text) < 20 else value.text

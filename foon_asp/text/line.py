@@ -120,7 +120,10 @@ def kind_of(line: Line) -> NameKind:
 
 
 def line_names(line: Line) -> Iterator[Mention]:
-    """Yield a mention of each name in a line; only the first, of :func:`name_of`, has the id of the line."""
+    """Yield a mention of each name in a line.
+
+    The first is that of :func:`name_of`, with the id of the line. All others are objects without an id.
+    """
     yield Mention(kind_of(line), name_of(line), line.id)
     if isinstance(line, StateLine):
         if isinstance(line.attribute, Relation):

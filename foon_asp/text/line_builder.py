@@ -71,7 +71,7 @@ class _LineBuilder(Transformer[Token, object]):
             written, motion = motion, motion.rstrip("* ")
             if written != motion + "*":
                 remarks.append(
-                    _remark(tokens[1], "outer-space", f"{written!r} read as '{motion}*'", len(motion))
+                    _remark_at(tokens[1], "outer-space", f"{written!r} read as '{motion}*'", len(motion))
                 )
         fields = _nonempty_fields(tokens[2:], remarks)
         times = MotionFields.of(fields).times
@@ -86,7 +86,7 @@ class _LineBuilder(Transformer[Token, object]):
         return MotionLine(motion, id_, composite, mended + fields[len(times) :], tuple(remarks))
 
     def plain(self, tokens: list[Token]) -> StateLine:
-        """Return the line of a name alone, a state, or of a name and text without brackets.
+        """Return the state line of a name alone, or of a name and a text that is not in brackets.
 
         Such a text is read as contents if it has a comma or follows ``contains``, else as the object of a
         relation.
@@ -154,8 +154,8 @@ def _bracketed_part(word: str, bracket: str) -> str | Relation | Contents:
     return Contents(word, tuple(sorted(unquoted(item) for item in written if item)))
 
 
-def _remark(token: Token, code: str, message: str, offset: int = 0) -> Remark:
-    """Return a remark on the column ``offset`` letters behind the begin of a token."""
+def _remark_at(token: Token, code: str, message: str, offset: int = 0) -> Remark:
+    """Return a remark at the column ``offset`` letters behind the begin of a token."""
     return Remark((token.column or 1) + offset, code, message)
 
 
@@ -180,10 +180,10 @@ def _nonempty_fields(tokens: list[Token], remarks: list[Remark]) -> tuple[str, .
     for token in tokens:
         field = token[1:].strip(" ")
         if not field:
-            remarks.append(_remark(token, "empty-field", "nothing after the tab; left out"))
+            remarks.append(_remark_at(token, "empty-field", "nothing after the tab; left out"))
         else:
             if field != token[1:]:
-                remarks.append(_remark(token, "outer-space", f"spaces around {field!r} left out", 1))
+                remarks.append(_remark_at(token, "outer-space", f"spaces around {field!r} left out", 1))
             fields.append(field)
     return tuple(fields)
 
@@ -199,22 +199,22 @@ def _checked_flag_and_tag(
     flag = fields[0]
     if flag in SLIPPED_FLAGS:
         remarks.append(
-            _remark(field_tokens[0], "motion-flag", f"motion flag {flag!r} read as {flag[1]!r}", 1)
+            _remark_at(field_tokens[0], "motion-flag", f"motion flag {flag!r} read as {flag[1]!r}", 1)
         )
         fields = (flag[1], *fields[1:])
     elif flag not in MOTION_FLAGS and flag != "!":
-        remarks.append(_remark(field_tokens[0], "motion-flag", f"motion flag {flag!r} is not 0 or 1", 1))
+        remarks.append(_remark_at(field_tokens[0], "motion-flag", f"motion flag {flag!r} is not 0 or 1", 1))
     for field, token in zip(fields[1:], field_tokens[1:], strict=True):
         if not is_number(field) and field != "!":
             message = f"{field!r} is neither a category nor the goal mark !"
-            remarks.append(_remark(token, "unknown-field", message, 1))
+            remarks.append(_remark_at(token, "unknown-field", message, 1))
     return fields
 
 
 def _drop_end_blanks(tokens: list[Token], remarks: list[Remark]) -> None:
     """Remove the token of blanks at the end of a state line, if there is one, and add a remark."""
     if tokens[-1].type == "BLANK":
-        remarks.append(_remark(tokens.pop(), "outer-space", "blanks at the end of the line left out"))
+        remarks.append(_remark_at(tokens.pop(), "outer-space", "blanks at the end of the line left out"))
 
 
 def _word_and_bracket(tokens: list[Token], remarks: list[Remark]) -> tuple[str, Token]:
@@ -237,7 +237,7 @@ def _without_end_spaces(token: Token, remarks: list[Remark]) -> str:
     """Return a name without the spaces after it, on which it adds a remark."""
     name = token.rstrip(" ")
     if name != token:
-        remarks.append(_remark(token, "outer-space", f"spaces after {name!r} left out", len(name)))
+        remarks.append(_remark_at(token, "outer-space", f"spaces after {name!r} left out", len(name)))
         return name
     return str(token)
 
@@ -253,14 +253,14 @@ def _bracketed_line(name: str, bracket: Token, id_: str, remarks: list[Remark]) 
     if bracket[-1] != closing or len(bracket) == 1:
         closed = bracket.rstrip("]}") + closing
         fault = "closed by the wrong bracket" if bracket[-1] in "]}" else "not closed"
-        remarks.append(_remark(bracket, "bracket", f"{bracket} is {fault}; read as {closed}"))
+        remarks.append(_remark_at(bracket, "bracket", f"{bracket} is {fault}; read as {closed}"))
         bracket = Token(bracket.type, closed, column=bracket.column)
     if closing == "]":
         if "," not in bracket and name != "contains":
             return _relation_line(name, bracket, id_, remarks)
         listed = split_ingredients(bracket[1:-1], (bracket.column or 1) + 1, remarks)
         braces = "{" + ",".join(listed) + "}"
-        remarks.append(_remark(bracket, "contents-bracket", f"{bracket} read as contents {braces}"))
+        remarks.append(_remark_at(bracket, "contents-bracket", f"{bracket} read as contents {braces}"))
     else:
         listed = split_ingredients(bracket[1:-1], (bracket.column or 1) + 1, remarks)
     return StateLine(Contents(name, tuple(sorted(listed))), id_, listed, tuple(remarks))
@@ -274,11 +274,11 @@ def _relation_line(name: str, bracket: Token, id_: str, remarks: list[Remark]) -
     related = bracket[1:-1].strip(" ")
     if not related:
         remarks.append(
-            _remark(bracket, "empty-relation", f"nothing in {bracket}; read as the state {name!r}")
+            _remark_at(bracket, "empty-relation", f"nothing in {bracket}; read as the state {name!r}")
         )
         return StateLine(name, id_, (), tuple(remarks))
     if related != bracket[1:-1]:
-        remarks.append(_remark(bracket, "outer-space", f"spaces around {related!r} left out"))
+        remarks.append(_remark_at(bracket, "outer-space", f"spaces around {related!r} left out"))
     return StateLine(Relation(name, related), id_, (), tuple(remarks))
 
 
@@ -292,7 +292,7 @@ def _parser() -> Lark:
 def parse_by_grammar(start: str, text: str) -> object:
     """Return the parsed line of a text for ``start="line"``, or the node of a notation for ``start="node"``.
 
-    A line has its line end. Raises :class:`LineError` for a text that the grammar does not accept.
+    A line is given with its line end. Raises :class:`LineError` for a text that the grammar does not accept.
     """
     try:
         return _parser().parse(text, start=start)

@@ -1,6 +1,6 @@
 """Reading of lines of FOON text and of nodes in one-line notation.
 
-Lark is imported only for lines that are unusual.
+Lark is imported only for texts that :mod:`foon_asp.text.clean_line` cannot read.
 """
 
 from functools import lru_cache
@@ -89,7 +89,7 @@ def read_state(text: str) -> StateLine:
 
 
 def _parse_by_grammar(start: str, text: str) -> object:
-    """Return what the function of this name in ``line_builder`` does, which is imported on the first call."""
+    """Call the function of this name in ``line_builder``, whose import takes long, since it imports Lark."""
     from foon_asp.text.line_builder import parse_by_grammar  # noqa: PLC0415 (imports Lark)
 
     return parse_by_grammar(start, text)

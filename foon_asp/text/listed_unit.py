@@ -71,7 +71,7 @@ class ListedUnit(NamedTuple):
 
     @property
     def amounts(self) -> UnitAmounts:
-        """The amounts above 1 of nodes on each side: sums over all blocks of a node."""
+        """The amounts above 1 of nodes on each side; those of a node that is listed twice are added up."""
         return counted_amounts(
             *([(block.node, block.amount or 1) for block in blocks] for blocks in (self.inputs, self.outputs))
         )

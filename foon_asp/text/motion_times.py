@@ -45,10 +45,10 @@ class MotionFields(NamedTuple):
 
     @classmethod
     def of(cls, fields: tuple[str, ...]) -> "MotionFields":
-        """Return the fields of a motion line by meaning.
+        """Return the fields of a motion line by their meaning.
 
-        The last field is a success rate, and the one before it an entity, if they look so. All others are
-        times.
+        If the last field is a success rate and the one before it is no time, these two are rate and entity.
+        All other fields are times.
         """
         if len(fields) > 1 and is_rate(fields[-1]) and not is_time(fields[-2]):
             return cls(fields[:-2], fields[-2], fields[-1])

@@ -115,7 +115,7 @@ def _record_prices(units: Iterable[tuple[ReadUnit, str]], reading: Reading) -> I
 
 
 def _read_lines(file: Path) -> Iterator[str]:
-    """Yield the lines of a file with their line ends, as they are read; progress is reported.
+    """Yield the lines of a file with their line ends, lazily; progress is reported.
 
     Raises :class:`InputError` with line and column of the first byte that is not UTF-8.
     """

@@ -11,7 +11,7 @@ from foon_asp.text.json_value import json_line
 from foon_asp.text.json_writer import list_text
 from foon_asp.text.line import MotionLine, ObjectLine
 from foon_asp.text.listed_unit import ObjectBlock
-from foon_asp.text.text_writer import with_word
+from foon_asp.text.text_writer import with_container_word
 
 
 def write_neutral_unit(id_: str, inputs: Iterable[str], outputs: Iterable[str], price: str) -> str:
@@ -59,7 +59,7 @@ class NeutralWriter:
         In a list it is an object with ``label`` and, where stated, ``amount``. Raises
         :class:`CannotHoldError` for blanks around the name, and if another node has the same name.
         """
-        states = tuple(map(with_word, block.states))
+        states = tuple(map(with_container_word, block.states))
         node = block._replace(states=states).node
         name = str(node) if states else node.label
         if not name or name != name.strip(" "):

@@ -77,9 +77,8 @@ def find_goal(
 ) -> int:
     """Return the id of the object node that a goal names.
 
-    A name is tried in this order: the one-line notation of a node (``sweet potato; chopped; in [cutting
-    board]``), as ``str(node)`` returns it; the label of an entry of the goals file ``listed``; the label of
-    a single node.
+    A name is tried in this order: as the one-line notation of a node (``sweet potato; chopped; in [cutting
+    board]``); as the label of an entry of the goals file ``listed``; as the label of a single node.
 
     A text that is no notation, or the notation of no node, is also tried literally as a label. A label with
     a semicolon after it (``onion;``) is only tried as notation: it is the node without states. Raises
@@ -114,7 +113,9 @@ def find_goal(
     count, labelled = names.labelled(node.label)
     if count:
         message = f"no object node is exactly {str(node)!r}; with that label there are"
-        raise _ambiguity_error(message, names, count, _most_similar_first(node, labelled, names), wording)
+        raise _error_with_candidates(
+            message, names, count, _most_similar_first(node, labelled, names), wording
+        )
     raise _unknown_error(f"no object node has the label {node.label!r}", node, names, wording)
 
 
@@ -140,7 +141,10 @@ def nodes_beginning(start: str, names: NodeNames, max_nodes: int) -> list[int]:
 
 
 def entry_names(listed: Sequence[ListedObject], names: NodeNames) -> Iterator[str]:
-    """Yield a name for each entry of a goals file: its label, or if this is ambiguous its node's notation."""
+    """Yield a name for each entry of a goals file, by which :func:`find_goal` finds the entry's node.
+
+    It is the label, or the notation of the node if the label also means another node.
+    """
     counts = Counter(entry.pattern.label for entry in listed)
     for entry in listed:
         label = entry.pattern.label
@@ -172,7 +176,9 @@ def nodes_of_entry(entry: ListedObject, names: NodeNames) -> Sequence[int]:
         position = f"{entry.source}:{entry.source.column}"
         message = f"{position}: error: the goal {str(entry.pattern)!r} matches no object node"
         if count:
-            raise _ambiguity_error(f"{message}; with that label there are", names, count, labelled, _GOAL)
+            raise _error_with_candidates(
+                f"{message}; with that label there are", names, count, labelled, _GOAL
+            )
         raise _unknown_error(f"{message} of the network", ObjectNode(entry.pattern.label), names, _GOAL)
     return nodes
 
@@ -184,7 +190,7 @@ def _only_node(name: str, names: NodeNames, count: int, nodes: Sequence[int], wo
     """
     if count > 1:
         message = f"the {wording.noun} {name!r} means {count} object nodes"
-        raise _ambiguity_error(f"{message}; paste the one you mean", names, count, nodes, wording)
+        raise _error_with_candidates(f"{message}; paste the one you mean", names, count, nodes, wording)
     return nodes[0]
 
 
@@ -210,12 +216,12 @@ def _unknown_error(message: str, node: ObjectNode, names: NodeNames, wording: Wo
     share = max(1, _MAX_CANDIDATES // len(counted_nodes))
     total = sum(count for count, _ in counted_nodes)
     first = [o for _, nodes in counted_nodes for o in _most_similar_first(node, nodes, names)[:share]]
-    return _ambiguity_error(f"{message}; similar are", names, total, first, wording)
+    return _error_with_candidates(f"{message}; similar are", names, total, first, wording)
 
 
-def _ambiguity_error(
+def _error_with_candidates(
     message: str, names: NodeNames, count: int, candidates: Iterable[int], wording: Wording
 ) -> GoalError:
-    """Return the error with the first twelve of ``candidates``; ``count`` is how many nodes there are."""
+    """Return an error with up to twelve of the candidates, which are ids; ``count`` is their number."""
     shown = [str(names.node(o)) for o in [*candidates][:_MAX_CANDIDATES]]
     return GoalError(message, shown, count - len(shown), wording.option)

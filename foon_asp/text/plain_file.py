@@ -1,4 +1,4 @@
-"""Reading of text files in UTF-8, with or without a byte order mark; stores are told from them."""
+"""Reading of text files in UTF-8, with or without a byte order mark; recognition of stores."""
 
 import re
 from codecs import BOM_UTF8, getincrementaldecoder

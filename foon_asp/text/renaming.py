@@ -49,9 +49,10 @@ class Renaming:
         self._ids.update(ids)
 
     def line(self, line: str) -> str:
-        """Return a line of FOON text with the new name, spelt as before in all else where that is possible.
+        """Return a line of FOON text with the new name; its spelling stays where that is possible.
 
-        Lines without the old name, and lines that cannot be understood, are returned as they are.
+        An id of the old name is replaced, too, see :meth:`id`. Lines without the old name, and lines that
+        cannot be understood, are returned as they are.
         """
         if self.rename.old not in line or line[:1] not in {"O", "S", "M"}:
             return line

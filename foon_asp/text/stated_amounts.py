@@ -12,12 +12,13 @@ UnitAmount = tuple[str, bool, ObjectNode]
 
 
 class StatedAmounts:
-    """The amounts that copies of units state; ``len`` counts the units."""
+    """The amounts that copies of units state."""
 
     def __init__(self) -> None:
         self._copies: dict[FunctionalUnit, dict[Source, UnitAmounts]] = {}
 
     def __len__(self) -> int:
+        """The number of units of which a copy states amounts."""
         return len(self._copies)
 
     def add(self, unit: FunctionalUnit, amounts: UnitAmounts, source: Source) -> None:

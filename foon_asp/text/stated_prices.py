@@ -8,13 +8,14 @@ from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 
 
 class StatedPrices:
-    """The prices that copies of units state; ``len`` counts the units with a price."""
+    """The prices that copies of units state."""
 
     def __init__(self) -> None:
         self._copies: dict[FunctionalUnit, dict[Fraction, Source]] = {}
         self._least: dict[FunctionalUnit, Fraction] = {}
 
     def __len__(self) -> int:
+        """The number of units of which a copy states a price."""
         return len(self._copies.keys() | self._least.keys()) if self._copies else len(self._least)
 
     def add(self, unit: FunctionalUnit, price: Fraction, source: Source) -> None:

@@ -54,7 +54,7 @@ def _node_of_clean_block(block: str) -> ObjectNode | None:
 def _blank_of_clean_states(states: str) -> ObjectNode | None:
     """Return a node with an empty label and the attributes of state lines; results are cached.
 
-    ``None`` stands for lines with remarks or errors, and for other lines.
+    Returns ``None`` if one of the lines has a remark or is no state line.
     """
     lines = map(read_line, states.split("\n"))
     attributes = [line.attribute for line in lines if isinstance(line, StateLine) and not line.remarks]
@@ -62,13 +62,16 @@ def _blank_of_clean_states(states: str) -> ObjectNode | None:
 
 
 def _nodes_of_clean_blocks(blocks: str) -> list[ObjectNode] | None:
-    """Return the nodes of object blocks, given without the first ``O``; ``None`` if one is not well-formed."""
+    """Return the nodes of object blocks, given without the first ``O``.
+
+    Returns ``None`` if one of the blocks is not well-formed.
+    """
     nodes = list(map(_node_of_clean_block, blocks.split("\nO")))
     return cast(list[ObjectNode], nodes) if all(nodes) else None
 
 
 class TextUnits:
-    """A reader of one FOON text, which may come in pieces; it may be read once.
+    """A reader of one FOON text, given in pieces, which can be read once.
 
     All line ends have to be line feeds. ``file`` is the name of the file in sources. Diagnostics and goal
     marks are recorded in ``reading``.
@@ -111,7 +114,7 @@ class TextUnits:
     def _chunks(self) -> Iterator[tuple[str, bool]]:
         """Yield the chunks between lines ``//``, each with whether it is the last; progress is reported.
 
-        If the text begins with JSON after other text, this fault is recorded, and there are no chunks.
+        If the text is JSON behind other text, this fault is recorded, and there are no chunks.
         """
         report, unreported = progress_report(), 0
         pieces = [next(self._pieces, "")]
@@ -237,7 +240,10 @@ class TextUnits:
         return ListedUnit(motion, inputs, outputs, sources, self._source(index))
 
     def _add_amount(self, section: "_Section", index: int) -> None:
-        """Give the amount in a comment line to the object above it, or record its fault."""
+        """Set the amount of the current object to that in a comment line, or record the line as a fault.
+
+        An amount of an object that could not be read is dropped.
+        """
         if section.lost:
             self.reading.left_out += self.reading.lenient
             return

@@ -29,7 +29,7 @@ class TextWriter:
 
     def block(self, block: ObjectBlock, in_list: bool) -> WrittenPart:
         """Return the lines of an object block, and its losses; an amount of 1 is written only in a list."""
-        parts = list(map(self._line, block.lines))
+        parts = list(map(self._line_text, block.lines))
         mark = ""
         if block.amount is not None and (in_list or block.amount > 1):
             mark = write_amount(block.amount)
@@ -37,7 +37,7 @@ class TextWriter:
 
     def motion(self, line: MotionLine) -> WrittenPart:
         """Return the line of a motion, and its losses."""
-        return self._line(line)
+        return self._line_text(line)
 
     def unit(self, inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str) -> str:
         """Return the lines of a unit from its parts, with a closing ``//``; ``price`` is lost."""
@@ -62,7 +62,7 @@ class TextWriter:
         Remarks are removed. Times become one field or two, as the dialect has them.
         """
         line = line._replace(remarks=())
-        line = with_word(line) if isinstance(line, StateLine) else line
+        line = with_container_word(line) if isinstance(line, StateLine) else line
         line = self._numbering.number(line) if self._target is Dialect.IDS else line._replace(id="")
         if self._target is Dialect.PLAIN:
             if isinstance(line, ObjectLine):
@@ -74,7 +74,7 @@ class TextWriter:
             return line._replace(fields=motion_fields._replace(times=convert(motion_fields.times)).fields)
         return line
 
-    def _line(self, line: Line) -> WrittenPart:
+    def _line_text(self, line: Line) -> WrittenPart:
         """Return the text of a line in the dialect, with its line end, and its losses.
 
         Raises :class:`CannotHoldError` where the text would not be read back with the same meaning.
@@ -88,8 +88,8 @@ class TextWriter:
         return written + "\n", lost_in_line(line, back)
 
 
-def with_word(line: StateLine) -> StateLine:
-    """Return a state line; a relation without a word, which is a container, gets the word ``in``."""
+def with_container_word(line: StateLine) -> StateLine:
+    """Return a state line in which a relation without a word, a container, has the word ``in``."""
     if isinstance(line.attribute, Relation) and not line.attribute.word:
         return line._replace(attribute=line.attribute._replace(word="in"))
     return line

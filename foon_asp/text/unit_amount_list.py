@@ -1,4 +1,4 @@
-"""The table ``unit_amounts.txt``: on each line a motion, an object node, and how many of it units have."""
+"""The table ``unit_amounts.txt``: on each line a motion, a node, and its amount in units of the motion."""
 
 import re
 
@@ -13,8 +13,8 @@ _ARROWS = ("→", "->")
 _AMOUNT = re.compile(r"[1-9]\d{0,6}", re.ASCII)
 
 
-def _row(name: str, value: str, column: int) -> tuple[UnitAmount, int]:
-    """Return the motion, side and node of a row, and the amount; raises :class:`LineError` at a fault."""
+def _amount_row(name: str, value: str, column: int) -> tuple[UnitAmount, int]:
+    """Return motion, side and node of a row, and the amount; raises :class:`LineError` at a fault."""
     motion = motion_in_first_column(name, "an object node")
     *fields, written = value.split("\t")
     written = written.strip()
@@ -32,7 +32,7 @@ UNIT_AMOUNTS = Table(
     "unit-amount",
     NameKind.MOTION,
     "an object node, a tab and its amount",
-    _row,
+    _amount_row,
     "a second amount for {name!r}",
 )
 """``motion⇥NODE⇥2`` and ``motion⇥→⇥NODE⇥4``: how many of an input or output units of a motion have."""

@@ -38,7 +38,7 @@ def read_unit_prices(file: Path) -> UnitPriceList:
     return price_list
 
 
-def _row(name: str, value: str, column: int) -> tuple[str | FunctionalUnit, Fraction]:
+def _price_row(name: str, value: str, column: int) -> tuple[str | FunctionalUnit, Fraction]:
     """Return the motion or the single unit of a row, and its price; raises :class:`LineError` at a fault."""
     motion = motion_in_first_column(name, "a price")
     *fields, written = value.split("\t")
@@ -46,7 +46,7 @@ def _row(name: str, value: str, column: int) -> tuple[str | FunctionalUnit, Frac
     return _parse_unit(motion, fields, column) if fields else motion, price
 
 
-UNIT_PRICES = Table("unit-price", NameKind.MOTION, "a price", _row, "a second price for {name!r}")
+UNIT_PRICES = Table("unit-price", NameKind.MOTION, "a price", _price_row, "a second price for {name!r}")
 
 
 def write_unit_prices(prices: UnitPrices) -> str:

@@ -39,21 +39,21 @@ class Table(NamedTuple, Generic[K, V]):
     second: str = ""
 
     def rows(self, file: Path, text: str | None = None) -> list[Row[K, V]]:
-        """Return the rows of a file, or of ``text`` in place of its content; the first row of each name.
+        """Return the first row of each name in a file, or in ``text`` in place of its content.
 
         Blank lines and ``#`` comments are skipped. Raises :class:`InputError` with every line of another
         form, and with every line that gives another value to a name than an earlier line.
         """
         rows_by_name: dict[K, Row[K, V]] = {}
 
-        def read(name: str, value: str, source: Source) -> None:
+        def add_row(name: str, value: str, source: Source) -> None:
             """Record a row; raises :class:`LineError` if its name has another value already."""
             row = Row(*self.row(name.strip(), value, len(name) + 2), source)
             if rows_by_name.setdefault(row.name, row).value != row.value:
                 second = self.second.format(name=str(row.name), value=value)
                 raise LineError(len(name) + 2 + value.rfind("\t") + 1, second, ("one",))
 
-        read_rows(file, self.code, self.expected, read, text)
+        read_rows(file, self.code, self.expected, add_row, text)
         return list(rows_by_name.values())
 
     def read(self, file: Path) -> dict[K, V]:
