@@ -48,21 +48,21 @@ def write_all_whole(contents: Mapping[Path, bytes]) -> None:
     raised as :class:`UserError`, and after ctrl-C, all files are as before. If the process is killed in the
     middle, each file is the old one or the new one.
     """
-    replaced: dict[Path, bytes] = {}
+    old_contents: dict[Path, bytes] = {}
     try:
         with contextlib.ExitStack() as stack:
-            staged = []
+            staged_files = []
             for file, content in contents.items():
                 target = Path(os.path.realpath(file))
-                staged.append((target, stack.enter_context(_staged_file(target, content))))
-            for target, partial in staged:
-                before = target.read_bytes()
-                replaced[target] = before
+                staged_files.append((target, stack.enter_context(_staged_file(target, content))))
+            for target, partial in staged_files:
+                old_content = target.read_bytes()
+                old_contents[target] = old_content
                 partial.replace(target)
     except BaseException as error:
-        for target, before in replaced.items():
-            if target.read_bytes() != before:
-                _replace(target, before)
+        for target, old_content in old_contents.items():
+            if target.read_bytes() != old_content:
+                _replace(target, old_content)
         if not isinstance(error, OSError):
             raise
         name = os.fsdecode(error.filename) if error.filename else file
@@ -78,10 +78,10 @@ def utf_8(text: str) -> bytes:
         return text.encode()
     except UnicodeEncodeError as error:
         line = text.count("\n", 0, error.start) + 1
-        found = ascii(text[error.start])
+        half_character = ascii(text[error.start])
         raise UserError(
-            f"line {line} of what would be written has {found}, half a character, which UTF-8 cannot hold: "
-            "correct the name that contains it"
+            f"line {line} of what would be written has {half_character}, half a character, which UTF-8 cannot "
+            "hold: correct the name that contains it"
         ) from None
 
 
@@ -98,25 +98,25 @@ def _staged_file(target: Path, content: bytes) -> Iterator[Path]:
     The file is removed at the end if it was not renamed. Raises :class:`OSError` for a target that may not
     be written. Warns if the replaced file had other names or another owner.
     """
-    old = None
+    old_status = None
     if target.exists():
         with target.open("ab"):  # may it be written? Renaming asks the folder alone
-            old = target.stat()
+            old_status = target.stat()
     _remove_leftovers(target.parent)
-    partial, written = _create_locked_file(target.parent)
+    partial, partial_file = _create_locked_file(target.parent)
     try:
-        with written:
-            written.write(content)
-            written.flush()
-            os.fsync(written.fileno())
-            if old is not None:
-                copy_permissions(old, partial)
+        with partial_file:
+            partial_file.write(content)
+            partial_file.flush()
+            os.fsync(partial_file.fileno())
+            if old_status is not None:
+                copy_permissions(old_status, partial)
             # Windows renames no open file; and a process may have 1,024 open, and rename writes many
-            if fcntl is None or written.fileno() > 500:
-                written.close()
+            if fcntl is None or partial_file.fileno() > 500:
+                partial_file.close()
             yield partial
-        if old is not None:
-            warn_of_replaced(target, old)
+        if old_status is not None:
+            warn_of_replaced(target, old_status)
     finally:
         partial.unlink(missing_ok=True)
 
@@ -125,10 +125,10 @@ def _create_locked_file(folder: Path) -> tuple[Path, BinaryIO]:
     """Return the path of a new file with an unused name, and the open file, which is locked until closed."""
     while True:
         partial = folder / f".foon-asp.{os.urandom(8).hex()}"
-        written = partial.open("xb")
-        if _try_lock(written.fileno(), otherwise=True) and partial.exists():
-            return partial, written
-        written.close()  # before it was locked, another process took it for left over
+        partial_file = partial.open("xb")
+        if _try_lock(partial_file.fileno(), otherwise=True) and partial.exists():
+            return partial, partial_file
+        partial_file.close()  # before it was locked, another process took it for left over
 
 
 @functools.cache  # once for each folder: fmt writes many files
@@ -145,12 +145,12 @@ def _remove_leftovers(folder: Path) -> None:
 
 def _remove_unlocked(file: Path) -> None:
     """Remove a temporary file unless another process, which writes it, has locked it."""
-    found = os.open(file, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
+    descriptor = os.open(file, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
     try:
-        if stat.S_ISREG(os.fstat(found).st_mode) and _try_lock(found, otherwise=False):
+        if stat.S_ISREG(os.fstat(descriptor).st_mode) and _try_lock(descriptor, otherwise=False):
             file.unlink()
     finally:
-        os.close(found)
+        os.close(descriptor)
 
 
 def _try_lock(descriptor: int, otherwise: bool) -> bool:

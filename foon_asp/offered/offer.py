@@ -41,16 +41,16 @@ class Offer(NamedTuple):
     function: str
     package: str
 
-    def fault(self, what: str, trace: str = "") -> UserError:
-        """Return the error that the package of an offer did ``what``.
+    def fault(self, complaint: str, trace: str = "") -> UserError:
+        """Return the error that the package of an offer did something wrong, which ``complaint`` tells.
 
         With ``--debug``, users see the ``trace``, too.
         """
-        if len(what) > 300:  # a package may say any amount
-            what = f"{what[:300]}..."
+        if len(complaint) > 300:  # a package may say any amount
+            complaint = f"{complaint[:300]}..."
         error = UserError(
             f"{escaped(self.package)}: {escaped(self.name)} ({self.group}, {escaped(self.function)}): "
-            f"{escaped(what)}\n"
+            f"{escaped(complaint)}\n"
             "what to do: tell the authors of the package, name others, or uninstall it"
         )
         if trace:
@@ -98,8 +98,8 @@ def find_offers(group: str) -> list[Offer]:
             continue
         try:
             package, version = distribution.metadata["Name"], distribution.metadata["Version"]
-            points = distribution.entry_points.select(group=group)
-            offers = [Offer(group, point.name, point.value, f"{package} {version}") for point in points]
+            entry_points = distribution.entry_points.select(group=group)
+            offers = [Offer(group, point.name, point.value, f"{package} {version}") for point in entry_points]
         except Exception as error:
             raise UserError(
                 f"a package offers {group} and cannot be read: "

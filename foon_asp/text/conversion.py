@@ -131,11 +131,13 @@ class Converter:
         A node that a unit lists twice is written once. Its amounts are added up in machine-written formats;
         elsewhere the greatest of them counts.
         """
-        listed = list(format_.listed_units(text, file, self._reading))
-        videos = self._kept_videos(text, format_, listed, lost)
-        meant = [unit.with_totals if format_.machine_written else unit.without_repeats for unit in listed]
-        written = [self._converted_unit(unit, lost) for unit in meant]
-        return self._writer.network([unit for unit in written if unit], videos)
+        units = list(format_.listed_units(text, file, self._reading))
+        videos = self._kept_videos(text, format_, units, lost)
+        merged_units = [
+            unit.with_totals if format_.machine_written else unit.without_repeats for unit in units
+        ]
+        unit_texts = [self._converted_unit(unit, lost) for unit in merged_units]
+        return self._writer.network([unit for unit in unit_texts if unit], videos)
 
     def _converted_unit(self, unit: ListedUnit, lost: "_Tally") -> str:
         """Return the text of a unit; losses go to ``lost``.
@@ -186,13 +188,13 @@ class Converter:
         The other comments of the file go to ``lost``, too.
         """
         video_lists = {unit.sources[0].videos for unit in units}
-        common = video_lists.pop() if len(video_lists) == 1 else ()
+        shared_videos = video_lists.pop() if len(video_lists) == 1 else ()
         comments = [line for line in split_lines(text) if line[:1] == "#"]
-        kept = self._writer.held_videos(common, comments)
+        kept = self._writer.held_videos(shared_videos, comments)
         if format_.has_comments:
             lost.add_comments(text, kept)
         else:
-            lost.add([Loss.VIDEOS] * (len(common) - len(kept)), Source(lost.file, 1))
+            lost.add([Loss.VIDEOS] * (len(shared_videos) - len(kept)), Source(lost.file, 1))
         return kept
 
     def _reject(self, problem: CannotHoldError, source: Source) -> None:

@@ -137,9 +137,9 @@ def _lost_relation(relation: Relation, extra: Counter[str | Relation | Contents]
     Only the word is lost if the result relates to the same object by another word. ``extra`` counts the
     attributes that only the result has; that other relation is removed from it.
     """
-    for other in list(extra):
-        if isinstance(other, Relation) and other.object == relation.object:
-            extra[other] -= 1
+    for other_relation in list(extra):
+        if isinstance(other_relation, Relation) and other_relation.object == relation.object:
+            extra[other_relation] -= 1
             extra += Counter()  # removes entries without a count
             return Loss.RELATION_WORDS if relation.word else Loss.CONTAINERS
     return Loss.RELATIONS

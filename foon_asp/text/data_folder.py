@@ -124,13 +124,13 @@ def find_data(
             raise UserError(f"{path}: no such file or folder")
     if folder is not None and not folder.is_dir():
         raise UserError(f"{folder}: expected a folder; a single network is given with --network")
-    sources = network or ([folder] if folder else [])
-    tables = {path.resolve() for path in own_files if path is not None}
+    network_paths = network or ([folder] if folder else [])
+    own_paths = {path.resolve() for path in own_files if path is not None}
     files = tuple(
         file
-        for source in sources
+        for source in network_paths
         for file in network_files(source)
-        if not source.is_dir() or file.resolve() not in tables
+        if not source.is_dir() or file.resolve() not in own_paths
     )
     if not files:
         raise UserError("no network: name a recipe, a folder or a store")
@@ -273,9 +273,11 @@ def unit_prices(stated: StatedPrices, listed: UnitPriceList | None) -> UnitPrice
     A price in the file ``listed`` takes precedence over one ``stated`` in networks. Raises
     :class:`InputError` if copies of a unit state different prices and the file has none for the unit.
     """
-    chosen = listed.units if listed else {}
-    settled = stated.price_by_unit(chosen)
-    return UnitPrices(listed.motions if listed else {}, settled | chosen) if listed or settled else None
+    prices_of_file = listed.units if listed else {}
+    price_by_unit = stated.price_by_unit(prices_of_file)
+    if not (listed or price_by_unit):
+        return None
+    return UnitPrices(listed.motions if listed else {}, price_by_unit | prices_of_file)
 
 
 def amounts_of_units(
@@ -285,13 +287,13 @@ def amounts_of_units(
 
     Appends to ``warnings`` a warning for each row of the table that matches no unit.
     """
-    settled = stated.amounts_by_unit(network)
+    stated_amounts = stated.amounts_by_unit(network)
     if file is None:
-        return settled
+        return stated_amounts
     rows = UNIT_AMOUNTS.rows(file)
     motions = {row.name[0] for row in rows}
     units = (network.unit(unit) for unit, motion in enumerate(network.motions) if motion in motions)
-    amounts, unmatched = apply_amount_table(settled, rows, units)
+    amounts, unmatched = apply_amount_table(stated_amounts, rows, units)
     warnings += unmatched
     return amounts
 

@@ -130,11 +130,11 @@ def rewrite_lines(text: str, file: str, lenient: bool, rewrite: Rewrite) -> str:
         new_lines.append(new_line)
     if errors:
         raise InputError(errors)
-    last = len(new_lines) - 1
-    while last >= 0 and not new_lines[last]:
-        last -= 1
+    last_line = len(new_lines) - 1
+    while last_line >= 0 and not new_lines[last_line]:
+        last_line -= 1
     if _ends_in_open_unit(lines):
-        new_lines.insert(last + 1, "//")
+        new_lines.insert(last_line + 1, "//")
     if new_lines[-1]:
         new_lines.append("")
     return usual_line_end(text).join(new_lines)

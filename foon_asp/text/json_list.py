@@ -125,13 +125,13 @@ class JsonList:
             fault.position = position
             raise
 
-    def _expect(self, character: str, position: int, what: str = "") -> int:
+    def _expect(self, character: str, position: int, description: str = "") -> int:
         """Return the position behind ``character`` and blanks; the character has to stand at ``position``.
 
-        Raises :class:`JsonFaultError` where another character stands; ``what`` describes the expected one.
+        Raises :class:`JsonFaultError` where another one stands; ``description`` is what was expected.
         """
         if self._text[position : position + 1] != character:
-            raise self._unexpected(what or character, position)
+            raise self._unexpected(description or character, position)
         return self._skip_blanks(position + 1)
 
     def _expect_end(self, end: int) -> None:
@@ -207,15 +207,15 @@ def fault_before_json(text: str) -> str:
 
     JSON is searched for in the first 2,000 letters. A text that begins with a line of FOON is no JSON.
     """
-    begins = text[:2_000].lstrip(_BLANKS)
-    first = begins.split("\n", 1)[0].rstrip()
-    if not _JSON_LINE.search(begins) or begins_json(begins) or _FOON_LINE.match(first):
+    beginning = text[:2_000].lstrip(_BLANKS)
+    first_line = beginning.split("\n", 1)[0].rstrip()
+    if not _JSON_LINE.search(beginning) or begins_json(beginning) or _FOON_LINE.match(first_line):
         return ""
-    if first.startswith(FENCE):
+    if first_line.startswith(FENCE):
         return (
             f"found a code fence around JSON, expected JSON alone: remove the lines that begin with {FENCE}"
         )
-    return f"found the text {first[:40]!r} before JSON, expected JSON alone: remove it"
+    return f"found the text {first_line[:40]!r} before JSON, expected JSON alone: remove it"
 
 
 class JsonFault(NamedTuple):

@@ -58,8 +58,8 @@ def read_object(value: object, keys: set[str] = KEYS) -> JsonObject:
     if not label:
         raise ValueError(f'found {excerpt_of(label_value)} as "{label_key}", expected a name')
     states = [_state_line(state) for state in _checked_list(*key_and_value(value, _STATES))]
-    listed = _checked_list("ingredients", value.get("ingredients"))
-    ingredients = tuple(item for item in map(_ingredient_name, listed) if item)
+    listed_ingredients = _checked_list("ingredients", value.get("ingredients"))
+    ingredients = tuple(item for item in map(_ingredient_name, listed_ingredients) if item)
     if ingredients:
         states = _add_contents(states, ingredients)
     container = optional_name(value.get("container"), "container")
@@ -67,9 +67,12 @@ def read_object(value: object, keys: set[str] = KEYS) -> JsonObject:
     fields = tuple(filter(None, (flag, category)))
     line = ObjectLine(label, digits_under(value, "object_id"), fields)
     remarks = [remark.message for state in states for remark in state.remarks]
-    plain = [state._replace(remarks=()) for state in states] if remarks else states
+    plain_states = [state._replace(remarks=()) for state in states] if remarks else states
     return JsonObject(
-        line, tuple(plain), container, (*remarks, *_remarks_on_losses(value, flag, category, listed))
+        line,
+        tuple(plain_states),
+        container,
+        (*remarks, *_remarks_on_losses(value, flag, category, listed_ingredients)),
     )
 
 
@@ -151,10 +154,10 @@ def key_and_value(value: dict[str, object], keys: tuple[str, ...]) -> tuple[str,
 
     Raises :class:`ValueError` if it has two of the keys.
     """
-    present = [key for key in keys if key in value] or [keys[0]]
-    if len(present) > 1:
-        raise ValueError(f"found both {present[0]!r} and {present[1]!r}, expected one of them")
-    return present[0], value.get(present[0])
+    present_keys = [key for key in keys if key in value] or [keys[0]]
+    if len(present_keys) > 1:
+        raise ValueError(f"found both {present_keys[0]!r} and {present_keys[1]!r}, expected one of them")
+    return present_keys[0], value.get(present_keys[0])
 
 
 def optional_name(value: object, key: str) -> str | None:
@@ -178,13 +181,13 @@ def digits_under(value: dict[str, object], key: str) -> str:
 
     Raises :class:`ValueError` for any other value.
     """
-    field = value.get(key)
-    if field is None or (isinstance(field, str) and is_none(field)):
+    value_of_key = value.get(key)
+    if value_of_key is None or (isinstance(value_of_key, str) and is_none(value_of_key)):
         return ""
-    written = field.text if isinstance(field, JsonNumber) else field
+    written = value_of_key.text if isinstance(value_of_key, JsonNumber) else value_of_key
     if isinstance(written, str) and is_number(written):
         return written
-    raise ValueError(f'found {excerpt_of(field)} as "{key}", expected a number')
+    raise ValueError(f'found {excerpt_of(value_of_key)} as "{key}", expected a number')
 
 
 def amount_from_json(value: object) -> int:

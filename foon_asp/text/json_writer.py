@@ -48,8 +48,8 @@ class JsonWriter:
         text = (object_without_ids if self._is_list else object_with_ids)(line, states)
         if block.amount is not None and (in_list or block.amount > 1):
             text = f'{text[:-1]},"amount":{block.amount}}}'
-        back = _read_back_object(text) if in_list else _read_back_unit(text, '"x"').inputs[0]
-        losses = lost_in_line(line, back.object) + lost_in_states(states, back.states)
+        read_back = _read_back_object(text) if in_list else _read_back_unit(text, '"x"').inputs[0]
+        losses = lost_in_line(line, read_back.object) + lost_in_states(states, read_back.states)
         return lay_out(text, 1 if in_list else self._level + 2), losses
 
     def motion(self, line: MotionLine) -> WrittenPart:
@@ -58,8 +58,8 @@ class JsonWriter:
         Raises :class:`CannotHoldError` where the text would be read as another motion.
         """
         text = (motion_without_ids if self._is_list else motion_with_ids)(line)
-        back = _read_back_unit('{"label":"x"}', text).motion
-        return lay_out(text, self._level + 1), lost_in_line(line, back)
+        read_back = _read_back_unit('{"label":"x"}', text).motion
+        return lay_out(text, self._level + 1), lost_in_line(line, read_back)
 
     def unit(self, inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str) -> str:
         """Return the JSON of a unit from that of its parts; ``price`` is empty for a unit without one."""
@@ -191,7 +191,7 @@ def object_without_ids(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
     attributes = [state.attribute for state in states]
     relations = sorted(
         (attribute for attribute in attributes if isinstance(attribute, Relation)),
-        key=lambda p: p.word != "in",
+        key=lambda relation: relation.word != "in",
     )
     return _compact_json(
         {
@@ -214,11 +214,11 @@ def unit_text(inputs: Sequence[str], motion: str, outputs: Sequence[str], price:
     The motion is laid out one level deeper, the objects two levels. ``price`` is empty for a unit without
     one.
     """
-    key = "\n" + STEP * (level + 1)
+    key_indent = "\n" + STEP * (level + 1)
     lists = (list_text(objects, level + 1) for objects in (inputs, outputs))
-    last = f',{key}"price": {_compact_json(_json_number(price))}' if price else ""
+    price_part = f',{key_indent}"price": {_compact_json(_json_number(price))}' if price else ""
     return '{{{0}"input_nodes": {1},{0}"motion_node": {3},{0}"output_nodes": {2}{4}{5}}}'.format(
-        key, *lists, motion, last, "\n" + STEP * level
+        key_indent, *lists, motion, price_part, "\n" + STEP * level
     )
 
 

@@ -338,8 +338,8 @@ def _advice(line: str) -> str:
         return ""
     if line.startswith(FENCE):
         return "remove this line: a code fence is no part of FOON text"
-    if begins := re.match(r"([osm]\d*)[ \t]+(\S.*)", line):
-        return f"write {begins[1].upper()}, a tab, and {begins[2]}"
+    if match := re.match(r"([osm]\d*)[ \t]+(\S.*)", line):
+        return f"write {match[1].upper()}, a tab, and {match[2]}"
     if re.fullmatch(r"[^\W\d_][^\t\[\]{};:]{,39}", line):
         return f"an object is written O, a tab, and {line}"
     return ""

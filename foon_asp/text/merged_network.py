@@ -24,19 +24,19 @@ def merged_text(network: Network, comment: str, amounts: Amounts = MappingProxyT
     comments: dict[Source, str] = {}
     yield f"# {comment}\n//\n"
     counted_motions = {unit.motion for unit in amounts}
-    for number, (motion, inputs, outputs, sources) in enumerate(
+    for unit_id, (motion, inputs, outputs, sources) in enumerate(
         zip(network.motions, network.inputs, network.outputs, network.sources, strict=True)
     ):
         if not inputs:
             raise UserError(f"the unit {motion!r} has no inputs, which FOON text cannot hold; a store can")
         for source in dict.fromkeys(source._replace(column=1) for source in sources):
             yield comments.get(source) or comments.setdefault(source, _checked_copy_comment(source))
-        of_unit = amounts.get(network.unit(number), ALL_ONE) if motion in counted_motions else None
+        amounts_of_unit = amounts.get(network.unit(unit_id), ALL_ONE) if motion in counted_motions else None
         for side, nodes in enumerate((inputs, outputs)):
             yield motions[motion] if side else ""
             for node in nodes:
                 yield blocks[node]
-                if of_unit and (amount := of_unit[side].get(network.objects[node])):
+                if amounts_of_unit and (amount := amounts_of_unit[side].get(network.objects[node])):
                     yield write_amount(amount)
         yield "//\n"
 

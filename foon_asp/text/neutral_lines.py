@@ -86,12 +86,14 @@ class NeutralLines(FoonJson):
         """
         lines = split_lines(text.removeprefix("\ufeff"))
         reading = Reading(lenient)
-        understood = {unit.source.line for unit, _ in _units_and_prices(lines, file, reading)}
+        understood_lines = {unit.source.line for unit, _ in _units_and_prices(lines, file, reading)}
         reading.raise_errors()
-        new = [on_one_line(line) if number in understood else line for number, line in enumerate(lines, 1)]
-        if new[-1]:
-            new.append("")
-        return usual_line_end(text).join(new)
+        new_lines = [
+            on_one_line(line) if number in understood_lines else line for number, line in enumerate(lines, 1)
+        ]
+        if new_lines[-1]:
+            new_lines.append("")
+        return usual_line_end(text).join(new_lines)
 
     def mentions(self, text: str, file: str) -> Iterator[Mention]:
         """Yield every mention of a name; faulty lines are not noticed."""

@@ -25,8 +25,8 @@ def _unit_line(
 ) -> str:
     """Return the line of a unit from names, which are JSON already, and their amounts."""
     input_list, output_list = map(_side_text, (inputs, outputs))
-    last = f', "price": {Decimal(price):f}' if price else ""
-    return f'{{"id": {json_line(id_)}, "inputs": {input_list}, "outputs": {output_list}{last}}}\n'
+    price_part = f', "price": {Decimal(price):f}' if price else ""
+    return f'{{"id": {json_line(id_)}, "inputs": {input_list}, "outputs": {output_list}{price_part}}}\n'
 
 
 def _side_text(names: Sequence[tuple[str, int]]) -> str:

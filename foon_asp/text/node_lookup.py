@@ -85,30 +85,32 @@ def find_goal(
     :class:`GoalError` with candidates ready to paste if the name is unknown or means several nodes.
     ``wording`` has the words for a goal in messages.
     """
-    named: str | ObjectNode = name
+    parsed_name: str | ObjectNode = name
     fault = None
-    node = as_written = ObjectNode(name.strip(" "))
+    node = literal_node = ObjectNode(name.strip(" "))
     try:
-        named = parse_name(name)
+        parsed_name = parse_name(name)
     except LineError as error:
         fault = error
     else:
-        node = node_at_level(ObjectNode(named) if isinstance(named, str) else named, names.level)
-    for exact in (node, as_written):
-        if (object_id := names.object_id(exact)) is not None:
+        node = node_at_level(
+            ObjectNode(parsed_name) if isinstance(parsed_name, str) else parsed_name, names.level
+        )
+    for candidate in (node, literal_node):
+        if (object_id := names.object_id(candidate)) is not None:
             return object_id
-    label = named if isinstance(named, str) else as_written.label
+    label = parsed_name if isinstance(parsed_name, str) else literal_node.label
     entries = [entry for entry in listed if entry.pattern.label == label]
     if entries:
-        meant = list(dict.fromkeys(o for entry in entries for o in nodes_of_entry(entry, names)))
-        return _only_node(name, names, len(meant), meant, wording)
+        matching_nodes = list(dict.fromkeys(o for entry in entries for o in nodes_of_entry(entry, names)))
+        return _only_node(name, names, len(matching_nodes), matching_nodes, wording)
     count, labelled = names.labelled(label)
     if count:
         return _only_node(name, names, count, labelled, wording)
     if fault is not None:
         raise GoalError(
             f"the {wording.noun} {name!r} cannot be read: at column {fault.column}, {fault}; "
-            f"a name with such letters in it is in quotes: {in_quotes(as_written.label)}"
+            f"a name with such letters in it is in quotes: {in_quotes(literal_node.label)}"
         )
     count, labelled = names.labelled(node.label)
     if count:
@@ -127,9 +129,9 @@ def nodes_beginning(start: str, names: NodeNames, max_nodes: int) -> list[int]:
     """
     label, semicolon, _ = start.partition(";")
     labels = [label] if semicolon else []
-    if begun := _IN_QUOTES.match(start):
-        label = unquoted(begun[0].strip(" ") + '"' * (not begun[1]))
-        labels = [label] if begun[1] else [*names.beginning(label, max_nodes)]
+    if quoted := _IN_QUOTES.match(start):
+        label = unquoted(quoted[0].strip(" ") + '"' * (not quoted[1]))
+        labels = [label] if quoted[1] else [*names.beginning(label, max_nodes)]
     nodes: dict[int, None] = {}
     for candidate in dict.fromkeys([*labels, *names.beginning(start, max_nodes)]):
         for o in names.labelled(candidate)[1]:
@@ -149,8 +151,8 @@ def entry_names(listed: Sequence[ListedObject], names: NodeNames) -> Iterator[st
     for entry in listed:
         label = entry.pattern.label
         nodes = names.find(entry.pattern)
-        exact = names.object_id(ObjectNode(label))
-        if len(nodes) != 1 or (counts[label] == 1 and exact in {None, nodes[0]}):
+        bare_node = names.object_id(ObjectNode(label))
+        if len(nodes) != 1 or (counts[label] == 1 and bare_node in {None, nodes[0]}):
             yield str(ObjectNode(label))
         else:
             yield str(names.node(nodes[0]))
@@ -213,10 +215,12 @@ def _unknown_error(message: str, node: ObjectNode, names: NodeNames, wording: Wo
     counted_nodes = [names.labelled(label) for label in labels]
     if not counted_nodes:
         return GoalError(message)
-    share = max(1, _MAX_CANDIDATES // len(counted_nodes))
+    nodes_per_label = max(1, _MAX_CANDIDATES // len(counted_nodes))
     total = sum(count for count, _ in counted_nodes)
-    first = [o for _, nodes in counted_nodes for o in _most_similar_first(node, nodes, names)[:share]]
-    return _error_with_candidates(f"{message}; similar are", names, total, first, wording)
+    candidates = [
+        o for _, nodes in counted_nodes for o in _most_similar_first(node, nodes, names)[:nodes_per_label]
+    ]
+    return _error_with_candidates(f"{message}; similar are", names, total, candidates, wording)
 
 
 def _error_with_candidates(

@@ -32,8 +32,8 @@ def read_beginning(file: Path, length: int) -> bytes:
     if not file.is_file():
         return b""
     try:
-        with file.open("rb") as opened:
-            return opened.read(length)
+        with file.open("rb") as stream:
+            return stream.read(length)
     except OSError:
         return b""
 
@@ -65,16 +65,16 @@ def text_pieces(file: Path, size: int) -> Iterator[str]:
     Raises as :func:`read_plain_text` does, before it yields a piece.
     """
     with open_bytes(file) as stream:
-        begins = stream.read(len(STORE_MAGIC))
+        first_bytes = stream.read(len(STORE_MAGIC))
         stream.seek(0)
         try:
             decoder = getincrementaldecoder("utf-8")()
-            while data := stream.read(size):
-                decoder.decode(data)
+            while chunk := stream.read(size):
+                decoder.decode(chunk)
             decoder.decode(b"", True)
         except UnicodeDecodeError:
-            begins = STORE_MAGIC
-        if begins == STORE_MAGIC:
+            first_bytes = STORE_MAGIC
+        if first_bytes == STORE_MAGIC:
             read_plain_text(file)  # raises the error
         stream.seek(0)
         with TextIOWrapper(stream, "utf-8-sig", newline=None) as text:
@@ -143,9 +143,9 @@ def not_utf_8(data: bytes, error: UnicodeDecodeError, file: Path, line: int = 1)
 
     ``line`` is the number of the first line of ``data``.
     """
-    before = data[: error.start]
-    start = before.rfind(b"\n") + 1
-    column = len(before[start:].decode("utf-8-sig")) + 1
+    bytes_before = data[: error.start]
+    line_start = bytes_before.rfind(b"\n") + 1
+    column = len(bytes_before[line_start:].decode("utf-8-sig")) + 1
     message = f"found the byte 0x{data[error.start]:02x}, expected UTF-8 text; save the file as UTF-8"
-    source = Source(str(file), line + before.count(b"\n"), column)
+    source = Source(str(file), line + bytes_before.count(b"\n"), column)
     return InputError([Diagnostic(Severity.ERROR, "encoding", message, source)])

@@ -101,10 +101,12 @@ class FoonReader(Reading):
             file: The path of the file.
         """
         is_pipe = not file.is_file()  # which can be read only once
-        begins = self.text(file) if is_pipe else read_beginning_text(file)
-        format_ = format_of(begins, file.name)
+        beginning_text = self.text(file) if is_pipe else read_beginning_text(file)
+        format_ = format_of(beginning_text, file.name)
         try:
-            for unit in format_.units(begins, str(file), self) if is_pipe else format_.file_units(file, self):
+            for unit in (
+                format_.units(beginning_text, str(file), self) if is_pipe else format_.file_units(file, self)
+            ):
                 node = None if format_.machine_written else repeated_node(unit.inputs, unit.outputs)
                 if node:
                     self.repeated.append(RepeatedNode(str(node), unit.source))

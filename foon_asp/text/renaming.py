@@ -64,12 +64,14 @@ class Renaming:
             return line
         if self._id_belongs_to_old_name(parsed):
             renamed = renamed._replace(id=self.id(parsed.id))
-        letter = line.partition("\t")[0]
-        fields = line[len(letter) :]
-        head = f"{line[:1]}{renamed.id}" if letter == f"{line[:1]}{parsed.id}" else letter
+        letter_and_id = line.partition("\t")[0]
+        fields = line[len(letter_and_id) :]
+        new_letter_and_id = (
+            f"{line[:1]}{renamed.id}" if letter_and_id == f"{line[:1]}{parsed.id}" else letter_and_id
+        )
         _, old, new = self.rename
-        text = head + _FIELD.sub(
-            lambda m: m[0].replace(old, new) if m[0].strip(" *") == old else m[0], fields
+        text = new_letter_and_id + _FIELD.sub(
+            lambda match: match[0].replace(old, new) if match[0].strip(" *") == old else match[0], fields
         )
         parsed_back = read_line(text)
         # the spelling of the line stays, unless the old name is in it with another meaning

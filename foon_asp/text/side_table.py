@@ -56,12 +56,12 @@ class SideTable(FoonText):
 
         Raises :class:`UserError` if the table would then have two different rows for the new name.
         """
-        new = map_lines(text, lambda line: _renamed_row(line, PurePath(file).name, renaming))
-        rows = (line.split("\t") for line in split_lines(new))
+        new_text = map_lines(text, lambda line: _renamed_row(line, PurePath(file).name, renaming))
+        rows = (line.split("\t") for line in split_lines(new_text))
         name = renaming.rename.new
         if len({"\t".join(row) for row in rows if len(row) == 2 and row[0].strip() == name}) > 1:
             raise UserError(f"{file} would have two different rows for {name!r}; take one of them out before")
-        return new
+        return new_text
 
 
 def _renamed_row(line: str, table: str, renaming: "Renaming") -> str:

@@ -35,16 +35,18 @@ class StatedAmounts:
         amounts: dict[FunctionalUnit, UnitAmounts] = {}
         conflict = ""
         for unit, copies in self._copies.items():
-            number = None if network is None else network.unit_id(unit)
-            sources = tuple(copies) if network is None or number is None else network.sources[number]
-            first = sources[0]
-            of_copies = [(copies.get(source, UnitAmounts()), source) for source in sources]
-            amounts[unit] = of_copies[0][0]
-            other = next((source for counted, source in of_copies if counted != amounts[unit]), None)
-            if other is not None and not conflict:
+            unit_id = None if network is None else network.unit_id(unit)
+            sources = tuple(copies) if network is None or unit_id is None else network.sources[unit_id]
+            first_source = sources[0]
+            amounts_of_copies = [(copies.get(source, UnitAmounts()), source) for source in sources]
+            amounts[unit] = amounts_of_copies[0][0]
+            differing_source = next(
+                (source for counted, source in amounts_of_copies if counted != amounts[unit]), None
+            )
+            if differing_source is not None and not conflict:
                 conflict = (
-                    f"{other}: found a copy of the unit {unit.motion!r} of {first} with other amounts, "
-                    "expected the same, since items used up are counted: give one of the two another name"
+                    f"{differing_source}: found a copy of the unit {unit.motion!r} of {first_source} with "
+                    "other amounts, expected the same, since items used up are counted: give one of the two another name"
                 )
         return DataAmounts(amounts, conflict)
 
@@ -57,18 +59,18 @@ def apply_amount_table(
     ``rows`` are those of the table. ``units`` are all units whose motion is in the table.
     """
     amounts = dict(stated.units)
-    used: set[UnitAmount] = set()
+    matched_names: set[UnitAmount] = set()
     by_name = {row.name: row.value for row in rows}
     for unit in units:
         sides: list[dict[ObjectNode, int]] = []
         for is_output, nodes in enumerate((unit.inputs, unit.outputs)):
-            current = dict(amounts.get(unit, UnitAmounts())[is_output])
+            amounts_of_side = dict(amounts.get(unit, UnitAmounts())[is_output])
             for node in nodes:
                 name = unit.motion, bool(is_output), node
                 if name in by_name:
-                    used.add(name)
-                    current[node] = by_name[name]
-            sides.append({node: amount for node, amount in current.items() if amount != 1})
+                    matched_names.add(name)
+                    amounts_of_side[node] = by_name[name]
+            sides.append({node: amount for node, amount in amounts_of_side.items() if amount != 1})
         amounts[unit] = UnitAmounts(*sides)
     warnings = [
         Diagnostic(
@@ -78,10 +80,10 @@ def apply_amount_table(
             row.source,
         )
         for row in rows
-        if row.name not in used
+        if row.name not in matched_names
     ]
-    counted = {unit: sides for unit, sides in amounts.items() if sides}
-    return stated._replace(units=counted), warnings
+    amounts_above_one = {unit: sides for unit, sides in amounts.items() if sides}
+    return stated._replace(units=amounts_above_one), warnings
 
 
 def counted_amounts(

@@ -36,18 +36,18 @@ class StatedPrices:
         errors: list[Diagnostic] = []
         settled_prices = dict(self._least)
         for unit, prices in self._copies.items():
-            (price, first), *others = prices.items()
+            (price, first_source), *others = prices.items()
             if unit in settled_prices:
                 settled_prices[unit] = min(settled_prices[unit], *prices)
                 continue
             settled_prices[unit] = chosen.get(unit, price) if others else price
             if others and unit not in chosen:
-                _, second = others[0]
+                _, second_source = others[0]
                 message = (
-                    f"found a copy of the unit {unit.motion!r} of {first} with another price, expected one "
-                    "price: choose one with a line for this unit in a file of prices (--unit-prices FILE)"
+                    f"found a copy of the unit {unit.motion!r} of {first_source} with another price, "
+                    "expected one price: choose one with a line for this unit in a file of prices (--unit-prices FILE)"
                 )
-                errors.append(Diagnostic(Severity.ERROR, "unit-price", message, second))
+                errors.append(Diagnostic(Severity.ERROR, "unit-price", message, second_source))
         if errors:
             raise InputError(errors)
         return settled_prices

@@ -148,27 +148,27 @@ class TextUnits:
 
     def _clean_unit(self, chunk: str) -> ReadUnit | None:
         """Return the unit of a well-formed chunk, read by its object blocks; ``None`` for another chunk."""
-        first, copies = self._number, []
+        first_line, copies = self._number, []
         while chunk[:1] == "#":
             comment, line_end, chunk = chunk.partition("\n")
             copy = read_copy(comment)
             if not copy or not line_end:
                 return None
             copies.append(copy)
-            first += 1
+            first_line += 1
         if chunk[:1] != "O":
             return None
-        head, _, tail = chunk.partition("\nM")
-        motion_line, _, tail = tail.partition("\nO")
-        if not (motion_line and tail) or "\n" in motion_line:
+        input_blocks, _, output_blocks = chunk.partition("\nM")
+        motion_line, _, output_blocks = output_blocks.partition("\nO")
+        if not (motion_line and output_blocks) or "\n" in motion_line:
             return None
         motion = read_line(f"M{motion_line}")
         if not isinstance(motion, MotionLine) or motion.remarks:
             return None
-        inputs, outputs = _nodes_of_clean_blocks(head[1:]), _nodes_of_clean_blocks(tail)
+        inputs, outputs = _nodes_of_clean_blocks(input_blocks[1:]), _nodes_of_clean_blocks(output_blocks)
         if inputs is None or outputs is None:
             return None
-        sources = tuple(copies) or (Source(self.file, first, 1, self._videos),)
+        sources = tuple(copies) or (Source(self.file, first_line, 1, self._videos),)
         return ReadUnit(motion.motion, inputs, outputs, sources)
 
     def _units_line_by_line(self, chunk: str, last: bool) -> Iterator[ListedUnit]:

@@ -82,10 +82,10 @@ class TextWriter:
         written = write_line(self.in_dialect(line))
         if any("\ud800" <= c <= "\udfff" for c in written):
             raise CannotHoldError(f"{written!r} contains half a character")
-        back = read_line(written) if "\n" not in written and "\r" not in written else None
-        if back is None or isinstance(back, LineError):
+        read_back = read_line(written) if "\n" not in written and "\r" not in written else None
+        if read_back is None or isinstance(read_back, LineError):
             raise CannotHoldError(f"{written!r} is no line of FOON text")
-        return written + "\n", lost_in_line(line, back)
+        return written + "\n", lost_in_line(line, read_back)
 
 
 def with_container_word(line: StateLine) -> StateLine:

@@ -78,10 +78,10 @@ def _line_if_readable(line: Line) -> str | None:
     """Return the text of a line with its line end; ``None`` if it is not read back as the same line."""
     written = write_line(line)
     try:
-        back = None if "\n" in written or "\r" in written else parse_line(written)._replace(remarks=())
+        read_back = None if "\n" in written or "\r" in written else parse_line(written)._replace(remarks=())
     except LineError:
         return None
-    return f"{written}\n" if back == line and encodable(written) == written else None
+    return f"{written}\n" if read_back == line and encodable(written) == written else None
 
 
 def write_unit(unit: FunctionalUnit, amounts: UnitAmounts = ALL_ONE) -> str:
