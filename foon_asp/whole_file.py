@@ -80,8 +80,8 @@ def utf_8(text: str) -> bytes:
         line = text.count("\n", 0, error.start) + 1
         half_character = ascii(text[error.start])
         raise UserError(
-            f"line {line} of what would be written has {half_character}, half a character, which UTF-8 cannot "
-            "hold: correct the name that contains it"
+            f"line {line} of what would be written has {half_character}, half a character, which UTF-8 "
+            "cannot hold: correct the name that contains it"
         ) from None
 
 

@@ -46,7 +46,8 @@ class StatedAmounts:
             if differing_source is not None and not conflict:
                 conflict = (
                     f"{differing_source}: found a copy of the unit {unit.motion!r} of {first_source} with "
-                    "other amounts, expected the same, since items used up are counted: give one of the two another name"
+                    "other amounts, expected the same, since items used up are counted: "
+                    "give one of the two another name"
                 )
         return DataAmounts(amounts, conflict)
 

@@ -45,7 +45,8 @@ class StatedPrices:
                 _, second_source = others[0]
                 message = (
                     f"found a copy of the unit {unit.motion!r} of {first_source} with another price, "
-                    "expected one price: choose one with a line for this unit in a file of prices (--unit-prices FILE)"
+                    "expected one price: choose one with a line for this unit in a file of prices "
+                    "(--unit-prices FILE)"
                 )
                 errors.append(Diagnostic(Severity.ERROR, "unit-price", message, second_source))
         if errors:

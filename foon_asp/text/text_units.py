@@ -158,8 +158,8 @@ class TextUnits:
             first_line += 1
         if chunk[:1] != "O":
             return None
-        input_blocks, _, output_blocks = chunk.partition("\nM")
-        motion_line, _, output_blocks = output_blocks.partition("\nO")
+        input_blocks, _, motion_and_outputs = chunk.partition("\nM")
+        motion_line, _, output_blocks = motion_and_outputs.partition("\nO")
         if not (motion_line and output_blocks) or "\n" in motion_line:
             return None
         motion = read_line(f"M{motion_line}")
@@ -175,17 +175,17 @@ class TextUnits:
         """Yield the units of a chunk, read line by line; remarks and faults are recorded.
 
         A chunk has several units where blanks stand behind ``//``. ``last`` is true for the last chunk of a
-        file.
+        file. Videos that comments name are those of the units after them.
         """
         self._lines = lines = chunk.split("\n")
         start = 0
         for index, line in enumerate(lines):
-            first = line[:1]
-            if first == "#" and is_video(line):
+            letter = line[:1]
+            if letter == "#" and is_video(line):
                 video = read_video(line)
                 self._videos = (*(self._videos if self._header_open else ()), *([video] if video else []))
                 self._header_open = True
-            elif first == "/" and line.rstrip(" \t") == "//":
+            elif letter == "/" and line.rstrip(" \t") == "//":
                 unit = self._read_unit(start, index, closed=True)
                 if line != "//":
                     self._warn("outer-space", "blanks after // left out", index, 3, "//")
@@ -205,7 +205,8 @@ class TextUnits:
     def _read_unit(self, start: int, end: int, closed: bool) -> ListedUnit | None:
         """Return the unit of the lines from index ``start`` to before ``end``; ``None`` if they are no unit.
 
-        ``closed`` is true if ``//`` follows. In a list without motions, the objects are collected instead.
+        ``closed`` is true if ``//`` follows. Goal marks, warnings and faults are recorded. In a list without
+        motions, the objects are collected instead.
         """
         section = _Section(end, closed, self.reading.left_out)
         for index in range(start, end):
