@@ -95,8 +95,9 @@ def _replace(target: Path, content: bytes) -> None:
 def _staged_file(target: Path, content: bytes) -> Iterator[Path]:
     """Return a context with the path of a new file beside the target, for the caller to rename.
 
-    The file is removed at the end if it was not renamed. Raises :class:`OSError` for a target that may not
-    be written. Warns if the replaced file had other names or another owner.
+    Files that killed processes left in the folder are removed before. The new file is removed at the end if
+    it was not renamed. Raises :class:`OSError` for a target that may not be written. Warns if the replaced
+    file had other names or another owner.
     """
     old_status = None
     if target.exists():

@@ -8,7 +8,7 @@ class Numbering:
 
     Names are the labels of objects, motions, and states with the words of relations and contents. A name
     keeps the first id that is learnt for it. A name without an id gets a new one, higher than all ids of its
-    kind. So all lines must be learnt before the first line is numbered.
+    kind of up to 15 digits. So all lines must be learnt before the first line is numbered.
     """
 
     def __init__(self) -> None:

@@ -134,7 +134,7 @@ def object_with_ids(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
     """
     ingredients: tuple[str, ...] = ()
     container = None
-    written: list[dict[str, object]] = []
+    state_values: list[dict[str, object]] = []
     for state in states:
         attribute = state.attribute
         label, related = str(attribute), None
@@ -144,16 +144,18 @@ def object_with_ids(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
                 continue
             label, related = attribute
         elif isinstance(attribute, Contents):
-            has_contents = any(other["state_label"] == "contains" for other in written)
+            has_contents = any(earlier["state_label"] == "contains" for earlier in state_values)
             if attribute.word == "contains" and state.listed and not has_contents:
                 label, ingredients = "contains", state.listed
             else:
                 label = f"{attribute.word} {{{','.join(state.listed)}}}"
-        written.append({"state_id": _json_number(state.id), "state_label": label, "relative_object": related})
+        state_values.append(
+            {"state_id": _json_number(state.id), "state_label": label, "relative_object": related}
+        )
     value: dict[str, object] = {
         "object_id": _json_number(line.id),
         "object_label": line.label,
-        "object_states": written,
+        "object_states": state_values,
         "ingredients": list(ingredients),
         "object_in_motion": _json_number(line.motion_flag or ""),
     }

@@ -304,7 +304,8 @@ def parse_by_grammar(start: str, text: str) -> object:
 def _line_error(error: UnexpectedInput, text: str, in_file: bool) -> LineError:
     """Return an error of Lark in words: what was found at which column, and what is expected.
 
-    ``in_file`` is true for a line of a file, false for one-line notation.
+    ``in_file`` is true for a line of a file, false for one-line notation. A line that does not begin with
+    ``O``, ``S``, ``M`` or ``//`` may get advice.
     """
     column = len(text) + 1
     names: set[str] = set()

@@ -49,7 +49,7 @@ class Reading:
     def warn(
         self, code: str, message: str, source: Source, excerpt: str = "", fix: str | None = None
     ) -> None:
-        """Record a warning about an assumption."""
+        """Record a warning about an assumption; ``fix`` is the corrected line, ``None`` if none is known."""
         self.diagnostics.append(Diagnostic(Severity.WARNING, code, message, source, excerpt, fix))
 
     def raise_errors(self, earlier: int = 0) -> None:
@@ -77,7 +77,7 @@ def reporting_to(report: Report) -> Iterator[None]:
 
 
 def progress_report() -> Report | None:
-    """Return the function of :func:`reporting_to`; ``None`` outside of its context."""
+    """Return the function that receives reports in the current context of :func:`reporting_to`, else ``None``."""
     return _report.get()
 
 

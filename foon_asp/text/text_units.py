@@ -142,9 +142,9 @@ class TextUnits:
 
     def _reject_text_before_json(self, message: str, text: str) -> None:
         """Record ``message`` as the only fault of the file, at its first line that is not blank."""
-        begins = text.lstrip()
-        line = text[: len(text) - len(begins)].count("\n") + 1
-        self.reading.reject("json", message, Source(self.file, line, 1), split_lines(begins)[0])
+        content = text.lstrip()
+        line = text[: len(text) - len(content)].count("\n") + 1
+        self.reading.reject("json", message, Source(self.file, line, 1), split_lines(content)[0])
 
     def _clean_unit(self, chunk: str) -> ReadUnit | None:
         """Return the unit of a well-formed chunk, read by its object blocks; ``None`` for another chunk."""
