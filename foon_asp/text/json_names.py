@@ -87,12 +87,13 @@ class _JsonName(NamedTuple):
 class _Level:
     """A list or an object while JSON is read.
 
-    ``owner`` is the key that it is under, ``key`` the key whose value is read. ``first`` is the number of
-    names that were read before it. ``names`` and ``ids`` are those directly in it, each with its key.
+    ``owner`` is the key that it is under, ``key`` the key whose value is read. ``names_before`` is the
+    number of names that were read before it. ``lists_ingredients`` is true for an object with ingredients.
+    ``names`` and ``ids`` are those directly in it, each with its key.
     """
 
-    def __init__(self, owner: str, is_list: bool, first: int = 0) -> None:
-        self.owner, self.is_list, self.first = owner, is_list, first
+    def __init__(self, owner: str, is_list: bool, names_before: int = 0) -> None:
+        self.owner, self.is_list, self.names_before = owner, is_list, names_before
         self.lists_ingredients = False
         self.key = owner if is_list else ""
         self.names: list[tuple[str, _JsonName]] = []
@@ -115,9 +116,11 @@ def _json_names(text: str) -> list[_JsonName]:
             levels.pop()
             names += _names_with_ids(level)
             if level.is_list and level.owner == "ingredients":
-                levels[-1].lists_ingredients = any(not is_none(each.name) for each in names[level.first :])
+                levels[-1].lists_ingredients = any(
+                    not is_none(each.name) for each in names[level.names_before :]
+                )
             elif level.lists_ingredients:
-                _mark_word_of_contents(names, level.first)
+                _mark_word_of_contents(names, level.names_before)
         elif token in {":", ","}:
             continue
         elif not level.is_list and next_token is not None and next_token[0] == ":":

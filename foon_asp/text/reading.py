@@ -77,7 +77,7 @@ def reporting_to(report: Report) -> Iterator[None]:
 
 
 def progress_report() -> Report | None:
-    """Return the function that receives reports in the current context of :func:`reporting_to`, else ``None``."""
+    """Return the function that receives reports of progress; ``None`` outside of :func:`reporting_to`."""
     return _report.get()
 
 

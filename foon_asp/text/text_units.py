@@ -218,10 +218,10 @@ class TextUnits:
                 if is_amount(line):
                     self._add_amount(section, index)
             elif letter and not line.isspace():
-                if section.first < 0:
-                    section.first = index
+                if section.first_index < 0:
+                    section.first_index = index
                 self._add_line(section, index)
-        if section.first < 0:
+        if section.first_index < 0:
             return None
         self._sections += 1
         if self._objects is not None:
@@ -232,12 +232,12 @@ class TextUnits:
             return None
         index, motion = section.motions[0]
         if not section.outputs:
-            self._warn("no-outputs", f"the unit {motion.motion!r} has no output objects", section.first)
+            self._warn("no-outputs", f"the unit {motion.motion!r} has no output objects", section.first_index)
         inputs, outputs = _closed_blocks(section.inputs), _closed_blocks(section.outputs)
         for block in (*inputs, *outputs):
             if block.object.is_goal:
                 self.reading.marked.setdefault(block.node, block.source)
-        sources = tuple(section.copies) or (self._source(section.first)._replace(videos=self._videos),)
+        sources = tuple(section.copies) or (self._source(section.first_index)._replace(videos=self._videos),)
         return ListedUnit(motion, inputs, outputs, sources, self._source(index))
 
     def _add_amount(self, section: "_Section", index: int) -> None:
@@ -245,7 +245,7 @@ class TextUnits:
 
         An amount of an object that could not be read is dropped.
         """
-        if section.lost:
+        if section.object_unreadable:
             self.reading.left_out += self.reading.lenient
             return
         if section.block is None or section.block.amount is not None:
@@ -267,21 +267,21 @@ class TextUnits:
         parsed = read_line(line)
         if isinstance(parsed, LineError):
             self._reject("syntax", str(parsed), index, parsed.column)
-            section.lost = section.lost or line[0] == "O"
-            section.blamed = section.blamed or line[0] != "S"
+            section.object_unreadable = section.object_unreadable or line[0] == "O"
+            section.has_error = section.has_error or line[0] != "S"
             return
         self._report_remarks(parsed, index)
         if isinstance(parsed, StateLine):
-            if section.lost:
+            if section.object_unreadable:
                 self.reading.left_out += self.reading.lenient
             elif section.block is None:
                 message = "found a state line, expected an object line before it"
                 self._reject("state-without-object", message, index)
-                section.blamed = True
+                section.has_error = True
             else:
                 section.block.states.append(parsed)
             return
-        section.lost = False
+        section.object_unreadable = False
         if isinstance(parsed, ObjectLine):
             section.block = _OpenBlock(parsed, [], self._source(index))
             (section.outputs if section.motions else section.inputs).append(section.block)
@@ -294,13 +294,13 @@ class TextUnits:
         elif len(section.motions) > 1:
             message = "found a second motion in one unit, expected an object line or //"
             self._reject("second-motion", message, index)
-            section.blamed = True
+            section.has_error = True
 
     def _warn_of_no_unit(self, section: "_Section") -> None:
         """Warn that lines are no unit, and count them as left out, unless a recorded error explains it."""
-        if section.blamed and not self.reading.lenient:
+        if section.has_error and not self.reading.lenient:
             return
-        lines, first = self._lines, section.first
+        lines, first = self._lines, section.first_index
         meaningful = [i for i in range(first, section.end) if lines[i].strip() and lines[i][0] != "#"]
         self.reading.left_out = section.left_out + len(meaningful)
         unit = f"the unit of line {self._number + first}"
@@ -345,25 +345,26 @@ class TextUnits:
 class _Section:
     """The lines between two separators ``//``, while they are read one by one.
 
-    ``end``, ``first``: the indices behind the last line, and of the first line with content (-1 without one).
+    ``end``: the index behind the last line.
+    ``first_index``: the index of the first line with content; -1 without one.
     ``closed``: true if ``//`` follows.
     ``motions``: the motion lines, each with its index.
     ``copies``: the sources that comment lines name.
     ``block``: the block of the current object line; ``None`` before the first object line.
-    ``lost``: true if the current object line cannot be read; the states under it are then left out.
-    ``blamed``: true if an error in a line may be the reason for a missing motion or object.
+    ``object_unreadable``: true if the current object line cannot be read. The states under it are left out.
+    ``has_error``: true if an error in a line may be the reason for a missing motion or object.
     ``left_out``: the number of lines of the file that were left out before this section.
     """
 
     def __init__(self, end: int, closed: bool, left_out: int) -> None:
         self.end, self.closed, self.left_out = end, closed, left_out
-        self.first = -1
+        self.first_index = -1
         self.motions: list[tuple[int, MotionLine]] = []
         self.inputs: list[_OpenBlock] = []
         self.outputs: list[_OpenBlock] = []
         self.copies: list[Source] = []
         self.block: _OpenBlock | None = None
-        self.lost = self.blamed = False
+        self.object_unreadable = self.has_error = False
 
 
 def no_motion_message(objects: int) -> str:
