@@ -159,9 +159,10 @@ def kitchen_file(folder: Path) -> Path | None:
 
 
 def network_files(path: Path) -> list[Path]:
-    """Return the network files of a path: of a folder ``FOON.txt`` alone, or else all networks by name.
+    """Return the network files of a path; of a path that is no folder, the path itself.
 
-    A path that is no folder is returned itself. Raises :class:`UserError` for a folder without a network.
+    Of a folder, this is ``FOON.txt`` alone, or without it all files that may be networks, by name. Raises
+    :class:`UserError` for a folder without a network.
     """
     if not path.is_dir():
         return [path]
@@ -267,17 +268,17 @@ def amounts_of_items(names: NodeNames, items: Iterable[ListedObject]) -> dict[Ob
     }
 
 
-def unit_prices(stated: StatedPrices, listed: UnitPriceList | None) -> UnitPrices | None:
+def unit_prices(stated: StatedPrices, price_list: UnitPriceList | None) -> UnitPrices | None:
     """Return the prices of units, ``None`` if there are none.
 
-    A price in the file ``listed`` takes precedence over one ``stated`` in networks. Raises
-    :class:`InputError` if copies of a unit state different prices and the file has none for the unit.
+    A price in ``price_list``, which a file has, takes precedence over one ``stated`` in networks. Raises
+    :class:`InputError` if copies of a unit state different prices and the list has none for the unit.
     """
-    prices_of_file = listed.units if listed else {}
+    prices_of_file = price_list.units if price_list else {}
     price_by_unit = stated.price_by_unit(prices_of_file)
-    if not (listed or price_by_unit):
+    if not (price_list or price_by_unit):
         return None
-    return UnitPrices(listed.motions if listed else {}, price_by_unit | prices_of_file)
+    return UnitPrices(price_list.motions if price_list else {}, price_by_unit | prices_of_file)
 
 
 def amounts_of_units(

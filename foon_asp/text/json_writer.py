@@ -169,7 +169,7 @@ def object_with_ids(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
 def motion_with_ids(line: MotionLine) -> str:
     """Return the JSON of a motion in the form ``json``: with id, times, moving entity and success rate.
 
-    Of two times, one or none, the missing ones are null.
+    Parts that the line does not have are null.
     """
     times, entity, rate = MotionFields.of(line.fields)
     begin, end, *_ = (*in_two_fields(times), None, None)
