@@ -108,7 +108,10 @@ def _tool_row(name: str, value: str, column: int) -> tuple[str | ObjectNode, int
 
 
 def _stays_row(name: str, value: str, column: int) -> tuple[str | ObjectNode, bool]:
-    """Return the item of a row, as a label or a node, and whether it stays; raises :class:`LineError`."""
+    """Return the item of a row, as a label or a node, and whether it stays.
+
+    Raises :class:`LineError` at a fault.
+    """
     if value not in _STAYS:
         raise LineError(column, repr(value), tuple(_STAYS))
     return stated_name(name), _STAYS[value]
@@ -123,7 +126,10 @@ def _copies_row(name: str, value: str, column: int) -> tuple[ObjectNode, int]:
 
 
 def _price_row(name: str, value: str, column: int) -> tuple[str | ObjectNode, Fraction]:
-    """Return the item of a row, as a label or a node, and its exact price; raises :class:`LineError`."""
+    """Return the item of a row, as a label or a node, and its exact price.
+
+    Raises :class:`LineError` at a fault.
+    """
     if not _PRICE.fullmatch(value):
         raise LineError(column, repr(value[:40]), ("a price as a decimal such as 1.99",))
     return parse_name(name), Fraction(value)
