@@ -26,7 +26,7 @@ from foon_asp.deadline import Deadline
 from foon_asp.hypergraph import ALL, NONE, reduce
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.text.data_folder import find_data, read_data
-from foon_asp.text.node_lookup import listed_nodes
+from foon_asp.text.node_lookup import nodes_of_entry
 
 COLUMNS = (
     "data",
@@ -109,7 +109,7 @@ def _solve_folder(folder: Path, arguments: argparse.Namespace, totals: _Totals) 
     began = time.perf_counter()
     _ = data.network.producers  # an index of the network, which all goals share
     totals.once[folder.name] = f"read in {read:.2f} s, indexed in {time.perf_counter() - began:.2f} s"
-    goals = list(dict.fromkeys(node for entry in data.goals for node in listed_nodes(entry, data.network)))
+    goals = list(dict.fromkeys(node for entry in data.goals for node in nodes_of_entry(entry, data.network)))
     chosen = range(len(goals))[-(arguments.goals or len(goals)) :]
     for number in chosen:
         problem = Problem(

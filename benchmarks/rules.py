@@ -48,7 +48,7 @@ from foon_asp.questions.answer import answered_under
 from foon_asp.rules.ready_made import ready_made
 from foon_asp.store.import_files import import_files
 from foon_asp.text.data_folder import DataFiles, find_data, read_data
-from foon_asp.text.node_lookup import listed_nodes
+from foon_asp.text.node_lookup import nodes_of_entry
 from foon_asp.text.writer import write_units
 
 COLUMNS = (
@@ -184,7 +184,7 @@ def _folder(folder: Path, arguments: argparse.Namespace) -> int:
         made = sorted(reach(posed(0)).makers)
         goals = random.Random(arguments.seed).sample(made, min(arguments.goals, len(made)))
     else:
-        goals = list(dict.fromkeys(node for entry in data.goals for node in listed_nodes(entry, network)))
+        goals = list(dict.fromkeys(node for entry in data.goals for node in nodes_of_entry(entry, network)))
         goals = goals[-arguments.goals :]
     problems = [posed(goal) for goal in goals]
     _ = problems[0].needs, problems[0].makers  # indexes of the network

@@ -1,4 +1,4 @@
-"""Escaped text: whatever a name contains, terminals and logs receive only printable characters.
+"""Escaped text: terminals and logs receive only harmless characters, whatever names contain.
 
 Other characters become a JSON escape (a backslash, ``u`` and four digits). So an escaped JSON text is JSON
 with the same value.
@@ -22,18 +22,24 @@ _COMMAND = r"(?m)^([^\S\n]*):(?=:)|#(?=#(?:\[|vso\[))"
 
 
 def escaped(name: str) -> str:
-    """Return a name with escapes, as it is shown within a line; line ends and tabs are escaped, too."""
-    return re.sub(_IN_A_LINE, _escape, name)
+    """Return a name with escapes for unsafe characters, line ends and tabs, to be shown within a line."""
+    return re.sub(_IN_A_LINE, _escape_match, name)
 
 
 def escaped_lines(text: str, styled: bool = False) -> str:
-    """Return a text of several lines with escapes, as it is shown; a ``styled`` text keeps its colours."""
-    shown = re.sub(_UNSAFE_BUT_ESCAPE, _escape, text) if styled else UNSAFE.sub(_escape, text)
+    """Return a text of several lines with escapes for unsafe characters and for commands of build logs.
+
+    Line ends and tabs stay. A ``styled`` text keeps its escape sequences, such as colours.
+    """
+    shown = re.sub(_UNSAFE_BUT_ESCAPE, _escape_match, text) if styled else UNSAFE.sub(_escape_match, text)
     return re.sub(_COMMAND, _without_command, shown) if "::" in shown or "##" in shown else shown
 
 
 def encodable(text: str, encoding: str = "utf-8") -> str:
-    """Return a text with escapes for the letters that an encoding does not have."""
+    """Return a text with escapes for the letters that an encoding does not have.
+
+    For an unknown encoding, this is ASCII.
+    """
     try:
         text.encode(encoding)
     except UnicodeEncodeError:
@@ -44,7 +50,7 @@ def encodable(text: str, encoding: str = "utf-8") -> str:
 
 
 def _encodes(encoding: str, letter: str) -> bool:
-    """Return whether an encoding has a letter."""
+    """Whether an encoding has a letter."""
     try:
         letter.encode(encoding)
     except UnicodeEncodeError:
@@ -52,16 +58,18 @@ def _encodes(encoding: str, letter: str) -> bool:
     return True
 
 
-def _escape(match: re.Match[str]) -> str:
+def _escape_match(match: re.Match[str]) -> str:
+    """Return the escape of a matched letter."""
     return _escape_of(match[0])
 
 
 def _without_command(match: re.Match[str]) -> str:
+    """Return a matched beginning of a command, with an escape for its last letter."""
     return f"{match[1] or ''}{_escape_of(match[0][-1])}"
 
 
 def _escape_of(letter: str) -> str:
-    r"""Return the escape of a letter, ``\\uXXXX``."""
+    r"""Return the JSON escape of a letter: ``\u200b``; a letter beyond 0xFFFF has two, of its halves."""
     number = ord(letter)
     if number > 0xFFFF:  # two halves, as in JSON
         number -= 0x10000

@@ -28,7 +28,7 @@ from foon_asp.problem import DEFAULT_RULE, Changes, Names, Number, Problem, Unit
 from foon_asp.problem.progress import OnProgress, Progress
 from foon_asp.rules.measure import read_measures
 from foon_asp.standins.table_file import read_stand_ins
-from foon_asp.text.assumed_goals import LAST, as_entry, last_goals
+from foon_asp.text.assumed_goals import LAST, goal_entry, last_goals
 from foon_asp.text.data_folder import STARTING, Data, find_data
 from foon_asp.text.line import LineError
 from foon_asp.text.line_parser import parse_node
@@ -218,7 +218,9 @@ def build(
         starting = kitchen is None or kitchen == str(STARTING)
         at_hand = starting_kitchen(network).nodes if starting else frozenset[int]()
         data = Data(network, at_hand, (), entries, None, frozenset(utensils), (), 0, None, starting)
-        data = data._replace(goals_from=LAST if goals is None else "", amounts=stated.settled(network))
+        data = data._replace(
+            goals_from=LAST if goals is None else "", amounts=stated.amounts_by_unit(network)
+        )
         dataset = (
             Dataset.of(data).with_remarks((), (), (), kitchen is not None).measured(read_measures(measures))
         )
@@ -226,7 +228,7 @@ def build(
             nodes = [network.objects[o] for o in node_ids(dataset, goals, "goal")]
             wanted = stated_copies(dataset, goals, "goal") if isinstance(goals, Mapping) else {}
             listed = (
-                as_entry(node, Source("the goals", number))._replace(amount=wanted.get(node))
+                goal_entry(node, Source("the goals", number))._replace(amount=wanted.get(node))
                 for number, node in enumerate(nodes, 1)
             )
             dataset = dataset.with_goals(tuple(listed))

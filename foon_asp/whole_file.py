@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from foon_asp.errors import UserError
-from foon_asp.file_permissions import pass_on, warn_of_replaced
+from foon_asp.file_permissions import copy_permissions, warn_of_replaced
 
 try:
     import fcntl
@@ -21,12 +21,13 @@ _PARTIAL = re.compile(r"\.foon-asp\.[0-9a-f]{16}")
 
 
 def write_whole(file: Path, content: bytes) -> None:
-    """Write a new file beside the old one and rename it; after a failure, the old file is unchanged.
+    """Replace the content of a file, completely or not at all: after a failure, the file is unchanged.
 
-    The new file gets the permissions of the old one, and its owner where that is allowed. A write-protected
-    file is not replaced. Where the path is a link, the linked file is written. Of a file with several names
-    (hard links), only this name gets the new content, with a warning. A pipe or device is written to
-    directly. Raises :class:`UserError` where the file cannot be written.
+    A new file is written beside the old one and renamed. It gets the permissions of the old one, and its
+    owner where that is allowed. A write-protected file is not replaced. Where the path is a link, the linked
+    file is written. Of a file with several names (hard links), only this name gets the new content, with a
+    warning. A pipe or device is written to directly. Raises :class:`UserError` where the file cannot be
+    written.
     """
     try:
         if file.exists() and not file.is_file():
@@ -41,26 +42,27 @@ def write_whole(file: Path, content: bytes) -> None:
 
 
 def write_all_whole(contents: Mapping[Path, bytes]) -> None:
-    """Replace several files: all new files are written beside the old ones before the first is replaced.
+    """Replace the contents of several files; if one cannot be written, none is changed.
 
-    Raises :class:`UserError` when one of the files cannot be written; then, and after ctrl-C, all files are
-    unchanged. If the process is killed in the middle, each file is the old one or the new one.
+    All new files are written beside the old ones before the first is renamed. After an error, which is
+    raised as :class:`UserError`, and after ctrl-C, all files are as before. If the process is killed in the
+    middle, each file is the old one or the new one.
     """
-    replaced: dict[Path, bytes] = {}
+    old_contents: dict[Path, bytes] = {}
     try:
         with contextlib.ExitStack() as stack:
-            staged = []
+            staged_files = []
             for file, content in contents.items():
                 target = Path(os.path.realpath(file))
-                staged.append((target, stack.enter_context(_staged(target, content))))
-            for target, partial in staged:
-                before = target.read_bytes()
-                replaced[target] = before
+                staged_files.append((target, stack.enter_context(_staged_file(target, content))))
+            for target, partial in staged_files:
+                old_content = target.read_bytes()
+                old_contents[target] = old_content
                 partial.replace(target)
     except BaseException as error:
-        for target, before in replaced.items():
-            if target.read_bytes() != before:
-                _replace(target, before)
+        for target, old_content in old_contents.items():
+            if target.read_bytes() != old_content:
+                _replace(target, old_content)
         if not isinstance(error, OSError):
             raise
         name = os.fsdecode(error.filename) if error.filename else file
@@ -68,7 +70,7 @@ def write_all_whole(contents: Mapping[Path, bytes]) -> None:
 
 
 def utf_8(text: str) -> bytes:
-    """Return a text in UTF-8.
+    """Return the bytes of a text in UTF-8.
 
     Raises :class:`UserError` for half of a surrogate pair, which UTF-8 cannot hold.
     """
@@ -76,60 +78,66 @@ def utf_8(text: str) -> bytes:
         return text.encode()
     except UnicodeEncodeError as error:
         line = text.count("\n", 0, error.start) + 1
-        found = ascii(text[error.start])
+        half_character = ascii(text[error.start])
         raise UserError(
-            f"line {line} of what would be written has {found}, half a character, which UTF-8 cannot hold: "
-            "correct the name that contains it"
+            f"line {line} of what would be written has {half_character}, half a character, which UTF-8 "
+            "cannot hold: correct the name that contains it"
         ) from None
 
 
 def _replace(target: Path, content: bytes) -> None:
-    with _staged(target, content) as partial:
+    """Replace a file by a new one, which is written beside it and renamed."""
+    with _staged_file(target, content) as partial:
         partial.replace(target)
 
 
 @contextlib.contextmanager
-def _staged(target: Path, content: bytes) -> Iterator[Path]:
-    """Write a new file beside the target, and yield it; afterwards remove it if it was not renamed.
+def _staged_file(target: Path, content: bytes) -> Iterator[Path]:
+    """Return a context with the path of a new file beside the target, for the caller to rename.
 
-    Refuse a target that may not be replaced.
+    Files that killed processes left in the folder are removed before. The new file is removed at the end if
+    it was not renamed. Raises :class:`OSError` for a target that may not be written. Warns if the replaced
+    file had other names or another owner.
     """
-    old = None
+    old_status = None
     if target.exists():
         with target.open("ab"):  # may it be written? Renaming asks the folder alone
-            old = target.stat()
-    _clear(target.parent)
-    partial, written = _own_file(target.parent)
+            old_status = target.stat()
+    _remove_leftovers(target.parent)
+    partial, partial_file = _create_locked_file(target.parent)
     try:
-        with written:
-            written.write(content)
-            written.flush()
-            os.fsync(written.fileno())
-            if old is not None:
-                pass_on(old, partial)
+        with partial_file:
+            partial_file.write(content)
+            partial_file.flush()
+            os.fsync(partial_file.fileno())
+            if old_status is not None:
+                copy_permissions(old_status, partial)
             # Windows renames no open file; and a process may have 1,024 open, and rename writes many
-            if fcntl is None or written.fileno() > 500:
-                written.close()
+            if fcntl is None or partial_file.fileno() > 500:
+                partial_file.close()
             yield partial
-        if old is not None:
-            warn_of_replaced(target, old)
+        if old_status is not None:
+            warn_of_replaced(target, old_status)
     finally:
         partial.unlink(missing_ok=True)
 
 
-def _own_file(folder: Path) -> tuple[Path, BinaryIO]:
-    """Create and open a file with an unused name; it is locked as long as it is open."""
+def _create_locked_file(folder: Path) -> tuple[Path, BinaryIO]:
+    """Return the path of a new file with an unused name, and the open file, which is locked until closed."""
     while True:
         partial = folder / f".foon-asp.{os.urandom(8).hex()}"
-        written = partial.open("xb")
-        if _locked(written.fileno(), otherwise=True) and partial.exists():
-            return partial, written
-        written.close()  # before it was locked, another process took it for left over
+        partial_file = partial.open("xb")
+        if _try_lock(partial_file.fileno(), otherwise=True) and partial.exists():
+            return partial, partial_file
+        partial_file.close()  # before it was locked, another process took it for left over
 
 
 @functools.cache  # once for each folder: fmt writes many files
-def _clear(folder: Path) -> None:
-    """Remove the temporary files of killed processes from a folder: no process has locked them."""
+def _remove_leftovers(folder: Path) -> None:
+    """Remove the temporary files in a folder that no process has locked: their processes were killed.
+
+    Does nothing when it is called again with the same folder. Errors are ignored.
+    """
     with contextlib.suppress(OSError):
         for name in filter(_PARTIAL.fullmatch, os.listdir(folder)):
             with contextlib.suppress(OSError):
@@ -137,21 +145,24 @@ def _clear(folder: Path) -> None:
 
 
 def _remove_unlocked(file: Path) -> None:
-    """Remove a partial file unless the process that writes it has locked it."""
-    found = os.open(file, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
+    """Remove a temporary file unless another process, which writes it, has locked it."""
+    descriptor = os.open(file, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
     try:
-        if stat.S_ISREG(os.fstat(found).st_mode) and _locked(found, otherwise=False):
+        if stat.S_ISREG(os.fstat(descriptor).st_mode) and _try_lock(descriptor, otherwise=False):
             file.unlink()
     finally:
-        os.close(found)
+        os.close(descriptor)
 
 
-def _locked(number: int, otherwise: bool) -> bool:
-    """Lock an open file; return whether it is locked, or ``otherwise`` where files cannot be locked."""
+def _try_lock(descriptor: int, otherwise: bool) -> bool:
+    """Lock an open file, given by its descriptor, and return whether it is locked now.
+
+    Returns ``otherwise`` where files cannot be locked.
+    """
     if fcntl is None:
         return otherwise
     try:
-        fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         return False
     except OSError:

@@ -13,7 +13,7 @@ from foon_asp.report.line_diff import line_diff
 from foon_asp.text.diagnostics import Diagnostic, InputError
 from foon_asp.text.folder_files import foon_files
 from foon_asp.text.formats import format_of
-from foon_asp.text.plain_file import read_plain_text, with_own_mark
+from foon_asp.text.plain_file import protect_byte_order_mark, read_plain_text
 
 
 @click.command("fmt")
@@ -52,8 +52,8 @@ def command(paths: tuple[Path, ...], check: bool, output: Path | None, lenient: 
     for file in files:
         try:
             text = read_plain_text(file)
-            normalised = format_of(text, str(file)).normalised(text, str(file), lenient)
-            formatted = with_own_mark(normalised).encode()
+            normalised = format_of(text, str(file)).canonical_text(text, str(file), lenient)
+            formatted = protect_byte_order_mark(normalised).encode()
         except InputError as error:
             errors += error.diagnostics
             continue

@@ -18,7 +18,7 @@ from foon_asp.text.diagnostics import summarize
 from foon_asp.text.formats import TEXT, format_of
 from foon_asp.text.plain_file import is_store, read_plain_text
 from foon_asp.text.starter import RATES_FILE, starter_files
-from foon_asp.text.tables import RATES, Duration, template_text
+from foon_asp.text.tables import RATES, Duration, duration_template
 from foon_asp.text.writer import write_units
 from foon_asp.whole_file import utf_8, write_whole
 
@@ -63,7 +63,7 @@ def command(folder: Path, recipe: Path | None, rates: bool, durations: bool) -> 
             durations_known = {
                 motion: Duration(clips[motion]) if motion in clips else None for motion in motions
             }
-            files["durations.txt"] = template_text(durations_known)
+            files["durations.txt"] = duration_template(durations_known)
     for name in files:
         if (folder / name).exists():
             raise UserError(f"{folder / name} already exists: name another folder, or remove it first")
@@ -103,7 +103,7 @@ def _files(data: Data, source: Path, recipe: Path | None) -> dict[str, str]:
     text = "" if source.is_dir() else read_plain_text(source)
     recipe_text = write_units(map(network.unit, range(len(network))), (), data.amounts.units)
     if text and format_of(text, str(source)) is TEXT:
-        recipe_text = TEXT.normalised(text, str(source))
+        recipe_text = TEXT.canonical_text(text, str(source))
     rates = None if recipe else RATES.read(starter_recipe() / "motion.txt")
     goals = [network.objects[o] for entry in data.goals for o in network.find(entry.pattern)]
     kitchen = starting_nodes(network, [o for entry in data.goals for o in network.find(entry.pattern)])

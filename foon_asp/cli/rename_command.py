@@ -64,16 +64,16 @@ def command(old: str, new: str, paths: tuple[Path, ...], kind: str | None, write
     errors = []
     for file, text in texts.items():
         format_ = format_of(text, str(file))
-        renaming.learn(format_.names(text, str(file)))
+        renaming.learn(format_.mentions(text, str(file)))
         try:
-            format_.normalised(text, str(file))
+            format_.canonical_text(text, str(file))
         except InputError as error:
             errors += [each for each in error.diagnostics if old in each.excerpt]
     if errors:
         raise InputError(errors)
     changed = {}
     for file, text in texts.items():
-        after = format_of(text, str(file)).renamed(text, str(file), renaming)
+        after = format_of(text, str(file)).renamed_text(text, str(file), renaming)
         if after != text:
             changed[file] = text, after
     for file, (before, after) in changed.items():
@@ -102,7 +102,7 @@ def _kind(old: str, kind: str | None, texts: Mapping[Path, str]) -> str:
     counts: Counter[tuple[str, str]] = Counter()
     for file, text in texts.items():
         counts.update(
-            (str(kind), name) for kind, name, _ in format_of(text, str(file)).names(text, str(file))
+            (str(kind), name) for kind, name, _ in format_of(text, str(file)).mentions(text, str(file))
         )
     kinds = [possible for possible in NameKind if counts[possible, old]]
     if kind is not None and kind in kinds:

@@ -45,8 +45,8 @@ from foon_asp.problem import (
     container_rule,
     unrated_text,
 )
-from foon_asp.text.data_folder import STARTING, Data, counted_items, kitchen_item_warning
-from foon_asp.text.node_lookup import entry_names, find_goal, listed_goal, listed_nodes
+from foon_asp.text.data_folder import STARTING, Data, amounts_of_items, kitchen_item_warning
+from foon_asp.text.node_lookup import entry_names, find_goal, node_of_entry, nodes_of_entry
 from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.warning import warn
 
@@ -130,7 +130,7 @@ class Dataset:
             data.kitchen_items,
             data.starting,
             data.goals_from,
-            stock=counted_items(data.network, data.kitchen_items),
+            stock=amounts_of_items(data.network, data.kitchen_items),
         )
 
     def close(self) -> None:
@@ -247,7 +247,7 @@ class Dataset:
         if not names and self.goals_from:
             return tuple(dict.fromkeys(self.each_goal(())))
         if not names and len(self.listed) == 1:
-            return (listed_goal(self.listed[0], self.names),)
+            return (node_of_entry(self.listed[0], self.names),)
         if not names:
             listed = "\n".join(
                 f"  --goal {shlex.quote(name)}" for name in entry_names(self.listed, self.names)
@@ -272,14 +272,14 @@ class Dataset:
                 else find_goal(name, self.names, self.listed)
                 for name in names
             ]
-        return [node for entry in self.listed for node in listed_nodes(entry, self.names)]
+        return [node for entry in self.listed for node in nodes_of_entry(entry, self.names)]
 
     def with_kitchen(self, items: Sequence[ListedObject]) -> "Dataset":
         """Return the same data with the kitchen of another file."""
         names = self.names
         patterns = [pattern_at_level(item.pattern, names.level) for item in items]
         kitchen = Kitchen(frozenset(o for pattern in patterns for o in names.find(pattern)))
-        stock = counted_items(names, items)
+        stock = amounts_of_items(names, items)
         return self._varied(kitchen=kitchen, kitchen_items=tuple(items), starting=False, stock=stock)
 
     @property
@@ -482,7 +482,7 @@ class Dataset:
             choices = ", ".join(repr(str(self.names.node(o))) for o in assumed)
             raise UserError(f"name a goal; no file lists goals, and taken for them are {choices}")
         if len(self.listed) == 1:
-            return (listed_goal(self.listed[0], self.names),)
+            return (node_of_entry(self.listed[0], self.names),)
         choices = ", ".join(map(repr, entry_names(self.listed, self.names)))
         raise UserError("name a goal" + (f"; the goals file has {choices}" if choices else ""))
 

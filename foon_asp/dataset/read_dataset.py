@@ -5,7 +5,7 @@ import time
 from foon_asp.dataset.dataset import Dataset, left_out
 from foon_asp.problem import first_places, unrated_remarks
 from foon_asp.text.data_folder import DataFiles, read_data
-from foon_asp.text.diagnostics import in_brief, summarize
+from foon_asp.text.diagnostics import brief_summary, summarize
 from foon_asp.text.plain_file import is_store
 from foon_asp.text.repeated_node import repeated_note
 
@@ -28,4 +28,4 @@ def read_dataset(files: DataFiles, lenient: bool = False, level: int = 3) -> Dat
     remarks += repeated_note(data.repeated)
     dataset = Dataset.of(data, time.perf_counter() - began)
     has_kitchen = files.kitchen is not None
-    return dataset.with_remarks(summarize(data.warnings), in_brief(data.warnings), remarks, has_kitchen)
+    return dataset.with_remarks(summarize(data.warnings), brief_summary(data.warnings), remarks, has_kitchen)

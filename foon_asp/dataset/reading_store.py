@@ -18,7 +18,7 @@ from foon_asp.text.data_folder import (
     kitchen_nodes,
     unit_price_warning,
 )
-from foon_asp.text.diagnostics import in_brief, summarize
+from foon_asp.text.diagnostics import brief_summary, summarize
 from foon_asp.text.object_list import read_object_list
 from foon_asp.text.repeated_node import repeated_note
 from foon_asp.text.tables import RATES, read_utensils
@@ -75,7 +75,7 @@ def read_stored(files: DataFiles, level: int) -> Dataset:
         store.close()
     dataset.source.seconds = time.perf_counter() - began
     return dataset.with_remarks(
-        summarize(warnings), in_brief(warnings), remarks, files.kitchen is not None or store.has_kitchen
+        summarize(warnings), brief_summary(warnings), remarks, files.kitchen is not None or store.has_kitchen
     )
 
 

@@ -20,7 +20,7 @@ from foon_asp.store.stored_kitchen import StoredStartingKitchen
 from foon_asp.store.touched_network import TouchedNetwork
 from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.object_list import ListedObject
-from foon_asp.text.stated_amounts import UnitAmount, with_table
+from foon_asp.text.stated_amounts import UnitAmount, apply_amount_table
 from foon_asp.text.value_table import Row
 
 if TYPE_CHECKING:  # few answers need numpy
@@ -46,7 +46,7 @@ class StoreSource(Source):
     @cached_property
     def _amounts_and_unmatched(self) -> tuple[DataAmounts, list[Diagnostic]]:
         units = self.names.with_motions({row.name[0] for row in self._table}) if self._table else ()
-        return with_table(self.names.amounts, self._table, units)
+        return apply_amount_table(self.names.amounts, self._table, units)
 
     @property
     def amounts(self) -> DataAmounts:

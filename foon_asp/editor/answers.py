@@ -287,7 +287,7 @@ def _renamed(checked: CheckedText, rename: Rename) -> list[Json]:
 def formatted(text: EditedText) -> list[Json]:
     """Return the edits that bring the text into canonical form; none for a text with errors."""
     try:
-        return text.edits(split_lines(format_of(text.text).normalised(text.text, "", lenient=True)))
+        return text.edits(split_lines(format_of(text.text).canonical_text(text.text, "", lenient=True)))
     except InputError:
         return []
 

@@ -40,7 +40,7 @@ def _solve(
     if isinstance(reply, Raised):
         if _NOT_CHECKED in reply.classes:
             raise NotCheckedError(escaped(reply.message))
-        raise offer.raised(reply)
+        raise offer.raised_error(reply)
     return _validated(offer, problem, objectives, reply)
 
 

@@ -56,6 +56,6 @@ def mended(content: bytes, findings: Iterable[Diagnostic], unsafe: bool = False)
     for rename in renames:
         renaming = Renaming(rename)
         format_ = format_of(text)
-        renaming.learn(format_.names(text, ""))
-        text = format_.renamed(text, "", renaming)
+        renaming.learn(format_.mentions(text, ""))
+        text = format_.renamed_text(text, "", renaming)
     return mark + text.encode()

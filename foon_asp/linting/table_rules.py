@@ -11,7 +11,7 @@ from foon_asp.network import NO_AMOUNTS, counted
 from foon_asp.network.spelling import near_labels
 from foon_asp.text.diagnostics import Diagnostic, InputError
 from foon_asp.text.side_table import TABLES
-from foon_asp.text.stated_amounts import with_table
+from foon_asp.text.stated_amounts import apply_amount_table
 from foon_asp.text.unit_amount_list import UNIT_AMOUNTS
 
 _RATES = "motion.txt"
@@ -68,7 +68,7 @@ def _without_unit(sheet: Sheet, context: Context, unknown: Collection[str]) -> I
         return
     rows = UNIT_AMOUNTS.rows(Path(sheet.file), "\n".join(sheet.lines))
     units = map(context.network.unit, range(len(context.network)))
-    for finding in with_table(NO_AMOUNTS, rows, units)[1]:
+    for finding in apply_amount_table(NO_AMOUNTS, rows, units)[1]:
         index = finding.source.line - 1
         if sheet.lines[index].partition("\t")[0].strip() not in unknown:
             yield sheet.finding(finding.message, index)

@@ -1,4 +1,4 @@
-"""The process that calls the functions of another package, until its parent ends."""
+"""The process that calls the functions of another package, until the process that started it ends."""
 
 import json
 import pickle
@@ -12,25 +12,31 @@ from foon_asp.processes.pipe import receive_packed, requests, write
 
 
 def serve() -> None:
-    """Call the functions that requests on standard input name, and send their replies."""
+    """Call the functions that requests on standard input name, and write their replies, without end."""
     received, answers = requests(receive_packed)
     functions: dict[Offer, Callable[..., object]] = {}
     while True:
         offer, arguments = pickle.loads(received.get())
-        write(answers, _answer(offer, arguments, functions))
+        write(answers, _call(offer, arguments, functions))
 
 
-def _answer(
+def _call(
     offer: Offer, arguments: tuple[object, ...], functions: dict[Offer, Callable[..., object]]
 ) -> bytes:
-    """Call a function, and return a line of JSON: its reply, its exception, or what is wrong with it."""
+    """Call the function of an offer, and return a line of JSON with a kind and a value.
+
+    The kind is ``reply``, ``raised`` for an exception, or ``fault`` for a function or reply that cannot be
+    used. ``functions`` are those imported so far; a new one is added.
+    """
     if offer not in functions:
         try:
             function: Any = EntryPoint(offer.name, offer.function, offer.group).load()
         except BaseException as error:
-            return _line("fault", [f"cannot be imported: {_in_words(error)}", traceback.format_exc()])
+            return _message_line(
+                "fault", [f"cannot be imported: {_error_text(error)}", traceback.format_exc()]
+            )
         if not callable(function):
-            return _line("fault", [f"expected a function, found {_shown(function)}", ""])
+            return _message_line("fault", [f"expected a function, found {_shortened_repr(function)}", ""])
         functions[offer] = function
     try:
         reply = functions[offer](*arguments)
@@ -44,35 +50,39 @@ def _answer(
             ),
             "",
         )
-        return _line("raised", [classes, _message(error), raised_at, traceback.format_exc()])
+        return _message_line("raised", [classes, _error_message(error), raised_at, traceback.format_exc()])
     try:
-        return _line("reply", reply)
+        return _message_line("reply", reply)
     except Exception:
-        return _line("fault", [f"gave {_shown(reply)}, which is no answer", ""])
+        return _message_line("fault", [f"gave {_shortened_repr(reply)}, which is no answer", ""])
 
 
-def _line(kind: str, value: object) -> bytes:
+def _message_line(kind: str, value: object) -> bytes:
+    """Return a kind and a value as a line of JSON."""
     return json.dumps([kind, value], allow_nan=False).encode("ascii") + b"\n"
 
 
-def _in_words(error: BaseException) -> str:
-    return f"{type(error).__name__}: {_message(error)}"
+def _error_text(error: BaseException) -> str:
+    """Return the class and the message of an exception."""
+    return f"{type(error).__name__}: {_error_message(error)}"
 
 
-def _message(error: BaseException) -> str:
+def _error_message(error: BaseException) -> str:
+    """Return the beginning of the message of an exception; empty if this raises itself."""
     try:
-        return _shortened(str(error))
+        return _first_letters(str(error))
     except Exception:
         return ""
 
 
-def _shown(value: object) -> str:
+def _shortened_repr(value: object) -> str:
+    """Return the beginning of the ``repr`` of a value; if this raises, the value's class."""
     try:
-        return _shortened(repr(value))
+        return _first_letters(repr(value))
     except Exception:
         return f"a {type(value).__name__}"
 
 
-def _shortened(message: str, max_letters: int = 1000) -> str:
-    """Return the beginning of a message: some contain all data."""
+def _first_letters(message: str, max_letters: int = 1000) -> str:
+    """Return the beginning of a message, since some messages contain all data."""
     return message[:max_letters]

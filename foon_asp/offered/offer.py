@@ -1,4 +1,4 @@
-"""Offers: the entry points of installed packages, found without importing them, and errors about them."""
+"""Offers, which are entry points of installed packages, and errors about them; no package is imported."""
 
 import re
 from collections.abc import Iterable
@@ -11,9 +11,10 @@ _OFFER_NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9_.-]{0,38}[A-Za-z0-9])?", re.
 
 
 class Raised(NamedTuple):
-    """An exception of another package: the names of its classes, the most specific first, and its message.
+    """An exception that a function of another package raised.
 
-    ``raised_at`` is the file and line that raised it, or empty, and ``trace`` the traceback.
+    ``classes`` are the names of its classes, the most specific first, each with its module. ``raised_at`` is
+    the file and line that raised it, or empty, and ``trace`` the traceback.
     """
 
     classes: tuple[str, ...]
@@ -23,16 +24,16 @@ class Raised(NamedTuple):
 
     @property
     def text(self) -> str:
-        """The exception in one line."""
+        """The exception in one line: class, message and place."""
         name = self.classes[0].rpartition(".")[2]
         message = f": {self.message}" if self.message else ""
         return f"raised {name}{message}{self.raised_at and f' ({self.raised_at})'}"
 
 
 class Offer(NamedTuple):
-    """An entry point: its ``group`` and ``name``, its ``function`` as ``module:function``, and its package.
+    """An entry point of an installed package, by which the package offers a function.
 
-    ``package`` is the name of a distribution with its version.
+    ``function`` is written ``module:function``. ``package`` is the name of a distribution with its version.
     """
 
     group: str
@@ -40,28 +41,34 @@ class Offer(NamedTuple):
     function: str
     package: str
 
-    def fault(self, what: str, trace: str = "") -> UserError:
-        """Return the error that an offer is at fault, with ``what`` it did; ``--debug`` shows the trace."""
-        if len(what) > 300:  # a package may say any amount
-            what = f"{what[:300]}..."
+    def fault(self, complaint: str, trace: str = "") -> UserError:
+        """Return the error that the package of an offer did something wrong, which ``complaint`` tells.
+
+        With ``--debug``, users see the ``trace``, too.
+        """
+        if len(complaint) > 300:  # a package may say any amount
+            complaint = f"{complaint[:300]}..."
         error = UserError(
             f"{escaped(self.package)}: {escaped(self.name)} ({self.group}, {escaped(self.function)}): "
-            f"{escaped(what)}\n"
+            f"{escaped(complaint)}\n"
             "what to do: tell the authors of the package, name others, or uninstall it"
         )
         if trace:
             error.add_note(trace)
         return error
 
-    def raised(self, exception: Raised) -> UserError:
-        """Return the error that an offer raised an exception; of a ``UserError`` it is the message alone."""
+    def raised_error(self, exception: Raised) -> UserError:
+        """Return the error that the function of an offer raised an exception.
+
+        Of a ``UserError`` the message alone is shown, of other exceptions class, message and place.
+        """
         is_user_error = f"{UserError.__module__}.{UserError.__name__}" in exception.classes
         return self.fault(exception.message if is_user_error else exception.text, exception.trace)
 
     def units(self, reply: object, number: int) -> tuple[int, ...]:
-        """Return a reply as the units of a tree, by id; the network has ``number`` units.
+        """Return a reply of an offer as a tree, given by ids of units from 0 to ``number`` - 1.
 
-        Raises :class:`UserError` for a reply that is not a list of distinct units.
+        Raises :class:`UserError` for a reply that is not a list of distinct ids.
         """
         if not isinstance(reply, list):
             raise self.fault(f"gave {reply!r}, expected the units of a tree")
@@ -76,9 +83,8 @@ class Offer(NamedTuple):
 def find_offers(group: str) -> list[Offer]:
     """Return the offers of installed packages in a group, sorted by package and name; none is imported.
 
-    Of a package that is installed twice, the one that Python would import counts.
-
-    Raises :class:`UserError` where the entry points of a package that has the group cannot be read.
+    Of a package that is installed twice, the installation counts that Python would import. Raises
+    :class:`UserError` where the entry points of a package that mentions the group cannot be read.
     """
     from importlib import metadata  # noqa: PLC0415 (slow to import, and seldom needed)
 
@@ -92,8 +98,8 @@ def find_offers(group: str) -> list[Offer]:
             continue
         try:
             package, version = distribution.metadata["Name"], distribution.metadata["Version"]
-            points = distribution.entry_points.select(group=group)
-            offers = [Offer(group, point.name, point.value, f"{package} {version}") for point in points]
+            entry_points = distribution.entry_points.select(group=group)
+            offers = [Offer(group, point.name, point.value, f"{package} {version}") for point in entry_points]
         except Exception as error:
             raise UserError(
                 f"a package offers {group} and cannot be read: "
@@ -106,8 +112,9 @@ def find_offers(group: str) -> list[Offer]:
 def offers_by_name(offers: Iterable[Offer], reserved: Iterable[str]) -> dict[str, Offer]:
     """Return offers by name.
 
-    Raises :class:`UserError` for a name that two offers have or that is ``reserved``, ignoring case; and for
-    one that is not made of letters, digits, ``-``, ``_`` and ``.``.
+    Raises :class:`UserError` for a name that two offers have or that is ``reserved``, ignoring case. Raises
+    :class:`UserError` for a name of another form than up to 40 letters and digits, with ``-``, ``_`` and
+    ``.`` between them.
     """
     owners = {name.lower(): "foon-asp" for name in reserved}
     by_name: dict[str, Offer] = {}

@@ -16,13 +16,14 @@ from foon_asp.processes.worker import DiedError, Worker, give_back, take
 
 
 def ask_offered(offer: Offer, deadline: Deadline, *arguments: object) -> Any:
-    """Call the function of an offer; return its reply as plain values, or ``Raised`` if it raised.
+    """Call the function of an offer in the process of its package, and return the reply as plain values.
 
-    Raises :class:`~foon_asp.deadline.LimitError` at a limit, and :class:`UserError` where the function cannot
-    be imported, ends its process, or returns anything but plain values.
+    Returns :class:`Raised` if the function raised an exception. Raises
+    :class:`~foon_asp.deadline.LimitError` at a limit. Raises :class:`UserError` where the function cannot be
+    imported, ends its process, or returns anything but plain values.
     """
     key = (offer.package, *sys.path)  # with the path, another version of the package may be found
-    worker = take(key, _start)
+    worker = take(key, _start_worker)
     try:
         kind, line = worker.ask(packed((offer, arguments)), deadline)
     except DiedError as died:
@@ -40,16 +41,17 @@ def ask_offered(offer: Offer, deadline: Deadline, *arguments: object) -> Any:
     return Raised(tuple(value[0]), *value[1:]) if kind == "raised" else value
 
 
-def _start() -> Worker:
-    return Worker("foon_asp.offered.call_worker", "what other packages offer is run", read=_line)
+def _start_worker() -> Worker:
+    """Start a process in which a package's functions are called."""
+    return Worker("foon_asp.offered.call_worker", "what other packages offer is run", read=_read_message)
 
 
-def _line(pipe: RawIOBase, max_bytes: int = 64 * 2**20) -> tuple[str, bytes]:
-    """Return a line of a pipe as a message; its kind is ``endless`` for a line of more than ``max_bytes``.
+def _read_message(pipe: RawIOBase, max_bytes: int = 64 * 2**20) -> tuple[str, bytes]:
+    """Return the kind and the bytes of the next line of a pipe; the kind is ``line``.
 
-    A tree of a million units takes some megabytes; an endless line would fill the memory.
-
-    Raises ``EOFError`` where the pipe ends within the line.
+    For a line of more than ``max_bytes``, it is ``endless``, without bytes: such a line would fill the
+    memory. A tree of a million units takes some megabytes. Raises ``EOFError`` where the pipe ends within
+    the line.
     """
     line = bytearray()
     while not line.endswith(b"\n"):

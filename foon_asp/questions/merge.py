@@ -176,7 +176,9 @@ def merge_files(data_files: DataFiles, store: Path | None, lenient: bool) -> Mer
             builder.add(motion, inputs, outputs, *sources)
             copies += 1
     reader.raise_errors()
-    reader.prices.settled(read_unit_prices(data_files.unit_prices).units if data_files.unit_prices else {})
+    reader.prices.price_by_unit(
+        read_unit_prices(data_files.unit_prices).units if data_files.unit_prices else {}
+    )
     network = builder.build()
     if not len(network):
         raise UserError("there is no functional unit in these files")

@@ -43,9 +43,9 @@ from foon_asp.text.line import LineError
 from foon_asp.text.tables import (
     TOOLS,
     Duration,
+    duration_template,
     read_default_duration,
     stated_name,
-    template_text,
 )
 from foon_asp.whole_file import utf_8, write_whole
 
@@ -194,7 +194,7 @@ def _schedule_or_template(
         plan, options["durations"], options["from_video"], options["default_duration"]
     )
     template = {unit.motion: known_durations.get(unit.motion) for unit in plan.units}
-    write_whole(durations_template, utf_8(template_text(template)))
+    write_whole(durations_template, utf_8(duration_template(template)))
     unknown = sum(duration is None for duration in template.values())
     return WrittenDurations(file=durations_template, unknown=unknown)
 

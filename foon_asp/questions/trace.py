@@ -27,7 +27,7 @@ from foon_asp.results.table import Block
 from foon_asp.results.values import Copies, Copy, Unit, Value, changed_motions
 from foon_asp.results.values_of import copies_of, copy_of, head_of, lack_of
 from foon_asp.text.json_value import schema_name
-from foon_asp.text.writer import counted_node, write_node
+from foon_asp.text.writer import write_counted_node, write_node
 from foon_asp.whole_file import utf_8, write_whole
 
 States = tuple[dict[ObjectNode, int], ...]
@@ -128,7 +128,7 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
         Parameters:
             after: The number of steps that were done, from 0.
         """
-        return "".join(counted_node(node, n) for node, n in self.copies(after).items())
+        return "".join(write_counted_node(node, n) for node, n in self.copies(after).items())
 
     def show(self) -> Iterator[Block]:
         """Return the steps with consumed and added copies, and the final kitchen."""

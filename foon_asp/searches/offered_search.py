@@ -28,7 +28,7 @@ def _retrieve(offer: Offer, problem: Problem, settings: SearchSettings) -> Retri
     except LimitError:
         return Retrieval(Ending.UNKNOWN)
     if isinstance(reply, Raised):
-        raise offer.raised(reply)
+        raise offer.raised_error(reply)
     return _validated(offer, problem, reply)
 
 

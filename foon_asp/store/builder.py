@@ -26,7 +26,7 @@ from foon_asp.store.digests import content_digests
 from foon_asp.store.label_search import write_trigrams
 from foon_asp.store.store_tables import OUTLINE, UNITS_OF_FILE, create_indexes, create_tables
 from foon_asp.store.tuning import STORE
-from foon_asp.text.assumed_goals import as_entry, wanted_outputs
+from foon_asp.text.assumed_goals import final_outputs, goal_entry
 from foon_asp.text.object_list import ListedObject
 from foon_asp.text.repeated_node import RepeatedNode
 from foon_asp.text.unit_price_list import UnitPriceList
@@ -125,9 +125,9 @@ class StoreBuilder:
         sources: dict[int, Source] = {}
         for unit, source in units.items():
             inputs, outputs = inputs_outputs[unit]
-            for o in wanted_outputs(inputs, sorted(outputs), needed):
+            for o in final_outputs(inputs, sorted(outputs), needed):
                 sources.setdefault(o, source)
-        return [as_entry(self._node(o), source) for o, source in sources.items()]
+        return [goal_entry(self._node(o), source) for o, source in sources.items()]
 
     def finish(
         self,

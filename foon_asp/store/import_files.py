@@ -8,21 +8,21 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.errors import UserError
-from foon_asp.file_permissions import pass_on, warn_of_replaced
+from foon_asp.file_permissions import copy_permissions, warn_of_replaced
 from foon_asp.garbage_collection import uncollected
 from foon_asp.network import FunctionalUnit, Source
 from foon_asp.problem import unrated_remarks
 from foon_asp.store.builder import StoreBuilder
 from foon_asp.store.digests import append_digest
 from foon_asp.store.store_file import is_store_database
-from foon_asp.text.assumed_goals import LAST, MARKED, as_entry
+from foon_asp.text.assumed_goals import LAST, MARKED, goal_entry
 from foon_asp.text.data_folder import STARTING, DataFiles, kitchen_item_warning, unit_price_warning
 from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.text.plain_file import STORE_MAGIC, STORE_SUFFIX, is_store
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.repeated_node import repeated_note
-from foon_asp.text.stated_amounts import with_table
+from foon_asp.text.stated_amounts import apply_amount_table
 from foon_asp.text.tables import RATES, read_utensils
 from foon_asp.text.unit_amount_list import UNIT_AMOUNTS
 from foon_asp.text.unit_price_list import read_unit_prices
@@ -84,11 +84,13 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
             goals_from = ""
             if files.goals is None:
                 goals, goals_from = _assumed_goals(reader, builder, last_units)
-            stated = reader.prices.settled(prices.units if prices else {})
+            stated = reader.prices.price_by_unit(prices.units if prices else {})
             for unit, source in prices.sources.items() if prices else ():
                 if builder.unit_id(unit) is None:
                     warnings.append(unit_price_warning(unit, source))
-            amounts, unmatched = with_table(reader.amounts.settled(), amount_rows, counted_units)
+            amounts, unmatched = apply_amount_table(
+                reader.amounts.amounts_by_unit(), amount_rows, counted_units
+            )
             warnings += unmatched
             counts = builder.copies, builder.units, builder.objects
             builder.finish(
@@ -111,7 +113,7 @@ def _assumed_goals(
 ) -> tuple[list[ListedObject], str]:
     """Return the marked goals, or if there are none the final outputs of last units; and their origin."""
     if reader.marked:
-        return [as_entry(node, source) for node, source in reader.marked.items()], MARKED
+        return [goal_entry(node, source) for node, source in reader.marked.items()], MARKED
     return builder.last_outputs(last_units), LAST
 
 
@@ -150,7 +152,7 @@ def _written(store: Path) -> Iterator[sqlite3.Connection]:
         if store.exists():
             with store.open("rb+"):  # may it be written? Renaming asks the folder alone
                 old = store.stat()
-            pass_on(old, partial)
+            copy_permissions(old, partial)
         partial.replace(store)
         if old is not None:
             warn_of_replaced(store, old)

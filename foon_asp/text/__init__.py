@@ -1,1 +1,1 @@
-"""FOON text and the tables beside it, in and out."""
+"""Reading, writing and conversion of FOON as text and as JSON, and of the tables beside a network."""

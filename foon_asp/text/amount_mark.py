@@ -1,31 +1,37 @@
-"""Amounts in FOON text: a comment line under an object line, ``# Amount:⇥2``, which other readers skip."""
+"""Amounts in FOON text: comment lines under object lines, ``# Amount:⇥2``, which other programs skip."""
 
 from foon_asp.network import MAX_AMOUNT
 from foon_asp.text.line import LineError, is_number
 
 _MARK = "# Amount:"
 EXPECTED_AMOUNT = f"a whole number from 1 to {MAX_AMOUNT}"
-"""What an amount is, for messages."""
+"""The description of an amount in messages."""
 
 
 def is_amount(comment: str) -> bool:
-    """Whether a comment line is meant to state an amount."""
+    """Whether a comment line begins with ``# Amount:``, even if no amount follows."""
     return comment.startswith(_MARK)
 
 
 def read_amount(comment: str) -> int:
-    """Return the amount that a comment line states; raises :class:`LineError` for any other text."""
+    """Return the amount in a comment line for which :func:`is_amount` is true: 2 for ``# Amount:⇥2``.
+
+    Raises :class:`LineError` if anything but an amount follows the colon.
+    """
     written = comment[len(_MARK) :].strip()
-    return amount(written, len(_MARK) + 1 + comment[len(_MARK) :].find(written))
+    return parse_amount(written, len(_MARK) + 1 + comment[len(_MARK) :].find(written))
 
 
-def amount(written: str, column: int) -> int:
-    """Return the number of a written amount; raises :class:`LineError` at ``column`` for any other text."""
+def parse_amount(written: str, column: int) -> int:
+    """Return the amount that digits state, from 1 to ``MAX_AMOUNT``.
+
+    Raises :class:`LineError` at ``column``, which is that of ``written`` in its line, for any other text.
+    """
     if not is_number(written) or len(written) > len(str(MAX_AMOUNT)) or not 1 <= int(written) <= MAX_AMOUNT:
         raise LineError(column, f"the amount {written[:40]!r}", (EXPECTED_AMOUNT,))
     return int(written)
 
 
 def write_amount(amount: int) -> str:
-    """Return the comment line, with its line end, that :func:`read_amount` reads."""
+    """Return the comment line that states an amount, with its line end: ``# Amount:⇥2``."""
     return f"{_MARK}\t{amount}\n"

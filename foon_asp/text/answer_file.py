@@ -26,11 +26,11 @@ class ListedTree(NamedTuple):
 
     ``units``: the units in the order of the file, each with its source; ``None`` for an answer without a
     tree.
-    ``numbers``: the ids U in the atoms ``use(U)`` of clingo's output, for which ``units`` is empty.
+    ``numbers``: the ids U in the atoms ``use(U)`` of clingo's output. If there are any, ``units`` is empty.
     ``goals``, ``status``, ``containers``, ``items``: the fields of an answer of foon-asp, else empty.
-    ``wanted``: the number of copies of each goal for which the answer states this number.
-    ``is_tree``: false for FOON without a mark of a task tree; the file may then be a network.
-    ``amounts``: the amounts of the units.
+    ``wanted``: how many copies of each goal the answer wants; a goal without a stated number is missing.
+    ``is_tree``: false for FOON without a comment ``# Task tree for:``. Such a file may be a network.
+    ``amounts``: how many copies of nodes the units take and make, where this is not 1.
     """
 
     units: tuple[tuple[FunctionalUnit, Source], ...] | None
@@ -44,43 +44,46 @@ class ListedTree(NamedTuple):
     amounts: Amounts = MappingProxyType({})
 
     def with_units(self, file: Path, network: Callable[[], Network]) -> "ListedTree":
-        """Return the tree with units in place of its ``numbers``, which are ids in the whole network.
+        """Return the tree with the units of its ``numbers``, each with its first source, and no numbers.
 
-        ``network`` returns the whole network, and is called only if the tree has numbers. Raises
-        :class:`UserError` for a number that is no id of a unit.
+        A tree without numbers is returned as it is. Otherwise ``network`` is called: it returns the network
+        whose ids the numbers are. Raises :class:`UserError` for a number that is no id of a unit; ``file``
+        is named in the message.
         """
         if not self.numbers:
             return self
-        whole = network()
+        whole_network = network()
         units = []
         for number in self.numbers:
-            unit = whole.unit_of_number(number)
+            unit = whole_network.unit_of_number(number)
             if unit is None:
                 raise UserError(
-                    f"{file}: use({number}): the network has no unit {number}, only 0 to {len(whole) - 1}"
+                    f"{file}: use({number}): the network has no unit {number}, "
+                    f"only 0 to {len(whole_network) - 1}"
                 )
-            units.append((whole.unit(unit), whole.sources[unit][0]))
+            units.append((whole_network.unit(unit), whole_network.sources[unit][0]))
         return self._replace(units=tuple(units), numbers=())
 
 
 def read_listed_tree(file: Path, reader: FoonReader) -> ListedTree:
-    """Read a tree; the diagnostics of FOON text are added to those of ``reader``.
+    """Return the tree that a file lists, in any of the forms that the module names.
 
-    In the output of clingo, the last answer is read, which is the best. Raises :class:`UserError` for JSON
-    without a field for a tree, of another version, or not as ``docs/json.md`` describes.
+    Of clingo's output, the last answer with units is read, which is the best. Diagnostics of FOON text are
+    added to those of ``reader``. Raises :class:`UserError` for a missing file, and for JSON without a field
+    for a tree, of another version, or not as ``docs/json.md`` describes.
     """
     if not file.exists():
         raise UserError(f"{file}: no such file")
     text = read_plain_text(file)  # a pipe can be read only once
-    document = _document(text)
+    document = _foon_asp_document(text)
     if numbers := _used_ids(text):
         return ListedTree((), numbers=numbers)
     if document is None:
         is_tree = _TREE_COMMENT in text.partition("//")[0]
         listed = tuple(reader.tree_units(text, str(file)))
-        return ListedTree(listed, is_tree=is_tree, amounts=reader.amounts.settled().units)
+        return ListedTree(listed, is_tree=is_tree, amounts=reader.amounts.amounts_by_unit().units)
     try:
-        answer = _with_tree(document)
+        answer = _answer_with_tree(document)
         steps = answer["units"]
         units = None if steps is None else tuple(chain.from_iterable(map(_executions, steps)))
         goals = tuple(map(read_node_json, answer["goals"]))
@@ -99,8 +102,8 @@ def _used_ids(text: str) -> tuple[int, ...]:
     return next((numbers for numbers in reversed(answers) if numbers), ())
 
 
-def _document(text: str) -> Json | None:
-    """Return a JSON document of foon-asp, of any version; ``None`` for any other text."""
+def _foon_asp_document(text: str) -> Json | None:
+    """Return a text's JSON object if it has a key ``schema`` or ``units``; ``None`` for any other text."""
     if not text.lstrip().startswith("{"):
         return None
     try:
@@ -110,8 +113,11 @@ def _document(text: str) -> Json | None:
     return value if isinstance(value, dict) and ("schema" in value or "units" in value) else None
 
 
-def _with_tree(document: Json) -> Json:
-    """Return the answer that has the tree: the document itself, or the answer inside it."""
+def _answer_with_tree(document: Json) -> Json:
+    """Return the answer that has the tree: the document itself, or the value of its key ``answer``.
+
+    Raises :class:`ValueError` for an unknown schema, and for a kind of document without exactly one tree.
+    """
     inner_answer = document.get("answer")
     answer, kind = inner_answer if isinstance(inner_answer, dict) else document, ""
     for name in (document.get("schema"), answer.get("schema")):
@@ -124,12 +130,12 @@ def _with_tree(document: Json) -> Json:
 
 
 def _executions(value: Json) -> Iterator[tuple[FunctionalUnit, Source]]:
-    """Yield the unit of a step once for each of its executions."""
+    """Yield the unit and the source of a step as often as its key ``times`` says, by default once."""
     return repeat(_unit(value), int(value.get("times", 1)))
 
 
 def _unit(value: Json) -> tuple[FunctionalUnit, Source]:
-    """Return a unit and its source from an answer in JSON."""
+    """Return a unit and its first source from its JSON in an answer."""
     inputs, outputs = (tuple(map(read_node_json, value[key])) for key in ("inputs", "outputs"))
     source = value["source"][0]
     if not isinstance(value["motion"], str) or not isinstance(source, dict):

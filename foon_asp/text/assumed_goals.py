@@ -8,31 +8,31 @@ from foon_asp.text.object_list import ListedObject
 MARKED, LAST = "marked", "last"
 
 
-def wanted_outputs(inputs: Sequence[int], outputs: Sequence[int], needed: Iterable[int]) -> list[int]:
+def final_outputs(inputs: Sequence[int], outputs: Sequence[int], needed: Iterable[int]) -> list[int]:
     """Return the final outputs of the last unit of a file: its outputs that no unit needs.
 
     All arguments are ids of nodes: the ``inputs`` and ``outputs`` of the last unit, and as ``needed`` the
-    inputs of all units. If every output is needed, returns the outputs that are not among ``inputs``; if
-    there are none, all ``outputs``.
+    inputs of all units. If every output is needed, the outputs that are not among ``inputs`` are returned. If
+    there are none of these, all ``outputs`` are.
     """
     needed = set(needed)
     return [o for o in outputs if o not in needed] or [o for o in outputs if o not in inputs] or [*outputs]
 
 
-def as_entry(node: ObjectNode, source: Source) -> ListedObject:
-    """Return a node as an entry of a goals file; ``source`` is where it was read."""
+def goal_entry(node: ObjectNode, source: Source) -> ListedObject:
+    """Return the entry of a goals file that matches a node alone; its source is ``source`` without videos."""
     return ListedObject(NodePattern.of(node), source._replace(videos=()))
 
 
 def last_goals(network: Network, last_units: Mapping[int, Source]) -> list[ListedObject]:
-    """Return the final outputs of the last unit of each file, as entries of a goals file.
+    """Return the final outputs of the last unit of each file, each once, as entries of a goals file.
 
-    ``last_units`` maps the id of each last unit to its source.
+    ``last_units`` maps the id of the last unit of each file to its source, which the entries get.
     """
     outputs = {o for unit in last_units for o in network.outputs[unit]}
     needed = {o for inputs in network.inputs for o in inputs if o in outputs}
     goal_sources: dict[int, Source] = {}
     for unit, source in last_units.items():
-        for o in wanted_outputs(network.inputs[unit], network.outputs[unit], needed):
+        for o in final_outputs(network.inputs[unit], network.outputs[unit], needed):
             goal_sources.setdefault(o, source)
-    return [as_entry(network.objects[o], source) for o, source in goal_sources.items()]
+    return [goal_entry(network.objects[o], source) for o, source in goal_sources.items()]

@@ -1,6 +1,6 @@
-"""Fast reading of well-formed lines of FOON text and of labels, which need no parser.
+"""Fast reading of usual lines of FOON text and of labels, by regular expressions in place of the parser.
 
-Most lines are well-formed, and importing Lark and building the parser takes a third of a cold ``solve``.
+Most lines are usual, and importing Lark and building the parser takes a third of a cold ``solve``.
 """
 
 import re
@@ -21,9 +21,13 @@ _LABEL = re.compile(r' *[^ ";\t\r\n\[\]{}][^;\t\r\n\[\]{}]*')
 
 
 def clean_line(text: str) -> Line | None:
-    """Return the parsed line of a well-formed text; ``None`` for any other text."""
+    """Return the parsed line of a text without line end, or ``None`` where the parser has to read it.
+
+    ``None`` also stands for faulty lines. Only slips in ingredients, and a space for the tab before a
+    bracket, are read here; the line then has remarks.
+    """
     if match := _STATE_LINE.fullmatch(text):
-        return _state(match)
+        return _matched_state_line(match)
     if match := _OBJECT_LINE.fullmatch(text):
         id_, label, flag = match.groups()
         return ObjectLine(label, id_, (flag,) if flag else ())
@@ -34,34 +38,35 @@ def clean_line(text: str) -> Line | None:
 
 
 def clean_node(notation: str) -> ObjectNode | None:
-    """Return the node of a label alone, without quotes; ``None`` for any other notation."""
+    """Return the node of a notation that is a label alone, without quotes; ``None`` for another notation."""
     return ObjectNode(notation.strip(" ")) if _LABEL.fullmatch(notation) else None
 
 
-def _state(match: re.Match[str]) -> StateLine:
-    """Return the state line of a match."""
+def _matched_state_line(match: re.Match[str]) -> StateLine:
+    """Return the state line that ``_STATE_LINE`` matched, with remarks on slips."""
     id_, name, gap, related, listed = match.groups()
     end = match.end(2)
     remarks: list[Remark] = []
     if related is not None:
         if gap == " ":
-            remarks.append(no_tab(f"[{related}]", end + 1))
+            remarks.append(no_tab_remark(f"[{related}]", end + 1))
         return StateLine(Relation(name, related), id_, remarks=tuple(remarks))
     if listed is None:
         return StateLine(name, id_)
-    ingredients = items(listed, end + 3, remarks)
+    ingredients = split_ingredients(listed, end + 3, remarks)
     return StateLine(Contents(name, tuple(sorted(ingredients))), id_, ingredients, tuple(remarks))
 
 
-def no_tab(bracket: str, column: int) -> Remark:
-    """Return the remark that a bracket has no tab before it."""
+def no_tab_remark(bracket: str, column: int) -> Remark:
+    """Return the remark that no tab stands before ``bracket``, such as ``[bowl]``."""
     return Remark(column, "space-for-tab", f"no tab before {bracket}; read as if there were one")
 
 
-def items(listed: str, column: int, remarks: list[Remark]) -> tuple[str, ...]:
-    """Split the text in brackets at its commas; ``column`` is that of its first letter.
+def split_ingredients(listed: str, column: int, remarks: list[Remark]) -> tuple[str, ...]:
+    """Return the ingredients between brackets, split at commas, without spaces around them.
 
-    Adds to ``remarks`` a remark on dropped items and one on doubtful items, if there are any.
+    Empty ingredients are left out, repeated ones stay. ``column`` is that of the first letter of ``listed``.
+    Adds to ``remarks`` at most one remark each on empty, on spaced and on repeated ingredients.
     """
     split = listed.split(",")
     if len(set(split)) == len(split) and all(item and item[0] != " " != item[-1] for item in split):
@@ -70,7 +75,8 @@ def items(listed: str, column: int, remarks: list[Remark]) -> tuple[str, ...]:
     seen: set[str] = set()
     remarked: set[str] = set()
 
-    def remark(code: str, message: str) -> None:
+    def add_remark(code: str, message: str) -> None:
+        """Add a remark at the current column, unless there is one of this code."""
         if code not in remarked:
             remarks.append(Remark(column, code, message))
             remarked.add(code)
@@ -78,12 +84,12 @@ def items(listed: str, column: int, remarks: list[Remark]) -> tuple[str, ...]:
     for raw in split:
         item = raw.strip(" ")
         if not item:
-            remark("empty-ingredient", "empty ingredient left out")
+            add_remark("empty-ingredient", "empty ingredient left out")
         else:
             if item != raw:
-                remark("outer-space", f"spaces around {item!r} left out")
+                add_remark("outer-space", f"spaces around {item!r} left out")
             if item in seen:
-                remark("repeated-ingredient", f"ingredient {item!r} is listed twice")
+                add_remark("repeated-ingredient", f"ingredient {item!r} is listed twice")
             kept.append(item)
             seen.add(item)
         column += len(raw) + 1

@@ -1,4 +1,4 @@
-"""Clips of annotated videos: when a unit happens, and how long motions take."""
+"""Clips of annotated videos: when a unit happens in its video, and how long motions take."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -15,7 +15,7 @@ _CLOCK = re.compile(r"\d+:\d\d(?::\d\d)?", re.ASCII)
 
 
 class ListedClips(NamedTuple):
-    """The clips of a unit, each as its begin and its end in seconds, and where the unit was read."""
+    """The clips of a unit, each as its begin and its end in seconds, with the unit's motion and sources."""
 
     motion: str
     sources: tuple[Source, ...]
@@ -23,35 +23,42 @@ class ListedClips(NamedTuple):
 
     @property
     def seconds(self) -> int:
-        """The length of all clips."""
+        """The total length of the clips, in seconds."""
         return sum(end - begin for begin, end in self.clips)
 
 
 def listed_clips(files: Iterable[Path], lenient: bool = False) -> Iterator[ListedClips]:
     """Yield the clips of each unit that has any.
 
-    Units without two times, such as assumed ones, and clips that do not end after they begin are skipped.
-    Lines that are not understood are skipped if ``lenient``, else :class:`InputError` is raised.
+    Units without two times, such as assumed ones, are skipped. So are clips whose end is not after their
+    begin. Lines that are not understood are skipped if ``lenient``; otherwise :class:`InputError` is raised
+    when the units of their file have been yielded.
     """
     for file in files:
         reader = FoonReader(lenient)
         for unit in reader.listed_units(reader.text(file), str(file)):
-            clips = tuple(_clips(MotionFields.of(unit.motion.fields).times))
+            clips = tuple(_paired_clips(MotionFields.of(unit.motion.fields).times))
             if clips:
                 yield ListedClips(unit.motion.motion, unit.sources, clips)
         reader.raise_errors()
 
 
 def median_clips(files: Iterable[Path], lenient: bool = False) -> dict[str, Fraction]:
-    """Return the median of the clip times of each motion that has any, in seconds."""
+    """Return the usual duration of each motion with clips: the median over its units, in seconds.
+
+    The duration of a unit is the total length of its clips. Raises as :func:`listed_clips` does.
+    """
     seconds: dict[str, list[Fraction]] = {}
     for listed in listed_clips(files, lenient):
         seconds.setdefault(listed.motion, []).append(Fraction(listed.seconds))
     return {motion: median(times) for motion, times in seconds.items()}
 
 
-def _clips(times: tuple[str, ...]) -> Iterator[tuple[int, int]]:
-    """Yield the begin and the end of each clip of a unit in seconds: from one time to the next."""
+def _paired_clips(times: tuple[str, ...]) -> Iterator[tuple[int, int]]:
+    """Yield the begin and the end of each clip in seconds: of the first two times, then of the next two.
+
+    A clip whose end is not after its begin is skipped.
+    """
     clocks = [_seconds(clock) for clock in _CLOCK.findall(" ".join(times))]
     for begin, end in zip(clocks[::2], clocks[1::2], strict=False):
         if end > begin:
@@ -59,6 +66,7 @@ def _clips(times: tuple[str, ...]) -> Iterator[tuple[int, int]]:
 
 
 def _seconds(clock: str) -> int:
+    """Return the seconds of a time of a video: 70 for ``1:10``, 170 for ``0:02:50``."""
     seconds = 0
     for number in clock.split(":"):
         seconds = 60 * seconds + int(number)

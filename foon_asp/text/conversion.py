@@ -7,13 +7,13 @@ from foon_asp.text.amount_mark import is_amount
 from foon_asp.text.conversion_ids import Numbering
 from foon_asp.text.conversion_loss import CannotHoldError, Loss, lost_in_line
 from foon_asp.text.diagnostics import Diagnostic
-from foon_asp.text.foon_text import FoonText, rewritten
+from foon_asp.text.foon_text import FoonText, rewrite_lines
 from foon_asp.text.format import Dialect, Format, WrittenPart
 from foon_asp.text.formats import format_of, format_with
 from foon_asp.text.json_writer import with_container
 from foon_asp.text.line import Line, MotionLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
-from foon_asp.text.plain_file import split_lines, with_own_mark
+from foon_asp.text.plain_file import protect_byte_order_mark, split_lines
 from foon_asp.text.provenance import is_video, read_copy, read_video
 from foon_asp.text.reading import Reading
 from foon_asp.text.text_writer import TextWriter
@@ -21,14 +21,14 @@ from foon_asp.text.writer import write_line
 
 
 class Lost(NamedTuple):
-    """The losses of one kind: their number, and the place of the first one."""
+    """The losses of one kind: their number, and the source of the first one in the file."""
 
     occurrences: int
     first: Source
 
 
 class Converted(NamedTuple):
-    """A text in another dialect, the dialect it was in, and what was lost."""
+    """A converted text, the ``dialect`` of the original text, and the losses by kind."""
 
     text: str
     dialect: Dialect
@@ -36,7 +36,7 @@ class Converted(NamedTuple):
 
 
 class Converter:
-    """Converts any number of files to one dialect, with the same ids for the same names in all of them.
+    """A converter of any number of files to one dialect, with the same ids for equal names in all of them.
 
     If ``lenient``, a part that cannot be understood, or that the dialect cannot hold, causes a warning in
     ``diagnostics`` instead of an error. It is left out; in a conversion from text to text it stays unchanged.
@@ -57,91 +57,114 @@ class Converter:
 
     @property
     def left_out(self) -> int:
-        """The number of lines left out."""
+        """The number of lines left out of all files so far."""
         return self._reading.left_out
 
     def learn(self, text: str) -> None:
-        """Record the ids of a text that will be converted, so that new ids differ from them."""
+        """Record the ids in a text that will be converted, so that new ids differ from them.
+
+        Does nothing unless the target is the dialect ``ids``.
+        """
         if self.target is Dialect.IDS:
             for line in format_of(text).lines(text):
                 self._numbering.learn(line)
 
     def convert(self, text: str, file: str) -> Converted:
-        """Return a converted text, which has the same functional units or listed objects.
+        """Return a converted text, which has the same functional units or listed objects, and its losses.
 
-        Raises :class:`InputError` with the places of all parts that cannot be understood, or whose meaning
-        the target cannot hold.
+        JSON or neutral lines that are in the target dialect already are laid out anew. Raises
+        :class:`InputError` with the places of all parts that cannot be understood, or whose meaning the
+        target cannot hold.
         """
         earlier = len(self.diagnostics)
         lost = _Tally(file)
         format_ = format_of(text, file)
         dialect = format_.dialect(text)
         if isinstance(format_, FoonText) and isinstance(self._writer, TextWriter):
-            converted = self._lines(text, file, self._writer, lost)
+            converted = self._converted_lines(text, file, self._writer, lost)
         elif dialect is self.target:
-            converted = format_.normalised(text, file, self.lenient)
+            converted = format_.canonical_text(text, file, self.lenient)
         elif format_.lists_objects(text):
-            converted = self._objects(text, file, format_, lost)
+            converted = self._converted_objects(text, file, format_, lost)
         else:
-            converted = self._units(text, file, format_, lost)
+            converted = self._converted_network(text, file, format_, lost)
         self._reading.raise_errors(earlier)
         return Converted(converted, dialect, lost.found)
 
-    def _lines(self, text: str, file: str, writer: TextWriter, lost: "_Tally") -> str:
-        """Return FOON text in another dialect, line by line, which keeps comments and blank lines."""
+    def _converted_lines(self, text: str, file: str, writer: TextWriter, lost: "_Tally") -> str:
+        """Return FOON text in another dialect of FOON text; losses go to ``lost``.
+
+        Comments and blank lines stay.
+        """
         losses_by_line: dict[str, list[Loss]] = {}
 
         def rewrite(line: Line, written: str) -> str:
+            """Return a line as the target writes it, and record its losses under the text that it had."""
             target_line = writer.in_dialect(line)
             losses_by_line[written] = lost_in_line(line, target_line)
             return write_line(target_line)
 
-        converted = rewritten(text, file, self.lenient, rewrite)
+        converted = rewrite_lines(text, file, self.lenient, rewrite)
         for number, line in enumerate(split_lines(text), 1):
             lost.add(losses_by_line.get(line, ()), Source(file, number))
-        return with_own_mark(converted)
+        return protect_byte_order_mark(converted)
 
-    def _objects(self, text: str, file: str, format_: Format, lost: "_Tally") -> str:
-        """Convert a list of objects."""
+    def _converted_objects(self, text: str, file: str, format_: Format, lost: "_Tally") -> str:
+        """Return a list of objects in the other dialect; losses go to ``lost``.
+
+        Objects that the dialect cannot hold are left out, and recorded as faults.
+        """
         blocks = [with_container(*entry) for entry in format_.objects(text, file, self._reading)]
         if format_.has_comments:
-            lost.comments(text, ())
+            lost.add_comments(text, ())
         texts: list[str] = []
         for block in blocks:
             try:
-                texts.append(self._element(block, block.source, lost, in_list=True))
+                texts.append(self._element_text(block, block.source, lost, in_list=True))
             except CannotHoldError as problem:
-                self._cannot_hold(problem, block.source)
+                self._reject(problem, block.source)
         return self._writer.objects(texts)
 
-    def _units(self, text: str, file: str, format_: Format, lost: "_Tally") -> str:
-        """Return a network in the other dialect; losses are counted in ``lost``."""
-        listed = list(format_.listed_units(text, file, self._reading))
-        videos = self._videos(text, format_, listed, lost)
-        meant = [unit.with_totals if format_.machine_written else unit.without_repeats for unit in listed]
-        written = [self._unit(unit, lost) for unit in meant]
-        return self._writer.network([unit for unit in written if unit], videos)
+    def _converted_network(self, text: str, file: str, format_: Format, lost: "_Tally") -> str:
+        """Return a network in the other dialect; losses go to ``lost``.
 
-    def _unit(self, unit: ListedUnit, lost: "_Tally") -> str:
-        """Write a unit; the text is empty, and an error is recorded, if the target cannot hold it."""
+        A node that a unit lists twice is written once. Its amounts are added up in machine-written formats;
+        elsewhere the greatest of them counts.
+        """
+        units = list(format_.listed_units(text, file, self._reading))
+        videos = self._kept_videos(text, format_, units, lost)
+        merged_units = [
+            unit.with_totals if format_.machine_written else unit.without_repeats for unit in units
+        ]
+        unit_texts = [self._converted_unit(unit, lost) for unit in merged_units]
+        return self._writer.network([unit for unit in unit_texts if unit], videos)
+
+    def _converted_unit(self, unit: ListedUnit, lost: "_Tally") -> str:
+        """Return the text of a unit; losses go to ``lost``.
+
+        If the target cannot hold the unit, the text is empty, and a fault is recorded.
+        """
         try:
             if not unit.inputs and not self._writer.holds_no_inputs:
                 raise CannotHoldError(f"the unit {unit.motion.motion!r} has no input objects")
-            motion = self._element(unit.motion, unit.motion_source, lost)
+            motion = self._element_text(unit.motion, unit.motion_source, lost)
             inputs, outputs = (
-                [self._element(block, block.source, lost) for block in blocks]
+                [self._element_text(block, block.source, lost) for block in blocks]
                 for blocks in (unit.inputs, unit.outputs)
             )
         except CannotHoldError as problem:
-            self._cannot_hold(problem, unit.motion_source)
+            self._reject(problem, unit.motion_source)
             return ""
         lost.add([Loss.PRICES] if unit.price and not self._writer.holds_prices else [], unit.motion_source)
         return self._writer.unit(inputs, motion, outputs, unit.price)
 
-    def _element(
+    def _element_text(
         self, element: ObjectBlock | MotionLine, source: Source, lost: "_Tally", in_list: bool = False
     ) -> str:
-        """Return the text of an object or a motion, cached for equal elements, and count its losses."""
+        """Return the text of an object or a motion, cached for equal ones; losses go to ``lost``.
+
+        Raises :class:`CannotHoldError` if the target cannot hold it.
+        """
         key = (
             element
             if isinstance(element, MotionLine)
@@ -157,35 +180,42 @@ class Converter:
         lost.add(written[1], source)
         return written[0]
 
-    def _videos(self, text: str, format_: Format, units: list[ListedUnit], lost: "_Tally") -> tuple[str, ...]:
-        """Return the source videos of the file that the result can name; count its other videos as lost."""
+    def _kept_videos(
+        self, text: str, format_: Format, units: list[ListedUnit], lost: "_Tally"
+    ) -> tuple[str, ...]:
+        """Return the source videos that all units share and the target can name; other videos go to ``lost``.
+
+        The other comments of the file go to ``lost``, too.
+        """
         video_lists = {unit.sources[0].videos for unit in units}
-        common = video_lists.pop() if len(video_lists) == 1 else ()
+        shared_videos = video_lists.pop() if len(video_lists) == 1 else ()
         comments = [line for line in split_lines(text) if line[:1] == "#"]
-        kept = self._writer.held_videos(common, comments)
+        kept = self._writer.held_videos(shared_videos, comments)
         if format_.has_comments:
-            lost.comments(text, kept)
+            lost.add_comments(text, kept)
         else:
-            lost.add([Loss.VIDEOS] * (len(common) - len(kept)), Source(lost.file, 1))
+            lost.add([Loss.VIDEOS] * (len(shared_videos) - len(kept)), Source(lost.file, 1))
         return kept
 
-    def _cannot_hold(self, problem: CannotHoldError, source: Source) -> None:
+    def _reject(self, problem: CannotHoldError, source: Source) -> None:
+        """Record a part that the target cannot hold: as an error, or as a warning if ``lenient``."""
         self._reading.reject("cannot-hold", f"{self.target} cannot hold this: {problem}", source)
 
 
 class _Tally:
-    """Counts the losses of one file."""
+    """The losses of one file so far, by kind."""
 
     def __init__(self, file: str) -> None:
         self.file = file
         self.found: dict[Loss, Lost] = {}
 
     def add(self, losses: list[Loss] | tuple[()], source: Source) -> None:
+        """Count losses at a place; the first place in the file is kept for each kind."""
         for loss in losses:
             count, first = self.found.get(loss, (0, source))
             self.found[loss] = Lost(count + 1, min(first, source))
 
-    def comments(self, text: str, kept: tuple[str, ...]) -> None:
+    def add_comments(self, text: str, kept: tuple[str, ...]) -> None:
         """Count the comments of a text as lost, except amounts and the names of ``kept`` videos."""
         for number, line in enumerate(split_lines(text), 1):
             if line[:1] == "#" and not is_amount(line) and read_video(line) not in kept:

@@ -4,10 +4,11 @@ from foon_asp.text.line import Line, name_of
 
 
 class Numbering:
-    """A numbering of names, which adds ids to lines: objects by label, states by word, motions by label.
+    """The ids of names, by which lines without an id get one.
 
-    A name keeps the first id that is learnt for it. A name without an id gets a new one, higher than all ids
-    of its kind. So all lines must be learnt before the first line is numbered.
+    Names are the labels of objects, motions, and states with the words of relations and contents. A name
+    keeps the first id that is learnt for it. A name without an id gets a new one, higher than all ids of its
+    kind of up to 15 digits. So all lines must be learnt before the first line is numbered.
     """
 
     def __init__(self) -> None:
@@ -16,7 +17,7 @@ class Numbering:
         self._used_ids: set[tuple[type, str]] = set()
 
     def learn(self, line: Line) -> None:
-        """Record the id of a line, if it has one."""
+        """Record the id of a line for its name; a line without an id is ignored."""
         if not line.id:
             return
         kind = type(line)
@@ -26,7 +27,7 @@ class Numbering:
             self._highest[kind] = max(self._highest.get(kind, 0), int(line.id))
 
     def number(self, line: Line) -> Line:
-        """Return the line with an id: its own, if it has one."""
+        """Return the line with an id: its own, or else the id of its name, which may be new."""
         if line.id:
             return line
         kind, name = type(line), name_of(line)

@@ -1,4 +1,4 @@
-"""Losses of a conversion: a line or object as it was read, compared with what is read from the result."""
+"""Losses of a conversion: a line or object as it was read is compared with what the result is read as."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -10,7 +10,7 @@ from foon_asp.text.motion_times import MotionFields, in_two_fields
 
 
 class Loss(StrEnum):
-    """A part of a file that some dialect cannot hold; the value is the noun in messages."""
+    """A part of a file that some dialect cannot hold; the value is the noun for it in messages."""
 
     IDS = "ids"
     MOTION_FLAGS = "motion flags"
@@ -35,13 +35,13 @@ class Loss(StrEnum):
 
 
 class CannotHoldError(Exception):
-    """A name that a dialect cannot hold, since it would mean something else there."""
+    """A part of a file that a dialect cannot hold, since it would be read back with another meaning."""
 
 
 def lost_in_line(before: Line, after: Line) -> list[Loss]:
-    """Return the losses from one line to another, one entry for each occurrence.
+    """Return what a converted line lacks: parts of ``before`` that ``after`` has not, one entry for each.
 
-    Raises :class:`CannotHoldError` when the lines differ in meaning.
+    Raises :class:`CannotHoldError` if the lines differ in meaning.
     """
     lost = [Loss.IDS] if before.id and not after.id else []
     if isinstance(before, ObjectLine) and isinstance(after, ObjectLine):
@@ -61,17 +61,17 @@ def lost_in_line(before: Line, after: Line) -> list[Loss]:
 
 
 def lost_in_states(before: tuple[StateLine, ...], after: tuple[StateLine, ...]) -> list[Loss]:
-    """Return the losses from the state lines of one object to those of another, an entry for each occurrence.
+    """Return what the converted state lines of an object lack, one entry for each part.
 
-    A relation without a word is a container, which matches a relation with any word. Raises
-    :class:`CannotHoldError` when the two objects differ in other ways than known losses.
+    A relation without a word is a container, and stands for a relation with any word. Raises
+    :class:`CannotHoldError` if the object would be read back with other states, relations or ingredients.
     """
     ids = Counter(s.id for s in before if s.id) - Counter(s.id for s in after)
     return [Loss.IDS] * ids.total() + _lost_attributes(before, after)
 
 
 def _lost_fields(before: tuple[str, ...], after: tuple[str, ...]) -> Iterator[Loss]:
-    """Yield the losses between the fields of two lines."""
+    """Yield a loss for each field of an object line that the converted line has not."""
     missing = Counter(before) - Counter(after)
     for index, field in enumerate(before):
         if not missing[field]:
@@ -86,7 +86,7 @@ def _lost_fields(before: tuple[str, ...], after: tuple[str, ...]) -> Iterator[Lo
 
 
 def _lost_times(before: MotionFields, after: MotionFields) -> Iterator[Loss]:
-    """Yield the losses of times and success rates between two motion lines."""
+    """Yield ``TIMES`` if the times of two motion lines differ, and ``RATES`` if entity or success rate do."""
     if in_two_fields(before.times) != in_two_fields(after.times):
         yield Loss.TIMES
     if before[1:] != after[1:]:
@@ -94,7 +94,7 @@ def _lost_times(before: MotionFields, after: MotionFields) -> Iterator[Loss]:
 
 
 def _lost_attributes(before: tuple[StateLine, ...], after: tuple[StateLine, ...]) -> list[Loss]:
-    """Return the losses between the state lines of one object and another."""
+    """Return what converted state lines lack, ids aside; raises as :func:`lost_in_states` does."""
     old_attributes, new_attributes = [s.attribute for s in before], [s.attribute for s in after]
     missing, extra = (
         Counter(old_attributes) - Counter(new_attributes),
@@ -117,40 +117,48 @@ def _lost_attributes(before: tuple[StateLine, ...], after: tuple[StateLine, ...]
     ]
     if len(contents) > 1 and any(isinstance(attribute, Contents) for attribute in missing):
         lost.append(Loss.CONTENTS_LISTS)
-    if _ingredients(old_attributes) != _ingredients(new_attributes):
-        raise CannotHoldError(f"{_shown(old_attributes)} would be read as {_shown(new_attributes)}")
+    if _all_ingredients(old_attributes) != _all_ingredients(new_attributes):
+        raise CannotHoldError(
+            f"{_attributes_text(old_attributes)} would be read as {_attributes_text(new_attributes)}"
+        )
     unexpected = [attribute for attribute in extra.elements() if not isinstance(attribute, Contents)]
     if unexpected:
-        raise CannotHoldError(f"{_shown(old_attributes)} would be read as {_shown(new_attributes)}")
-    if _in_order(before, kept) != _in_order(after, kept):
+        raise CannotHoldError(
+            f"{_attributes_text(old_attributes)} would be read as {_attributes_text(new_attributes)}"
+        )
+    if _kept_in_order(before, kept) != _kept_in_order(after, kept):
         lost.append(Loss.ORDER)
     return lost
 
 
 def _lost_relation(relation: Relation, extra: Counter[str | Relation | Contents]) -> Loss:
-    """Return the loss of a relation; ``extra`` counts the attributes that only the result has.
+    """Return the loss of a relation: of its word, or of all of it.
 
-    If the result has another relation to the same object, this one is removed from ``extra``.
+    Only the word is lost if the result relates to the same object by another word. ``extra`` counts the
+    attributes that only the result has; that other relation is removed from it.
     """
-    for other in list(extra):
-        if isinstance(other, Relation) and other.object == relation.object:
-            extra[other] -= 1
+    for other_relation in list(extra):
+        if isinstance(other_relation, Relation) and other_relation.object == relation.object:
+            extra[other_relation] -= 1
             extra += Counter()  # removes entries without a count
             return Loss.RELATION_WORDS if relation.word else Loss.CONTAINERS
     return Loss.RELATIONS
 
 
-def _ingredients(attributes: list[str | Relation | Contents]) -> list[str]:
+def _all_ingredients(attributes: list[str | Relation | Contents]) -> list[str]:
+    """Return the ingredients in all contents among attributes, sorted, with repeats."""
     return sorted(
         i for contents in attributes if isinstance(contents, Contents) for i in contents.ingredients
     )
 
 
-def _in_order(
+def _kept_in_order(
     states: tuple[StateLine, ...], kept: Counter[str | Relation | Contents]
 ) -> list[tuple[object, tuple[str, ...]]]:
+    """Return the attributes that are ``kept``, each with its listed ingredients, in line order."""
     return [(state.attribute, state.listed) for state in states if state.attribute in kept]
 
 
-def _shown(attributes: list[str | Relation | Contents]) -> str:
+def _attributes_text(attributes: list[str | Relation | Contents]) -> str:
+    """Return attributes as text for a message, ``nothing`` for none."""
     return "; ".join(map(str, attributes)) or "nothing"

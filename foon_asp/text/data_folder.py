@@ -21,15 +21,15 @@ from foon_asp.network import (
     starting_kitchen,
 )
 from foon_asp.resources import bundled_kitchen
-from foon_asp.text.assumed_goals import LAST, MARKED, as_entry, last_goals
+from foon_asp.text.assumed_goals import LAST, MARKED, goal_entry, last_goals
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.formats import NEUTRAL
 from foon_asp.text.node_lookup import NodeNames
 from foon_asp.text.object_list import ListedObject, read_object_list
-from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, beginning, read_content
+from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, read_beginning_text, read_content
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.repeated_node import RepeatedNode
-from foon_asp.text.stated_amounts import StatedAmounts, with_table
+from foon_asp.text.stated_amounts import StatedAmounts, apply_amount_table
 from foon_asp.text.stated_prices import StatedPrices
 from foon_asp.text.tables import RATES, read_utensils
 from foon_asp.text.unit_amount_list import UNIT_AMOUNTS
@@ -45,13 +45,14 @@ _TABLES = {_RATES, _UTENSILS, _UNIT_PRICES, _UNIT_AMOUNTS, _STAND_INS}
 _SIDE_TABLES = {*_TABLES, *_KITCHENS, *_GOALS, *_FOR_SCHEDULES}
 
 STARTING = Path("@starting")
-"""In place of a kitchen file: the starting kitchen."""
+"""Stands in ``DataFiles.kitchen`` for the starting kitchen, in place of a file."""
 
 
 class DataFiles(NamedTuple):
     """The files of the network and of the data beside it; ``None`` for a file that does not exist.
 
-    ``stand_ins`` is read only where stand-ins are asked for.
+    ``kitchen`` may be ``STARTING`` in place of a file. ``stand_ins``, a table of items that replace others,
+    is read only by questions that ask for them.
     """
 
     network: tuple[Path, ...]
@@ -67,14 +68,14 @@ class DataFiles(NamedTuple):
 class Data(NamedTuple):
     """All data read: the merged network and the data beside it.
 
-    ``kitchen``: the ids of the object nodes that match ``kitchen_items``.
+    ``kitchen``: the ids of the object nodes that match ``kitchen_items``, or of the starting kitchen.
     ``rates``: the success rates of motions; ``None`` without a rates file.
     ``warnings``: the assumptions made while reading.
-    ``left_out``: the number of lines that were dropped.
+    ``left_out``: the number of lines that were left out.
     ``unit_prices``: the prices of units; ``None`` without any price.
-    ``starting``: true without a kitchen file; the kitchen is then the starting kitchen.
-    ``goals_from``: empty if a file lists the goals, else the origin of the assumed ``goals``: the *marked*
-    nodes, or the *last* unit of each file.
+    ``starting``: whether the kitchen is the starting kitchen, since there is no kitchen file.
+    ``goals_from``: empty if a file lists the goals; *marked* if they are the nodes marked with ``!`` in the
+    network; *last* if they are outputs of the last unit of each file.
     ``repeated``: the nodes that a unit lists twice.
     ``amounts``: how many copies of nodes units take and make, where this is not 1.
     """
@@ -104,15 +105,16 @@ def find_data(
     unit_prices: Path | None = None,
     unit_amounts: Path | None = None,
 ) -> DataFiles:
-    """Find the files of a question: a file that is named precedes the folder's file of the same kind.
+    """Return the files of a question; a named file takes precedence over the folder's file of its kind.
 
     Without a folder and a network, the files are those of the bundled kitchen. A network without a folder
     gets no bundled kitchen or rates, since those belong to the bundled network.
 
     A folder has its network in ``FOON.txt`` or else in its other ``*.txt``, ``*.json`` and ``*.jsonl``
-    files, and may have ``kitchen.json`` or ``kitchen.txt``, ``motion.txt``, ``utensils.txt``,
+    files. It may have ``kitchen.json`` or ``kitchen.txt``, ``motion.txt``, ``utensils.txt``,
     ``unit_prices.txt``, ``unit_amounts.txt``, ``stand_ins.txt``, and ``goal_nodes.json`` or
-    ``goal_nodes.txt``. Raises :class:`UserError` for a path that does not exist.
+    ``goal_nodes.txt``. Raises :class:`UserError` for a path that does not exist, and without any network
+    file.
     """
     if folder is None and not network:
         folder = bundled_kitchen()
@@ -122,18 +124,19 @@ def find_data(
             raise UserError(f"{path}: no such file or folder")
     if folder is not None and not folder.is_dir():
         raise UserError(f"{folder}: expected a folder; a single network is given with --network")
-    sources = network or ([folder] if folder else [])
-    tables = {path.resolve() for path in own_files if path is not None}
+    network_paths = network or ([folder] if folder else [])
+    own_paths = {path.resolve() for path in own_files if path is not None}
     files = tuple(
         file
-        for source in sources
+        for source in network_paths
         for file in network_files(source)
-        if not source.is_dir() or file.resolve() not in tables
+        if not source.is_dir() or file.resolve() not in own_paths
     )
     if not files:
         raise UserError("no network: name a recipe, a folder or a store")
 
     def own_or_in_folder(file: Path | None, *names: str) -> Path | None:
+        """Return the named ``file``, else the first of ``names`` in the folder; ``None`` without either."""
         if file is None and folder is not None:
             return next((folder / name for name in names if (folder / name).exists()), None)
         return file
@@ -151,12 +154,16 @@ def find_data(
 
 
 def kitchen_file(folder: Path) -> Path | None:
-    """Return the kitchen of a folder, if it has one."""
+    """Return the kitchen file of a folder, ``None`` if it has none."""
     return next((folder / name for name in _KITCHENS if (folder / name).is_file()), None)
 
 
 def network_files(path: Path) -> list[Path]:
-    """Return the network files of a path: itself, or those of a folder in order of name."""
+    """Return the network files of a path; of a path that is no folder, the path itself.
+
+    Of a folder, this is ``FOON.txt`` alone, or without it all files that may be networks, by name. Raises
+    :class:`UserError` for a folder without a network.
+    """
     if not path.is_dir():
         return [path]
     if (path / "FOON.txt").is_file():
@@ -169,13 +176,16 @@ def network_files(path: Path) -> list[Path]:
 
 
 def _may_be_network(file: Path) -> bool:
-    """Whether a file may be a network: JSON if it names an object, other files by their suffix."""
+    """Whether a file of a folder may be a network, by its suffix and content; hidden files are none.
+
+    JSON has to name an object, and neutral lines have to begin with a unit.
+    """
     if file.name[0] == "." or not file.is_file():
         return False
     if file.suffix == ".json":
         return _OBJECT_KEY.search(read_content(file)) is not None
     if file.name.endswith(NEUTRAL_SUFFIXES):
-        return NEUTRAL.recognises(beginning(file), "")
+        return NEUTRAL.recognises(read_beginning_text(file), "")
     return file.suffix == ".txt"
 
 
@@ -183,13 +193,14 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
     """Read the network and the data beside it; raises :class:`InputError` for input that is not understood.
 
     With ``lenient`` the lines of a network that are not understood are left out with a warning. Below
-    ``level`` 3, network, kitchen and goals are taken at that level, where an entry matches all nodes
-    with the same remaining parts.
+    ``level`` 3, network, kitchen and goals are reduced to that level. An entry then matches all nodes that
+    agree with it in the remaining parts. Kitchen items, prices and amounts that match nothing in the network
+    cause warnings.
     """
     with uncollected():
         reader = FoonReader(lenient)
-        whole = reader.read_network(files.network)
-    network = network_at_level(whole, level)
+        whole_network = reader.read_network(files.network)
+    network = network_at_level(whole_network, level)
     warnings = reader.diagnostics
     starting = files.kitchen in {None, STARTING}
     items = () if files.kitchen is None or starting else tuple(read_object_list(files.kitchen, warnings))
@@ -202,14 +213,16 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
     if files.goals:
         listed_goals, goals_from = read_object_list(files.goals, warnings), ""
     else:
-        listed_goals, goals_from = _assumed_goals(reader, whole)
+        listed_goals, goals_from = _assumed_goals(reader, whole_network)
     goals = tuple(entry._replace(pattern=pattern_at_level(entry.pattern, level)) for entry in listed_goals)
-    listed = read_unit_prices(files.unit_prices) if files.unit_prices else None
-    if listed:
+    price_list = read_unit_prices(files.unit_prices) if files.unit_prices else None
+    if price_list:
         warnings += (
-            unit_price_warning(*entry) for entry in listed.sources.items() if whole.unit_id(entry[0]) is None
+            unit_price_warning(*entry)
+            for entry in price_list.sources.items()
+            if whole_network.unit_id(entry[0]) is None
         )
-    amounts = amounts_of_units(reader.amounts, files.unit_amounts, whole, warnings)
+    amounts = amounts_of_units(reader.amounts, files.unit_amounts, whole_network, warnings)
     return Data(
         network,
         frozenset(kitchen),
@@ -219,7 +232,7 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
         read_utensils(files.utensils) if files.utensils else frozenset(),
         tuple(warnings),
         reader.left_out,
-        unit_prices(reader.prices, listed),
+        unit_prices(reader.prices, price_list),
         starting,
         goals_from,
         tuple(reader.repeated),
@@ -230,17 +243,23 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
 def _assumed_goals(reader: FoonReader, network: Network) -> tuple[list[ListedObject], str]:
     """Return the assumed goals of a network and their origin: marked nodes, or outputs of last units."""
     if reader.marked:
-        return [as_entry(node, source) for node, source in reader.marked.items()], MARKED
+        return [goal_entry(node, source) for node, source in reader.marked.items()], MARKED
     return last_goals(network, reader.last_units), LAST
 
 
 def kitchen_nodes(network: Network, items: Iterable[ListedObject]) -> frozenset[int]:
-    """Return the object nodes that match kitchen items, at the level of the network."""
+    """Return the ids of the object nodes that match kitchen items.
+
+    Items are taken at the level of the network.
+    """
     return frozenset(o for item in items for o in network.find(pattern_at_level(item.pattern, network.level)))
 
 
-def counted_items(names: NodeNames, items: Iterable[ListedObject]) -> dict[ObjectNode, int]:
-    """Return the amounts of nodes that match entries with an amount, at the level of the network."""
+def amounts_of_items(names: NodeNames, items: Iterable[ListedObject]) -> dict[ObjectNode, int]:
+    """Return the amount of each node that matches an item with an amount; items without one are skipped.
+
+    Items are taken at the level of ``names``.
+    """
     return {
         names.node(o): item.amount
         for item in items
@@ -249,30 +268,33 @@ def counted_items(names: NodeNames, items: Iterable[ListedObject]) -> dict[Objec
     }
 
 
-def unit_prices(stated: StatedPrices, listed: UnitPriceList | None) -> UnitPrices | None:
-    """Return the prices of units, from a file and as stated in networks; the file takes precedence.
+def unit_prices(stated: StatedPrices, price_list: UnitPriceList | None) -> UnitPrices | None:
+    """Return the prices of units, ``None`` if there are none.
 
-    Raises :class:`InputError` if copies of a unit state different prices and the file has none for the unit.
+    A price in ``price_list``, which a file has, takes precedence over one ``stated`` in networks. Raises
+    :class:`InputError` if copies of a unit state different prices and the list has none for the unit.
     """
-    chosen = listed.units if listed else {}
-    settled = stated.settled(chosen)
-    return UnitPrices(listed.motions if listed else {}, settled | chosen) if listed or settled else None
+    prices_of_file = price_list.units if price_list else {}
+    price_by_unit = stated.price_by_unit(prices_of_file)
+    if not (price_list or price_by_unit):
+        return None
+    return UnitPrices(price_list.motions if price_list else {}, price_by_unit | prices_of_file)
 
 
 def amounts_of_units(
     stated: StatedAmounts, file: Path | None, network: Network, warnings: list[Diagnostic]
 ) -> DataAmounts:
-    """Return the amounts that networks state for their units, replaced by those of the table in ``file``.
+    """Return the amounts that networks state for their units, overridden by those of the table in ``file``.
 
     Appends to ``warnings`` a warning for each row of the table that matches no unit.
     """
-    settled = stated.settled(network)
+    stated_amounts = stated.amounts_by_unit(network)
     if file is None:
-        return settled
+        return stated_amounts
     rows = UNIT_AMOUNTS.rows(file)
     motions = {row.name[0] for row in rows}
     units = (network.unit(unit) for unit, motion in enumerate(network.motions) if motion in motions)
-    amounts, unmatched = with_table(settled, rows, units)
+    amounts, unmatched = apply_amount_table(stated_amounts, rows, units)
     warnings += unmatched
     return amounts
 

@@ -23,7 +23,10 @@ class Severity(StrEnum):
 
 
 class Rename(NamedTuple):
-    """A name of a kind (object, state, relation, motion), and its replacement in the whole file."""
+    """A correction that replaces a name in the whole file.
+
+    ``kind`` is ``object``, ``state``, ``relation`` or ``motion``.
+    """
 
     kind: str
     old: str
@@ -58,9 +61,10 @@ class Diagnostic(NamedTuple):
 
 
 def excerpt_with_caret(line: str, column: int, width: int = 100) -> str:
-    """Show a source line with a caret under ``column`` (from 1); tabs are drawn as ``→``.
+    """Return a line of a file, and below it a caret under ``column`` (from 1).
 
-    A line longer than ``width`` is cut around the column.
+    Tabs are drawn as ``→``, other unprintable letters as ``�``. A line longer than ``width`` letters is cut
+    around the column.
     """
     start = max(0, column - 1 - width // 2) if len(line) > width else 0
     shown = line[start : start + width].replace("\t", "→")
@@ -69,7 +73,7 @@ def excerpt_with_caret(line: str, column: int, width: int = 100) -> str:
 
 
 class InputError(UserError):
-    """Input that could not be read; carries every error found, in file order, and shows the first 40."""
+    """Input that could not be read: ``diagnostics`` has every error, and the message shows the first 40."""
 
     def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
         lines = [str(diagnostic) for diagnostic in diagnostics[:40]]
@@ -80,8 +84,8 @@ class InputError(UserError):
         self.diagnostics = tuple(diagnostics)
 
 
-def in_brief(diagnostics: Sequence[Diagnostic]) -> list[str]:
-    """Return warnings as :func:`summarize` does, or one line of counts if that has more than six lines."""
+def brief_summary(diagnostics: Sequence[Diagnostic]) -> list[str]:
+    """Return the texts of :func:`summarize`; if they have more than six lines, one line of counts by code."""
     summary = summarize(diagnostics)
     if sum(1 + text.count("\n") for text in summary) <= 6:
         return summary
@@ -93,8 +97,11 @@ def in_brief(diagnostics: Sequence[Diagnostic]) -> list[str]:
     ]
 
 
-def summarize(diagnostics: Sequence[Diagnostic], places: int = 5) -> list[str]:
-    """Fold warnings for a terminal: the first of each kind in full, the others as a count with lines."""
+def summarize(diagnostics: Sequence[Diagnostic], max_lines: int = 5) -> list[str]:
+    """Return one text for all warnings of a file with the same code: the first in full, then their count.
+
+    Behind the count stand the line numbers of up to ``max_lines`` others.
+    """
     kinds: dict[tuple[str, str], list[Diagnostic]] = {}
     for diagnostic in diagnostics:
         kinds.setdefault((diagnostic.source.file, diagnostic.code), []).append(diagnostic)
@@ -102,8 +109,8 @@ def summarize(diagnostics: Sequence[Diagnostic], places: int = 5) -> list[str]:
     for (_, code), group in kinds.items():
         text = str(group[0])
         if len(group) > 1:
-            others = ", ".join(str(d.source.line) for d in group[1 : places + 1])
-            ellipsis = ", ..." if len(group) > places + 1 else ""
+            others = ", ".join(str(d.source.line) for d in group[1 : max_lines + 1])
+            ellipsis = ", ..." if len(group) > max_lines + 1 else ""
             text += f"\n    {len(group)} warnings of this kind ({code}); others on line {others}{ellipsis}"
         lines.append(text)
     return lines

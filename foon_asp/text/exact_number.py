@@ -7,16 +7,22 @@ from foon_asp.text.line import LineError
 
 _DECIMAL = re.compile(r"\d+(\.\d*)?|\.\d+", re.ASCII)
 MAX_LETTERS = 1000
-"""Letters of a number in a file."""
+"""The greatest number of letters of a number in a file."""
 
 
 def read_price(written: str, column: int = 1) -> Fraction:
-    """Read a price; raises :class:`LineError` at its column for any other text."""
+    """Return a price, a decimal from 0 such as ``1.99``, exactly.
+
+    Raises :class:`LineError` at ``column``, where the price is in its line, for any other text.
+    """
     return read_decimal(written, column, "a price from 0, as a decimal such as 1.99")
 
 
 def read_decimal(written: str, column: int, expected: str) -> Fraction:
-    """Read a number from 0; raises :class:`LineError` for any other text, saying what is ``expected``."""
+    """Return the number of a decimal from 0, exactly; ``expected`` describes it in messages.
+
+    Raises :class:`LineError` at ``column``, where the decimal is in its line, for any other text.
+    """
     if len(written) > MAX_LETTERS:
         raise LineError(column, f"a number of {len(written)} letters", (f"at most {MAX_LETTERS}",))
     if not _DECIMAL.fullmatch(written):
@@ -25,7 +31,10 @@ def read_decimal(written: str, column: int, expected: str) -> Fraction:
 
 
 def decimal_text(number: Fraction) -> str:
-    """Write a number from 0 as the decimal it was read from."""
+    """Return the shortest exact decimal of a number from 0: ``3.2`` for 16/5.
+
+    The number has to be a decimal of at most ``MAX_LETTERS`` places.
+    """
     places = 0
     while (number * 10**places).denominator != 1 and places < MAX_LETTERS:
         places += 1

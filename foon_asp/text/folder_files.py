@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from foon_asp.errors import UserError
 from foon_asp.text.formats import NEUTRAL
-from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, beginning, read_content
+from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, read_beginning_text, read_content
 
 _FOON_LINE = re.compile(rb"^(?:\xef\xbb\xbf)?[OSM]\d*[\t ]", re.MULTILINE)
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
@@ -15,17 +15,21 @@ _JSON_KEY = re.compile(rb'"(?:input_nodes|object_label|label)"\s*:')
 
 
 class FolderFile(NamedTuple):
-    """A file, and its path relative to the named folder; for a file that was named itself, its name."""
+    """A file of a folder that was named, and its path relative to this folder.
+
+    For a file that was named itself, ``relative`` is its name.
+    """
 
     file: Path
     relative: Path
 
 
 def foon_files(paths: Iterable[Path]) -> list[FolderFile]:
-    """Return the files named and those of the folders named, sub-folders included, in order of name.
+    """Return the named files, and the FOON files of named folders and their sub-folders, each once.
 
-    From a folder come the ``*.txt``, ``*.json`` and ``*.jsonl`` files with FOON content: networks and lists
-    of objects. Raises :class:`UserError` for a folder without such files.
+    Files are in the order of ``paths``, and by name within a folder. From a folder come the ``*.txt``,
+    ``*.json`` and ``*.jsonl`` files with FOON content: networks and lists of objects. Raises
+    :class:`UserError` for a path that does not exist, and for a folder without such files.
     """
     files_by_path: dict[Path, FolderFile] = {}
     for path in paths:
@@ -44,11 +48,14 @@ def foon_files(paths: Iterable[Path]) -> list[FolderFile]:
 
 
 def _is_foon(file: Path, relative: Path) -> bool:
-    """Whether a file of a folder looks like FOON, by its name and its content; hidden files do not."""
+    """Whether a file of a folder has a suffix and content of FOON; hidden files and folders are no FOON.
+
+    Text in UTF-16 counts as FOON, so that its reading reports the wrong encoding.
+    """
     if any(name[:1] == "." for name in relative.parts) or not file.is_file():
         return False
     if file.name.endswith(NEUTRAL_SUFFIXES):
-        return NEUTRAL.recognises(beginning(file), "")
+        return NEUTRAL.recognises(read_beginning_text(file), "")
     pattern = {".txt": _FOON_LINE, ".json": _JSON_KEY}.get(file.suffix)
     content = read_content(file) if pattern else b""
     # UTF-16 cannot be read, which has to be reported to the caller

@@ -1,4 +1,4 @@
-"""The JSON formats of FOON units, both published forms, and lists of objects in JSON."""
+"""The JSON formats: FOON units in the two published forms, and lists of objects."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,7 +10,7 @@ from foon_asp.text.exact_number import read_price
 from foon_asp.text.format import Dialect, Format, Writer
 from foon_asp.text.json_layout import check_json, lay_out
 from foon_asp.text.json_list import JsonList, begins_json
-from foon_asp.text.json_names import json_mentions, renamed_json
+from foon_asp.text.json_names import json_mentions, rename_in_json
 from foon_asp.text.json_object import read_json_objects
 from foon_asp.text.json_units import read_json_units
 from foon_asp.text.line import Line, Mention
@@ -24,33 +24,36 @@ if TYPE_CHECKING:
 
 
 class FoonJson(Format):
-    """FOON in JSON; its keys tell which form it is."""
+    """FOON in JSON, in either published form; the keys tell which one it is."""
 
     dialects: tuple[Dialect, ...] = (Dialect.JSON, Dialect.JSON_LIST)
     suffix = list_suffix = ".json"
     machine_written = True
 
     def recognises(self, text: str, file: str) -> bool:
-        """Whether the text begins with a bracket."""
+        """Whether the text begins with a bracket, after blanks."""
         return begins_json(text)
 
     def dialect(self, text: str) -> Dialect:
-        """Return the published form: the one with ``object_label``, or the bare list of units.
+        """Return the published form of a text.
 
-        An empty list is a bare list of units.
+        It is ``JSON`` for an object, and for a list of objects with ``object_label``; else ``JSON_LIST``.
         """
-        by_its_name = any("object_label" in value for value in _first_objects(text))
+        by_its_name = any("object_label" in value for value in _objects_telling_form(text))
         return Dialect.JSON if by_its_name or text.lstrip(" \t\r\n")[0] == "{" else Dialect.JSON_LIST
 
     def lists_objects(self, text: str) -> bool:
-        """Whether the text is a list whose first element is no unit."""
+        """Whether the text is a list that begins with a text, or with an object without ``input_nodes``."""
         first = next(iter(JsonList(text, Path())), None) if text.lstrip(" \t\r\n")[0] == "[" else None
         if first is None or not isinstance(first.value, dict | str):
             return False
         return isinstance(first.value, str) or "input_nodes" not in first.value
 
     def listed_units(self, text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
-        """Yield the units of a text in order, with equivalent lines of FOON text."""
+        """Yield the units of a text in order, with equivalent lines of FOON text.
+
+        Their prices are recorded in ``reading``.
+        """
         for unit in read_json_units(text, file, reading):
             if unit.price:
                 copy = FunctionalUnit.of(unit.motion.motion, *unit.sides)
@@ -58,11 +61,14 @@ class FoonJson(Format):
             yield unit
 
     def objects(self, text: str, file: str, reading: Reading) -> Iterator[tuple[ObjectBlock, NodePattern]]:
-        """Yield the objects of a kitchen or of goals; a ``container`` is in an object's pattern alone."""
+        """Yield the objects of a kitchen or of goals, each with its pattern.
+
+        A ``container`` is in the pattern alone, not in the block.
+        """
         return read_json_objects(text, file, reading)
 
     def lines(self, text: str) -> Iterator[Line]:
-        """Yield the objects and motions as lines of FOON text."""
+        """Yield objects and motions as lines of FOON text; parts that cannot be understood are left out."""
         reading = Reading(lenient=True)
         if self.lists_objects(text):
             for block, _ in self.objects(text, "", reading):
@@ -73,8 +79,11 @@ class FoonJson(Format):
             for block in unit.inputs + unit.outputs:
                 yield from block.lines
 
-    def normalised(self, text: str, file: str, lenient: bool = False) -> str:
-        """Return JSON laid out anew; a line end after the last bracket is neither added nor removed."""
+    def canonical_text(self, text: str, file: str, lenient: bool = False) -> str:
+        """Return JSON laid out anew; a line end after the last bracket is neither added nor removed.
+
+        For a text that is not JSON, raises :class:`InputError`; with ``lenient``, returns it unchanged.
+        """
         try:
             check_json(text, file)
         except InputError:
@@ -84,24 +93,24 @@ class FoonJson(Format):
         laid_out = lay_out(text) + ("\n" if text.rstrip(" \t")[-1:] in {"\r", "\n"} else "")
         return laid_out.replace("\n", usual_line_end(text))
 
-    def names(self, text: str, file: str) -> Iterator[Mention]:
+    def mentions(self, text: str, file: str) -> Iterator[Mention]:
         """Yield every mention of a name; raises :class:`InputError` for a text that is not JSON."""
         check_json(text, file)
         return json_mentions(text)
 
-    def renamed(self, text: str, file: str, renaming: "Renaming") -> str:
-        """Return a text with the new name."""
-        return renamed_json(text, renaming)
+    def renamed_text(self, text: str, file: str, renaming: "Renaming") -> str:
+        """Return a text with the new name; see :class:`~foon_asp.text.renaming.Renaming`."""
+        return rename_in_json(text, renaming)
 
     def writer(self, target: Dialect, numbering: "Numbering") -> Writer:
-        """Return a writer of networks and lists of objects in one of the forms."""
+        """Return a writer of networks and lists of objects in one of the forms; ``numbering`` is not used."""
         from foon_asp.text.json_writer import JsonWriter  # noqa: PLC0415 (only for conversions)
 
         return JsonWriter(target)
 
 
-def _first_objects(text: str) -> Iterator[dict[str, object]]:
-    """Yield the first object of a list of objects, or the objects of the first unit."""
+def _objects_telling_form(text: str) -> Iterator[dict[str, object]]:
+    """Yield the objects whose keys tell the form: inputs of the first unit, or the first listed object."""
     first = next(iter(JsonList(text, Path(), "functional_units")), None)
     value = first.value if first else None
     if not isinstance(value, dict):

@@ -11,7 +11,7 @@ from foon_asp.text.format import Dialect, Format, Writer
 from foon_asp.text.line import Line, LineError, Mention, MotionLine, ObjectLine, line_names
 from foon_asp.text.line_parser import read_line
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, ReadUnit
-from foon_asp.text.plain_file import each_line, split_lines, text_pieces, usual_line_end
+from foon_asp.text.plain_file import map_lines, split_lines, text_pieces, usual_line_end
 from foon_asp.text.reading import Reading
 from foon_asp.text.text_units import TextUnits
 from foon_asp.text.writer import write_line
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _BLANKS = {"outer-space", "space-for-tab"}
 
 Rewrite = Callable[[Line, str], str]
-"""Returns the new text of a line from the parsed line and its text."""
+"""A function that returns the new text of a line from the parsed line and its text."""
 
 
 class FoonText(Format):
@@ -33,14 +33,14 @@ class FoonText(Format):
     suffix = list_suffix = ".txt"
     has_comments = True
     piece_letters: ClassVar[int] = 1_000_000
-    """Letters of a file that are read at a time."""
+    """The number of letters of a file that are read at a time."""
 
     def recognises(self, text: str, file: str) -> bool:
         """Return true, since any text may be FOON text."""
         return True
 
     def dialect(self, text: str) -> Dialect:
-        """Return the dialect: one line with an id, flag or time is enough."""
+        """Return ``IDS`` if a line has an id, else ``NO_IDS`` if one has a flag or a time, else ``PLAIN``."""
         dialect = Dialect.PLAIN
         for line in self.lines(text):
             if line.id:
@@ -55,20 +55,20 @@ class FoonText(Format):
         return "O" in starts and "M" not in starts
 
     def file_units(self, file: Path, reading: Reading) -> Iterator[ReadUnit]:
-        """Yield the units of a file, read in pieces."""
+        """Yield the units of a file in order; the file is read in pieces of a million letters."""
         return TextUnits(text_pieces(file, self.piece_letters), str(file), reading).units()
 
     def units(self, text: str, file: str, reading: Reading) -> Iterator[ReadUnit]:
-        """Yield the units of a text in order."""
-        return _units(text, file, reading).units()
+        """Yield the units of a text in order; a node that a unit lists twice counts once."""
+        return _text_units(text, file, reading).units()
 
     def listed_units(self, text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
         """Yield the units of a text in order, with their lines as written."""
-        return _units(text, file, reading).listed_units()
+        return _text_units(text, file, reading).listed_units()
 
     def objects(self, text: str, file: str, reading: Reading) -> Iterator[tuple[ObjectBlock, NodePattern]]:
         """Yield the objects of a kitchen or of goals."""
-        for block in _units(text, file, reading).objects():
+        for block in _text_units(text, file, reading).objects():
             yield block, NodePattern.of(block.node)
 
     def lines(self, text: str) -> Iterator[Line]:
@@ -77,37 +77,42 @@ class FoonText(Format):
             if written[:1] in {"O", "S", "M"} and not isinstance(line := read_line(written), LineError):
                 yield line
 
-    def normalised(self, text: str, file: str, lenient: bool = False) -> str:
-        """Return a text in canonical form, line by line, as :func:`rewritten` does."""
-        return rewritten(text, file, lenient, _mended)
+    def canonical_text(self, text: str, file: str, lenient: bool = False) -> str:
+        """Return a text in canonical form, line by line.
 
-    def names(self, text: str, file: str) -> Iterator[Mention]:
-        """Yield every mention of a name."""
+        A line whose only remarks are on blanks keeps its inner blanks. Raises as :func:`rewrite_lines` does.
+        """
+        return rewrite_lines(text, file, lenient, _mend_line)
+
+    def mentions(self, text: str, file: str) -> Iterator[Mention]:
+        """Yield every mention of a name in lines that can be understood."""
         for line in self.lines(text):
             yield from line_names(line)
 
-    def renamed(self, text: str, file: str, renaming: "Renaming") -> str:
-        """Return a text with the new name."""
-        return each_line(text, renaming.line)
+    def renamed_text(self, text: str, file: str, renaming: "Renaming") -> str:
+        """Return a text with the new name; see :class:`~foon_asp.text.renaming.Renaming`."""
+        return map_lines(text, renaming.line)
 
     def writer(self, target: Dialect, numbering: "Numbering") -> Writer:
-        """Return a writer of networks and lists of objects as lines."""
+        """Return a writer of FOON text in the dialect ``target``; ids come from ``numbering``."""
         from foon_asp.text.text_writer import TextWriter  # noqa: PLC0415 (only for conversions)
 
         return TextWriter(target, numbering)
 
 
-def _units(text: str, file: str, reading: Reading) -> TextUnits:
+def _text_units(text: str, file: str, reading: Reading) -> TextUnits:
+    """Return the reader of the units of a text, whose line ends may be of any kind."""
     return TextUnits([text.replace("\r\n", "\n").replace("\r", "\n")], file, reading)
 
 
-def rewritten(text: str, file: str, lenient: bool, rewrite: Rewrite) -> str:
-    """Return a text rewritten line by line; ``rewrite`` rewrites object, state and motion lines.
+def rewrite_lines(text: str, file: str, lenient: bool, rewrite: Rewrite) -> str:
+    """Return a text in which ``rewrite`` has rewritten each object, state and motion line.
 
-    Blanks at the ends of lines are removed, all lines get the most frequent line end, and a last unit without
-    ``//`` gets it. Comments, blank lines and the order of lines stay, also where lines form no unit. For
-    lines that cannot be understood, one :class:`InputError` is raised with all of them; if ``lenient``, such
-    lines stay unchanged.
+    Comments, blank lines and the order of lines stay, also where lines form no unit. Blanks at the ends of
+    lines are removed. All lines get the most frequent line end. A last unit without ``//`` gets it.
+
+    Raises one :class:`InputError` with all lines that cannot be understood; if ``lenient``, these stay
+    unchanged.
     """
     lines = split_lines(text)
     errors: list[Diagnostic] = []
@@ -116,7 +121,7 @@ def rewritten(text: str, file: str, lenient: bool, rewrite: Rewrite) -> str:
     for number, line in enumerate(lines, 1):
         new_line = rewritten_lines.get(line)
         if new_line is None:
-            new_line, error = _rewritten_line(line, rewrite)
+            new_line, error = _rewrite_line(line, rewrite)
             if error and not lenient:
                 source = Source(file, number, error.column)
                 errors.append(Diagnostic(Severity.ERROR, "syntax", str(error), source, line))
@@ -125,29 +130,34 @@ def rewritten(text: str, file: str, lenient: bool, rewrite: Rewrite) -> str:
         new_lines.append(new_line)
     if errors:
         raise InputError(errors)
-    last = len(new_lines) - 1
-    while last >= 0 and not new_lines[last]:
-        last -= 1
-    if _is_open_unit(lines):
-        new_lines.insert(last + 1, "//")
+    last_line = len(new_lines) - 1
+    while last_line >= 0 and not new_lines[last_line]:
+        last_line -= 1
+    if _ends_in_open_unit(lines):
+        new_lines.insert(last_line + 1, "//")
     if new_lines[-1]:
         new_lines.append("")
     return usual_line_end(text).join(new_lines)
 
 
-def _mended(line: Line, written: str) -> str:
-    """Return the canonical form of a line; a line whose only remarks are on blanks stays unchanged.
+def _mend_line(line: Line, written: str) -> str:
+    """Return the canonical form of a line.
 
-    Blanks within a line stay, since the published universal FOON has them: ``{jelly, peanut butter}``, and a
-    space for the tab before a bracket. Linting reports such blanks.
+    A line whose only remarks are on blanks keeps the blanks within it, since the published universal FOON
+    has them: ``{jelly, peanut butter}``, and a space for the tab before a bracket. Linting reports such
+    blanks.
     """
     if all(remark.code in _BLANKS for remark in line.remarks):
         return written.rstrip(" \t")
     return write_line(line)
 
 
-def _rewritten_line(line: str, rewrite: Rewrite) -> tuple[str, LineError | None]:
-    """Return a line as ``rewrite`` writes it, or unchanged with an error; comments and blank lines stay."""
+def _rewrite_line(line: str, rewrite: Rewrite) -> tuple[str, LineError | None]:
+    """Return a line as ``rewrite`` writes it, and ``None`` for no error.
+
+    A line that cannot be understood is returned unchanged, with its error. Comments stay. Blanks are removed
+    from blank lines and behind ``//``.
+    """
     if line[:1] == "#":
         return line, None
     if not line or line.isspace():
@@ -160,8 +170,8 @@ def _rewritten_line(line: str, rewrite: Rewrite) -> tuple[str, LineError | None]
     return rewrite(parsed, line), None
 
 
-def _is_open_unit(lines: list[str]) -> bool:
-    """Whether the lines after the last ``//`` form a unit: one motion, with an object before it."""
+def _ends_in_open_unit(lines: list[str]) -> bool:
+    """Whether the lines after the last ``//`` form a unit: they have one motion, and an object before it."""
     start = len(lines)
     while start > 0 and not re.fullmatch(r"//[ \t]*", lines[start - 1]):
         start -= 1

@@ -1,4 +1,4 @@
-"""The interface of file formats and of their writers."""
+"""The interfaces of file formats and of their writers."""
 
 from collections.abc import Iterator, Sequence
 from enum import StrEnum
@@ -38,10 +38,10 @@ class Dialect(StrEnum):
 class Format(Protocol):
     """A format of files, as the reader, ``fmt``, ``convert``, ``rename`` and ``lint`` use it.
 
-    ``dialects`` are its dialects; ``suffix`` and ``list_suffix`` are how the names of its networks and of its
-    lists of objects end. ``has_comments`` says whether it has comments. If ``machine_written``, a node that a
-    unit lists twice means two copies of the node. The parameter ``file`` of methods is the name of the file
-    in messages.
+    ``dialects`` are its dialects. File names of its networks end with ``suffix``, those of its lists of
+    objects with ``list_suffix``. ``has_comments`` says whether files may have comments. If
+    ``machine_written``, a node that a unit lists twice means two copies of the node. The parameter ``file``
+    of methods is the name of the file in messages.
     """
 
     dialects: tuple[Dialect, ...] = ()
@@ -64,7 +64,10 @@ class Format(Protocol):
         yield from self.units(read_plain_text(file), str(file), reading)
 
     def units(self, text: str, file: str, reading: Reading) -> Iterator[ReadUnit]:
-        """Yield the units of a text in order; the diagnostics of the text are added to ``reading``."""
+        """Yield the units of a text in order, without their lines.
+
+        The diagnostics of the text are added to ``reading``.
+        """
         for unit in self.listed_units(text, file, reading):
             amounts = unit.amounts if self.machine_written else UnitAmounts()
             yield unit.identity._replace(amounts=amounts) if amounts else unit.identity
@@ -76,22 +79,28 @@ class Format(Protocol):
         """Yield the objects of a kitchen or of goals, each with its pattern."""
 
     def lines(self, text: str) -> Iterator[Line]:
-        """Yield the parts of a text that can be understood as lines of FOON text."""
+        """Yield the parts of a text that can be understood, as lines of FOON text."""
 
-    def normalised(self, text: str, file: str, lenient: bool = False) -> str:
+    def canonical_text(self, text: str, file: str, lenient: bool = False) -> str:
         """Return a text in canonical form, with the same meaning.
 
-        Raises :class:`InputError` with all faults; with ``lenient``, lines that cannot be understood stay.
+        Raises :class:`InputError` with all faults; with ``lenient``, parts that cannot be understood stay.
         """
 
-    def names(self, text: str, file: str) -> Iterator[Mention]:
-        """Yield every mention of a name; raises :class:`InputError` for a text that is broken."""
+    def mentions(self, text: str, file: str) -> Iterator[Mention]:
+        """Yield every mention of a name in a text.
 
-    def renamed(self, text: str, file: str, renaming: "Renaming") -> str:
-        """Return a text with a new name for an old one; everything else stays as it is written."""
+        Raises :class:`InputError` for a text in JSON that has a fault of syntax.
+        """
+
+    def renamed_text(self, text: str, file: str, renaming: "Renaming") -> str:
+        """Return a text in which ``renaming`` has replaced the name; all else stays as it is written."""
 
     def writer(self, target: Dialect, numbering: "Numbering") -> "Writer":
-        """Return a writer of networks and lists of objects in a dialect of this format."""
+        """Return a writer of files in ``target``, a dialect of this format.
+
+        Lines without an id get it from ``numbering``, where the dialect has ids.
+        """
 
 
 WrittenPart = tuple[str, "list[Loss]"]
@@ -99,32 +108,39 @@ WrittenPart = tuple[str, "list[Loss]"]
 
 
 class Writer(Protocol):
-    """Writes files in a dialect, part by part.
+    """A writer of files in a dialect, part by part.
 
-    ``holds_prices`` says whether these files can hold prices of units, ``holds_no_inputs`` whether they can
-    hold units without inputs.
+    ``block`` and ``motion`` return the text of a part; ``unit``, ``network`` and ``objects`` put such texts
+    together. ``holds_prices`` says whether these files can hold prices of units, ``holds_no_inputs`` whether
+    they can hold units without inputs.
     """
 
     holds_prices: bool
     holds_no_inputs: bool
 
     def block(self, block: ObjectBlock, in_list: bool) -> WrittenPart:
-        """Write an object, of a unit or of a list.
+        """Return the text of an object and its losses; ``in_list`` tells a list of objects from a unit.
 
         Raises :class:`CannotHoldError` where the text would be read as another object.
         """
 
     def motion(self, line: MotionLine) -> WrittenPart:
-        """Write a motion; raises :class:`CannotHoldError` where the text would be read as another motion."""
+        """Return the text of a motion and its losses.
+
+        Raises :class:`CannotHoldError` where the text would be read as another motion.
+        """
 
     def unit(self, inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str) -> str:
-        """Put a unit together; ``price`` is empty for a unit without a price."""
+        """Return the text of a unit from those of its parts; ``price`` is empty for a unit without one."""
 
     def network(self, units: Sequence[str], videos: Sequence[str]) -> str:
-        """Put a file together from its units and its source videos."""
+        """Return the text of a file from the texts of its units and from its source videos."""
 
     def objects(self, parts: Sequence[str]) -> str:
-        """Put a file together from its objects."""
+        """Return the text of a list of objects from the texts of these objects."""
 
     def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
-        """Return those ``videos`` of a file with these comment lines that the result can name."""
+        """Return the ``videos`` of a file that the written file can name.
+
+        ``comments`` are the comment lines of the file that is read.
+        """

@@ -16,7 +16,7 @@ FORMATS: Final[tuple[Format, ...]] = (SideTable(), NEUTRAL, JSON, TEXT)
 
 
 def format_of(text: str, file: str = "") -> Format:
-    """Return the format of a text: the first that recognises it, by its beginning or the name of its file."""
+    """Return the format of a text: the first that recognises it, by its beginning or its file's name."""
     return next(format_ for format_ in FORMATS if format_.recognises(text, file))
 
 

@@ -13,10 +13,10 @@ TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[\[\]{}:,]|[^\s\[\]{}:,"]+')
 
 
 def lay_out(text: str, level: int = 0) -> str:
-    """Return a JSON text with one value a line; only the blanks between the values change.
+    """Return a JSON text with one value a line; only the blanks between its tokens change.
 
-    Strings and numbers stay as they are written. ``level`` is the depth at which the text will be nested. The
-    text has to be JSON: see :func:`check_json`.
+    Strings and numbers stay as they are written. ``level`` is the depth at which the text will be nested.
+    The text has to be JSON: see :func:`check_json`.
     """
     parts: list[str] = []
     previous = ""
@@ -34,12 +34,15 @@ def lay_out(text: str, level: int = 0) -> str:
 
 
 def on_one_line(text: str) -> str:
-    """Return a JSON text on one line, with a blank behind each comma and colon; strings and numbers stay."""
+    """Return a JSON text on one line, with a blank behind each comma and colon.
+
+    Strings and numbers stay as they are written.
+    """
     return "".join(token + " " if token in {",", ":"} else token for token in TOKEN.findall(text))
 
 
 def check_json(text: str, file: str) -> None:
-    """Raise :class:`InputError` with the place where a text is not JSON."""
+    """Raise :class:`InputError` with the place of the first fault if a text is not JSON."""
     try:
         json.loads(text, parse_int=str, parse_float=str)
     except json.JSONDecodeError as problem:

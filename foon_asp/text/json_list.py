@@ -1,4 +1,4 @@
-"""A JSON list with the place of every element."""
+"""A JSON list that is read element by element, with the place of each."""
 
 import json
 import re
@@ -25,10 +25,11 @@ class JsonElement(NamedTuple):
 
 
 class JsonList:
-    """The elements of a list, read one by one; faults are collected in ``errors``.
+    """The elements of a list in a JSON text; iterating reads them one by one.
 
-    Without ``key``, the list is the whole file. With ``key``, the file is an object, and the list is the
-    value of this key; the object's other values are in ``others`` once all elements have been read.
+    Without ``key``, the list is the whole text. With ``key``, the list may also be the value of this key in
+    an object. The object's other values are in ``others`` once all elements have been read. Faults are
+    collected in ``errors``; ``file`` is the name of the file in their sources.
     """
 
     def __init__(self, text: str, file: Path, key: str | None = None) -> None:
@@ -46,19 +47,19 @@ class JsonList:
                 yield JsonElement(value, self.position_of(offset))
         except json.JSONDecodeError as problem:
             syntax_fault = json_fault(problem)
-            self.error(self.position_of(syntax_fault.offset), syntax_fault.message)
+            self.add_error(self.position_of(syntax_fault.offset), syntax_fault.message)
         except JsonFaultError as fault:
-            self.error(self.position_of(fault.position), str(fault))
+            self.add_error(self.position_of(fault.position), str(fault))
         except RecursionError:
-            self.error(self.position_of(0), "found lists nested too deeply, expected a list of objects")
+            self.add_error(self.position_of(0), "found lists nested too deeply, expected a list of objects")
 
-    def error(self, source: Source, message: str) -> None:
-        """Record an error at a place of the file."""
+    def add_error(self, source: Source, message: str) -> None:
+        """Add an error at a line and column of the file to ``errors``, with the text of the line."""
         excerpt = self._text.split("\n", source.line)[source.line - 1].rstrip("\r")
         self.errors.append(Diagnostic(Severity.ERROR, "json", message, source, excerpt))
 
     def position_of(self, offset: int) -> Source:
-        """Return the line and column of an offset, fastest for ascending offsets."""
+        """Return the line and column, from 1, of an offset in the text; fastest for ascending offsets."""
         if offset < self._counted:
             self._line, self._counted = 1, 0
         self._line += self._text.count("\n", self._counted, offset)
@@ -66,32 +67,35 @@ class JsonList:
         return Source(self._file, self._line, offset - self._text.rfind("\n", 0, offset))
 
     def _elements(self) -> Iterator[tuple[int, object]]:
-        """Yield each element of the list, or of the list in an object, with its position."""
-        start = self._skip(0)
+        """Yield each element of the list, or of the list in an object, with its offset in the text."""
+        start = self._skip_blanks(0)
         if self._key is not None and self._text[start : start + 1] == "{":
-            yield from self._in_object(start + 1)
+            yield from self._elements_under_key(start + 1)
             return
-        end = yield from self._in_list(start)
+        end = yield from self._list_elements(start)
         self._expect_end(end)
 
-    def _in_object(self, position: int) -> Iterator[tuple[int, object]]:
-        """Yield the elements of the list under the key; the values of other keys are kept aside."""
+    def _elements_under_key(self, position: int) -> Iterator[tuple[int, object]]:
+        """Yield the elements of the list under the key; values of other keys go to ``others``.
+
+        ``position`` is the one after the opening bracket of the object.
+        """
         seen: set[str] = set()
-        position = self._skip(position)
+        position = self._skip_blanks(position)
         while self._text[position : position + 1] != "}":
             start = position
-            key, position = self._value(position)
+            key, position = self._value_at(position)
             if not isinstance(key, str):
                 raise self._unexpected("a key in quotes", start)
             if key in seen:
-                raise _repeated(key, start)
+                raise _repeated_key(key, start)
             seen.add(key)
-            position = self._expect(":", self._skip(position))
+            position = self._expect(":", self._skip_blanks(position))
             if key == self._key:
-                position = yield from self._in_list(position)
+                position = yield from self._list_elements(position)
             else:
-                self.others[key], position = self._value(position)
-            position = self._skip(position)
+                self.others[key], position = self._value_at(position)
+            position = self._skip_blanks(position)
             if self._text[position : position + 1] != "}":
                 position = self._expect(",", position, "a comma or }")
                 if self._text[position : position + 1] == "}":
@@ -100,20 +104,20 @@ class JsonList:
             raise self._unexpected(f"a list, or an object with the key {self._key!r}", 0)
         self._expect_end(position + 1)
 
-    def _in_list(self, position: int) -> Generator[tuple[int, object], None, int]:
-        """Yield the elements of the list that begins at a position, and return the position of its end."""
+    def _list_elements(self, position: int) -> Generator[tuple[int, object], None, int]:
+        """Yield the elements of the list that begins at a position; return the position after the list."""
         position = self._expect("[", position, "a list, [ ... ]")
         first = True
         while self._text[position : position + 1] != "]":
             if not first:
                 position = self._expect(",", position, "a comma or ]")
             first = False
-            value, end = self._value(position)
+            value, end = self._value_at(position)
             yield position, value
-            position = self._skip(end)
+            position = self._skip_blanks(end)
         return position + 1
 
-    def _value(self, position: int) -> tuple[object, int]:
+    def _value_at(self, position: int) -> tuple[object, int]:
         """Return the JSON value at a position, and the position after it."""
         try:
             return DECODER.raw_decode(self._text, position)
@@ -121,29 +125,37 @@ class JsonList:
             fault.position = position
             raise
 
-    def _expect(self, character: str, position: int, what: str = "") -> int:
+    def _expect(self, character: str, position: int, description: str = "") -> int:
+        """Return the position behind ``character`` and blanks; the character has to stand at ``position``.
+
+        Raises :class:`JsonFaultError` where another one stands; ``description`` is what was expected.
+        """
         if self._text[position : position + 1] != character:
-            raise self._unexpected(what or character, position)
-        return self._skip(position + 1)
+            raise self._unexpected(description or character, position)
+        return self._skip_blanks(position + 1)
 
     def _expect_end(self, end: int) -> None:
-        """Raise :class:`JsonFaultError` where anything but blanks follows."""
-        position = self._skip(end)
+        """Raise :class:`JsonFaultError` where anything but blanks follows a position."""
+        position = self._skip_blanks(end)
         if position != len(self._text):
             raise self._unexpected(
                 "the end of the file after the list: remove what stands behind it", position
             )
 
     def _unexpected(self, expected: str, position: int) -> "JsonFaultError":
-        """Return the error that something else was expected at a position."""
-        if position == self._skip(0) and (message := before_json(self._text)):
+        """Return the error that something else was expected at a position.
+
+        At the beginning of the text, it is the message of :func:`fault_before_json`, if there is one.
+        """
+        if position == self._skip_blanks(0) and (message := fault_before_json(self._text)):
             return JsonFaultError(message, position)
         text = self._text[position:].split("\n", 1)[0].rstrip("\r")
         text = text if len(text) <= 24 else text[:24] + "..."
         shown = repr(text) if text else "the end of the line"
         return JsonFaultError(f"found {shown}, expected {expected}", position)
 
-    def _skip(self, position: int) -> int:
+    def _skip_blanks(self, position: int) -> int:
+        """Return the position of the first character from ``position`` that is no blank."""
         match = _SPACE.match(self._text, position)
         return match.end() if match else position
 
@@ -156,50 +168,54 @@ class JsonNumber:
 
 
 class JsonFaultError(Exception):
-    """A fault of a well-formed JSON text, and its offset."""
+    """A fault of a JSON text that its decoder does not report, and its offset in the text."""
 
     def __init__(self, message: str, position: int) -> None:
         super().__init__(message)
         self.position = position
 
 
-def _repeated(key: str, position: int) -> JsonFaultError:
+def _repeated_key(key: str, position: int) -> JsonFaultError:
+    """Return the error that an object has a key twice."""
     return JsonFaultError(f"found the key {key!r} twice in one object", position)
 
 
-def _object(pairs: list[tuple[str, object]]) -> dict[str, object]:
-    """Return an object of JSON; raises :class:`JsonFaultError` for a repeated key."""
+def _object_without_repeats(pairs: list[tuple[str, object]]) -> dict[str, object]:
+    """Return an object of JSON from its pairs; raises :class:`JsonFaultError` for a repeated key."""
     value = dict(pairs)
     if len(value) < len(pairs):
         keys = [key for key, _ in pairs]
-        raise _repeated(next(key for key in value if keys.count(key) > 1), 0)
+        raise _repeated_key(next(key for key in value if keys.count(key) > 1), 0)
     return value
 
 
 DECODER: Final = json.JSONDecoder(
-    object_pairs_hook=_object, parse_int=JsonNumber, parse_float=JsonNumber, parse_constant=JsonNumber
+    object_pairs_hook=_object_without_repeats,
+    parse_int=JsonNumber,
+    parse_float=JsonNumber,
+    parse_constant=JsonNumber,
 )
 
 
 def begins_json(text: str) -> bool:
-    """Whether a text is JSON; no line of FOON text begins with a bracket."""
+    """Whether a text begins with a bracket, as JSON does; no line of FOON text does."""
     return text[:1_000].lstrip(_BLANKS)[:1] in {"{", "["}
 
 
-def before_json(text: str) -> str:
-    """Return an error message if other text stands before JSON, else an empty text.
+def fault_before_json(text: str) -> str:
+    """Return an error message if a text is JSON with other text before it; empty for any other text.
 
-    JSON is searched for in the first 2,000 letters.
+    JSON is searched for in the first 2,000 letters. A text that begins with a line of FOON is no JSON.
     """
-    begins = text[:2_000].lstrip(_BLANKS)
-    first = begins.split("\n", 1)[0].rstrip()
-    if not _JSON_LINE.search(begins) or begins_json(begins) or _FOON_LINE.match(first):
+    beginning = text[:2_000].lstrip(_BLANKS)
+    first_line = beginning.split("\n", 1)[0].rstrip()
+    if not _JSON_LINE.search(beginning) or begins_json(beginning) or _FOON_LINE.match(first_line):
         return ""
-    if first.startswith(FENCE):
+    if first_line.startswith(FENCE):
         return (
             f"found a code fence around JSON, expected JSON alone: remove the lines that begin with {FENCE}"
         )
-    return f"found the text {first[:40]!r} before JSON, expected JSON alone: remove it"
+    return f"found the text {first_line[:40]!r} before JSON, expected JSON alone: remove it"
 
 
 class JsonFault(NamedTuple):
@@ -212,7 +228,7 @@ class JsonFault(NamedTuple):
 
 
 def json_fault(error: json.JSONDecodeError) -> JsonFault:
-    """Return the fault that the standard library found.
+    """Return the fault that the standard library found in a JSON text.
 
     A comma before the end of a list or an object is reported at the comma, since Python versions report
     different places.

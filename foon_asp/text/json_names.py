@@ -1,4 +1,4 @@
-"""The names in FOON units and lists of objects that are written in JSON."""
+"""The names in FOON units and lists of objects in JSON, and their renaming."""
 
 import json
 import re
@@ -23,7 +23,10 @@ _IDS = {NameKind.OBJECT: "object_id", NameKind.MOTION: "motion_id"}
 
 
 def json_mentions(text: str) -> Iterator[Mention]:
-    """Yield every mention of a name in a JSON text; a state may be written as on a state line."""
+    """Yield every mention of a name in a JSON text.
+
+    A state with brackets, ``in [bowl]``, is a mention of its word, and one of each object in the brackets.
+    """
     for json_name in _json_names(text):
         state = read_line(f"S\t{json_name.name}") if _is_state_line(json_name) else None
         if state is None or isinstance(state, LineError):
@@ -32,12 +35,16 @@ def json_mentions(text: str) -> Iterator[Mention]:
             yield from line_names(state)
 
 
-def renamed_json(text: str, renaming: "Renaming") -> str:
-    """Return a text that is JSON with the new name; everything else stays as it is written."""
+def rename_in_json(text: str, renaming: "Renaming") -> str:
+    """Return a JSON text in which ``renaming`` has replaced the name and, beside it, its id.
+
+    Everything else stays as it is written. Raises :class:`UserError` if the word ``contains`` is to be
+    renamed where JSON lists ingredients, which stand under this word alone.
+    """
     edits: list[tuple[int, int, str]] = []
     names = _json_names(text)
-    word = renaming.rename
-    if word.kind == NameKind.WORD and word.old == LISTED_UNDER and any(map(_is_word_of_list, names)):
+    rename = renaming.rename
+    if rename.kind == NameKind.WORD and rename.old == LISTED_UNDER and any(map(_is_contains_word, names)):
         raise UserError(
             f"JSON lists ingredients under the word {LISTED_UNDER!r} alone, which cannot be renamed there; "
             "convert the file to text before"
@@ -64,7 +71,8 @@ def renamed_json(text: str, renaming: "Renaming") -> str:
 class _JsonName(NamedTuple):
     """A name in JSON: the position of its quotes, and its id with the id's position, if there is one.
 
-    ``suffix`` is the text behind the name that is no part of it: the ``*`` of a composite motion.
+    ``start`` and ``end`` are those of the name with its quotes. ``suffix`` is the text behind the name that
+    is no part of it: the ``*`` of a composite motion.
     """
 
     kind: NameKind
@@ -77,13 +85,15 @@ class _JsonName(NamedTuple):
 
 
 class _Level:
-    """A list or an object while JSON is read: its current ``key``, and the key that it is under (``owner``).
+    """A list or an object while JSON is read.
 
-    ``first`` is the number of names before the list or object.
+    ``owner`` is the key that it is under, ``key`` the key whose value is read. ``names_before`` is the
+    number of names that were read before it. ``lists_ingredients`` is true for an object with ingredients.
+    ``names`` and ``ids`` are those directly in it, each with its key.
     """
 
-    def __init__(self, owner: str, is_list: bool, first: int = 0) -> None:
-        self.owner, self.is_list, self.first = owner, is_list, first
+    def __init__(self, owner: str, is_list: bool, names_before: int = 0) -> None:
+        self.owner, self.is_list, self.names_before = owner, is_list, names_before
         self.lists_ingredients = False
         self.key = owner if is_list else ""
         self.names: list[tuple[str, _JsonName]] = []
@@ -91,7 +101,10 @@ class _Level:
 
 
 def _json_names(text: str) -> list[_JsonName]:
-    """Return the names of a JSON text; names directly in an object come after names nested deeper in it."""
+    """Return the names of a JSON text.
+
+    Names directly in an object come after names that are nested deeper in it.
+    """
     levels = [_Level("", True)]
     names: list[_JsonName] = []
     tokens = list(TOKEN.finditer(text))
@@ -101,11 +114,13 @@ def _json_names(text: str) -> list[_JsonName]:
             levels.append(_Level(level.key, token == "[", len(names)))
         elif token in {"}", "]"}:
             levels.pop()
-            names += _with_ids(level)
+            names += _names_with_ids(level)
             if level.is_list and level.owner == "ingredients":
-                levels[-1].lists_ingredients = any(not is_none(each.name) for each in names[level.first :])
+                levels[-1].lists_ingredients = any(
+                    not is_none(each.name) for each in names[level.names_before :]
+                )
             elif level.lists_ingredients:
-                _name_contents(names, level.first)
+                _mark_word_of_contents(names, level.names_before)
         elif token in {":", ","}:
             continue
         elif not level.is_list and next_token is not None and next_token[0] == ":":
@@ -121,8 +136,11 @@ def _json_names(text: str) -> list[_JsonName]:
     return names
 
 
-def _with_ids(level: _Level) -> Iterator[_JsonName]:
-    """Yield the names of a JSON object; a label has the id of the object, a container has no id."""
+def _names_with_ids(level: _Level) -> Iterator[_JsonName]:
+    """Yield the names directly in an object, with their ids; a container has no id.
+
+    A state beside a related object becomes the word of a relation.
+    """
     related = any(key in _RELATED and not is_none(name.name) for key, name in level.names)
     for key, name in level.names:
         kind = NameKind.WORD if related and name.kind is NameKind.STATE else name.kind
@@ -130,14 +148,15 @@ def _with_ids(level: _Level) -> Iterator[_JsonName]:
         yield name._replace(kind=kind, id=id_[0], id_span=id_[1]) if id_ else name._replace(kind=kind)
 
 
-def _is_word_of_list(name: _JsonName) -> bool:
+def _is_contains_word(name: _JsonName) -> bool:
+    """Whether a name is the word ``contains`` of contents."""
     return name.kind is NameKind.WORD and name.name == LISTED_UNDER
 
 
-def _name_contents(names: list[_JsonName], first: int) -> None:
+def _mark_word_of_contents(names: list[_JsonName], first: int) -> None:
     """Make the state ``contains`` of an object a word of contents, since the object lists ingredients.
 
-    ``first`` is the index of the object's first name in ``names``, which is changed.
+    ``first`` is the index of the object's first name in ``names``. The list is changed in place.
     """
     for index in range(first, len(names)):
         if names[index].kind is NameKind.STATE and names[index].name == LISTED_UNDER:
@@ -146,11 +165,12 @@ def _name_contents(names: list[_JsonName], first: int) -> None:
 
 
 def _is_state_line(json_name: _JsonName) -> bool:
+    """Whether a state has brackets, and so may be a relation or contents: ``in [bowl]``."""
     return json_name.kind is NameKind.STATE and re.search(r"[\[{]", json_name.name) is not None
 
 
 def _json_kind(level: _Level) -> NameKind | None:
-    """Return the kind of name that a text is, by the keys above it; ``None`` if the text is no name."""
+    """Return the kind of name that a text directly in ``level`` is, by its key; ``None`` if it is no name."""
     key = level.key
     if key in {"motion_label", "motion_node", "id"}:
         return NameKind.MOTION

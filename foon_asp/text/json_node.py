@@ -5,10 +5,10 @@ from foon_asp.text.json_value import Json
 
 
 def read_node_json(value: Json) -> ObjectNode:
-    """Return the node of the plain values of a :class:`foon_asp.results.values.Node`.
+    """Return the node of a JSON object that was written from a :class:`foon_asp.results.values.Node`.
 
-    Raises :class:`KeyError` or :class:`TypeError` for values of another form, and :class:`ValueError` if
-    the notation and the parts are different nodes.
+    Raises :class:`KeyError` or :class:`TypeError` for an object of another form. Raises :class:`ValueError`
+    if its key ``node``, in one-line notation, means another node than its other keys state.
     """
     node = ObjectNode.of(
         value["label"],

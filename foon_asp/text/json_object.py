@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.network import Contents, NodePattern, ObjectNode, Relation, Source
-from foon_asp.text.amount_mark import EXPECTED_AMOUNT, amount
+from foon_asp.text.amount_mark import EXPECTED_AMOUNT, parse_amount
 from foon_asp.text.exact_number import MAX_LETTERS, read_price
 from foon_asp.text.json_list import JsonList, JsonNumber
 from foon_asp.text.json_node import read_node_json
@@ -31,9 +31,10 @@ _STATE_KEYS = {*_STATE_LABEL, *_RELATED, "state_id"}
 
 
 class JsonObject(NamedTuple):
-    """An object node read from JSON: an object line, state lines, and the container named without a word.
+    """An object node read from JSON, as lines of FOON text.
 
-    ``remarks`` are repairs, and parts of the node that lines cannot hold.
+    ``container`` is an object that the node is in, on or at, by an unknown word; ``None`` without one.
+    ``remarks`` are messages on repairs, and on parts that lines cannot hold.
     """
 
     line: ObjectLine
@@ -43,35 +44,40 @@ class JsonObject(NamedTuple):
 
 
 def read_object(value: object, keys: set[str] = KEYS) -> JsonObject:
-    """Read a node from ``{"label", "states", "ingredients", "container"}`` or the names of the other form.
+    """Return the node of a JSON object, in either form; ``keys`` are the allowed keys.
 
     States are names, also ``in [bowl]``, or objects with ``state_label`` and ``relative_object``. Listed
-    ingredients are read under the word ``contains``; a state with this name may be missing. A missing, null
-    or empty value and ``"None"`` are no value. Raises :class:`ValueError` for a value of another form.
+    ingredients become contents with the word ``contains``; a state with this name may be missing. A missing,
+    null or empty value and ``"None"`` are no value. Raises :class:`ValueError` for a value of another form.
     """
     if not isinstance(value, dict):
-        raise ValueError(f'found {shown(value)}, expected an object {{"label": ..., "states": [...]}}')
+        raise ValueError(f'found {excerpt_of(value)}, expected an object {{"label": ..., "states": [...]}}')
     check_keys(value, keys)
-    label_key, label_value = first_of(value, _LABEL)
-    label = _name(label_value, label_key).strip(" ")
+    label_key, label_value = key_and_value(value, _LABEL)
+    label = _checked_name(label_value, label_key).strip(" ")
     if not label:
-        raise ValueError(f'found {shown(label_value)} as "{label_key}", expected a name')
-    states = [_state(state) for state in _list(value, *first_of(value, _STATES))]
-    listed = _list(value, "ingredients", value.get("ingredients"))
-    ingredients = tuple(item for item in map(_ingredient, listed) if item)
+        raise ValueError(f'found {excerpt_of(label_value)} as "{label_key}", expected a name')
+    states = [_state_line(state) for state in _checked_list(*key_and_value(value, _STATES))]
+    listed_ingredients = _checked_list("ingredients", value.get("ingredients"))
+    ingredients = tuple(item for item in map(_ingredient_name, listed_ingredients) if item)
     if ingredients:
-        states = _with_contents(states, ingredients)
+        states = _add_contents(states, ingredients)
     container = optional_name(value.get("container"), "container")
-    flag, category = number(value, "object_in_motion"), number(value, "recipe_category")
+    flag, category = digits_under(value, "object_in_motion"), digits_under(value, "recipe_category")
     fields = tuple(filter(None, (flag, category)))
-    line = ObjectLine(label, number(value, "object_id"), fields)
+    line = ObjectLine(label, digits_under(value, "object_id"), fields)
     remarks = [remark.message for state in states for remark in state.remarks]
-    plain = [state._replace(remarks=()) for state in states] if remarks else states
-    return JsonObject(line, tuple(plain), container, (*remarks, *_left_out(value, flag, category, listed)))
+    plain_states = [state._replace(remarks=()) for state in states] if remarks else states
+    return JsonObject(
+        line,
+        tuple(plain_states),
+        container,
+        (*remarks, *_remarks_on_losses(value, flag, category, listed_ingredients)),
+    )
 
 
 def read_json_objects(text: str, file: str, reading: Reading) -> Iterator[tuple[ObjectBlock, NodePattern]]:
-    """Yield the objects of a list with their patterns; diagnostics are added to ``reading``.
+    """Yield the objects of a JSON list with their patterns; diagnostics are added to ``reading``.
 
     A ``container`` is in the pattern of an object, and not among its states.
     """
@@ -84,20 +90,20 @@ def read_json_objects(text: str, file: str, reading: Reading) -> Iterator[tuple[
 
 
 def read_objects(elements: JsonList) -> Iterator[tuple[ObjectBlock, NodePattern, tuple[str, ...]]]:
-    """Yield the entries of a list with their patterns and remarks.
+    """Yield the entries of a list, each with its pattern and the messages on its repairs.
 
-    Faulty entries become errors of the list. An entry is a node as :func:`read_object` reads it, a node in
-    one-line notation, or a node of an answer in JSON.
+    An entry is a node as :func:`read_object` reads it, a node in one-line notation, or a node of an answer
+    in JSON. Faulty entries are left out, and become errors of the list.
     """
     for value, source in elements:
         try:
             amount = stated_amount(value) if isinstance(value, dict) else None
-            if (node := _whole_node(value)) is not None:
-                yield _block(node, source)._replace(amount=amount), NodePattern.of(node), ()
+            if (node := _node_of_notation_or_answer(value)) is not None:
+                yield _block_of_node(node, source)._replace(amount=amount), NodePattern.of(node), ()
                 continue
             line, states, container, remarks = read_object(value, NODE_KEYS)
         except ValueError as problem:
-            elements.error(source, str(problem))
+            elements.add_error(source, str(problem))
         else:
             block = ObjectBlock(line, states, source, amount)
             pattern = NodePattern.of(block.node)._replace(container=container)
@@ -106,53 +112,62 @@ def read_objects(elements: JsonList) -> Iterator[tuple[ObjectBlock, NodePattern,
             yield block, pattern, remarks
 
 
-def _whole_node(value: object) -> ObjectNode | None:
-    """Return a node in one-line notation or as in an answer; ``None`` for another form."""
+def _node_of_notation_or_answer(value: object) -> ObjectNode | None:
+    """Return a node in one-line notation or as in an answer; ``None`` for another form.
+
+    Raises :class:`ValueError` for a fault in the notation or the node.
+    """
     if isinstance(value, str):
         try:
             return parse_node(value)
         except LineError as error:
             raise ValueError(
-                f"found {shown(value)}: at its column {error.column}, {error}; a name with such letters in "
-                "it is in quotes"
+                f"found {excerpt_of(value)}: at its column {error.column}, {error}; a name with such "
+                "letters in it is in quotes"
             ) from None
     if not isinstance(value, dict) or "node" not in value:
         return None
     try:
         return read_node_json(value)
     except (KeyError, TypeError) as error:
-        raise ValueError(f"found {shown(value['node'])}, expected a node as in an answer: {error}") from None
+        raise ValueError(
+            f"found {excerpt_of(value['node'])}, expected a node as in an answer: {error}"
+        ) from None
 
 
-def _block(node: ObjectNode, source: Source) -> ObjectBlock:
+def _block_of_node(node: ObjectNode, source: Source) -> ObjectBlock:
+    """Return the object block of a node, with its state lines sorted and without ids."""
     states = [*map(StateLine, sorted(node.states)), *map(StateLine, sorted(node.relations))]
     states += [StateLine(contents, listed=contents.ingredients) for contents in node.contents]
     return ObjectBlock(ObjectLine(node.label), tuple(states), source)
 
 
 def check_keys(value: dict[str, object], allowed: set[str]) -> None:
-    """Raise :class:`ValueError` for a key that is not allowed."""
+    """Raise :class:`ValueError` if an object has a key that is not allowed."""
     if not value.keys() <= allowed:
         unknown = min(value.keys() - allowed)
         raise ValueError(f"found the key {unknown!r}, expected one of {', '.join(sorted(allowed))}")
 
 
-def first_of(value: dict[str, object], keys: tuple[str, ...]) -> tuple[str, object]:
+def key_and_value(value: dict[str, object], keys: tuple[str, ...]) -> tuple[str, object]:
     """Return the one of ``keys`` that an object has, and its value; without any, the first key and ``None``.
 
     Raises :class:`ValueError` if it has two of the keys.
     """
-    present = [key for key in keys if key in value] or [keys[0]]
-    if len(present) > 1:
-        raise ValueError(f"found both {present[0]!r} and {present[1]!r}, expected one of them")
-    return present[0], value.get(present[0])
+    present_keys = [key for key in keys if key in value] or [keys[0]]
+    if len(present_keys) > 1:
+        raise ValueError(f"found both {present_keys[0]!r} and {present_keys[1]!r}, expected one of them")
+    return present_keys[0], value.get(present_keys[0])
 
 
 def optional_name(value: object, key: str) -> str | None:
-    """Return a name; ``None`` for null, an empty text and ``"None"`` in letters of any case."""
+    """Return a value that is a name, without blanks around it; ``None`` for null and where :func:`is_none`.
+
+    Raises :class:`ValueError`, which names ``key``, for a value that is no text.
+    """
     if value is None:
         return None
-    name = _name(value, key, "a name or null").strip(" ")
+    name = _checked_name(value, key, "a name or null").strip(" ")
     return None if is_none(name) else name
 
 
@@ -161,36 +176,46 @@ def is_none(name: str) -> bool:
     return name.strip().lower() in {"", "none"}
 
 
-def number(value: dict[str, object], key: str) -> str:
-    """Return the digits of a number, which may be written as text; empty if the key has no value."""
-    field = value.get(key)
-    if field is None or (isinstance(field, str) and is_none(field)):
+def digits_under(value: dict[str, object], key: str) -> str:
+    """Return the digits of the number under a key, which may be a text; empty if the key has no value.
+
+    Raises :class:`ValueError` for any other value.
+    """
+    value_of_key = value.get(key)
+    if value_of_key is None or (isinstance(value_of_key, str) and is_none(value_of_key)):
         return ""
-    written = field.text if isinstance(field, JsonNumber) else field
+    written = value_of_key.text if isinstance(value_of_key, JsonNumber) else value_of_key
     if isinstance(written, str) and is_number(written):
         return written
-    raise ValueError(f'found {shown(field)} as "{key}", expected a number')
+    raise ValueError(f'found {excerpt_of(value_of_key)} as "{key}", expected a number')
 
 
-def amount_of(value: object) -> int:
-    """Read an amount from a number or a text of digits; raises :class:`ValueError` for another value."""
+def amount_from_json(value: object) -> int:
+    """Return an amount from a number or a text of digits.
+
+    Raises :class:`ValueError` for another value.
+    """
     written = value.text if isinstance(value, JsonNumber) else str(value)
     try:
-        return amount(written, 1)
+        return parse_amount(written, 1)
     except LineError:
-        raise ValueError(f"found the amount {shown(value)}, expected {EXPECTED_AMOUNT}") from None
+        raise ValueError(f"found the amount {excerpt_of(value)}, expected {EXPECTED_AMOUNT}") from None
 
 
 def stated_amount(value: dict[str, object]) -> int | None:
-    """Return the amount of an object, ``None`` for none; raises :class:`ValueError` for a wrong one."""
+    """Return the value of the key ``amount`` of an object, ``None`` without it.
+
+    Raises :class:`ValueError` for a value that is no amount.
+    """
     stated = value.get("amount")
-    return None if stated is None else amount_of(stated)
+    return None if stated is None else amount_from_json(stated)
 
 
-def price_of(value: object, exponents: bool = False) -> str:
-    """Return the price of a unit, in JSON a number or a text; empty for a unit without a price.
+def price_from_json(value: object, exponents: bool = False) -> str:
+    """Return a price as a decimal text, from a number or a text of JSON; empty for null.
 
-    If the form has ``exponents``, a number may be written with one; the price is returned without it.
+    If the form has ``exponents``, a number may have one: ``1e2`` becomes ``100``. Raises :class:`ValueError`
+    for a value that is no price.
     """
     if value is None:
         return ""
@@ -211,29 +236,34 @@ def price_of(value: object, exponents: bool = False) -> str:
     return written
 
 
-def _state(value: object) -> StateLine:
-    """Return a state as a state line, from a name or an object of JSON."""
+def _state_line(value: object) -> StateLine:
+    """Return the state line of a state in JSON: a name, also with brackets, or an object.
+
+    Raises :class:`ValueError` for another value.
+    """
     if isinstance(value, dict):
         check_keys(value, _STATE_KEYS)
-        label_key, label_value = first_of(value, _STATE_LABEL)
-        state = _state(_name(label_value, label_key))
-        related = optional_name(first_of(value, _RELATED)[1], _RELATED[0])
+        label_key, label_value = key_and_value(value, _STATE_LABEL)
+        state = _state_line(_checked_name(label_value, label_key))
+        related = optional_name(key_and_value(value, _RELATED)[1], _RELATED[0])
         if related:
             if not isinstance(state.attribute, str):
                 raise ValueError(
-                    f"found the related object {related!r} besides the one in {shown(label_value)}"
+                    f"found the related object {related!r} besides the one in {excerpt_of(label_value)}"
                 )
             state = state._replace(attribute=Relation(state.attribute, related))
-        return state._replace(id=number(value, "state_id"))
-    name = _name(value, "states", "a name").strip(" ")
+        return state._replace(id=digits_under(value, "state_id"))
+    name = _checked_name(value, "states", "a name").strip(" ")
     try:
         return read_state(name)
     except LineError as error:
-        raise ValueError(f"found the state {shown(name)}: at its column {error.column}, {error}") from None
+        raise ValueError(
+            f"found the state {excerpt_of(name)}: at its column {error.column}, {error}"
+        ) from None
 
 
-def _with_contents(states: list[StateLine], ingredients: tuple[str, ...]) -> list[StateLine]:
-    """Return states with the ingredients as contents, in place of the state ``contains`` or at the end."""
+def _add_contents(states: list[StateLine], ingredients: tuple[str, ...]) -> list[StateLine]:
+    """Return the states with ``contains`` and the ingredients, in place of the state ``contains`` or last."""
     contents = Contents(LISTED_UNDER, tuple(sorted(ingredients)))
     for index, state in enumerate(states):
         if state.attribute == contents.word:
@@ -241,8 +271,13 @@ def _with_contents(states: list[StateLine], ingredients: tuple[str, ...]) -> lis
     return [*states, StateLine(contents, "", ingredients)]
 
 
-def _left_out(value: dict[str, object], flag: str, category: str, ingredients: list[object]) -> Iterator[str]:
-    """Yield remarks on parts of an object that lines cannot hold."""
+def _remarks_on_losses(
+    value: dict[str, object], flag: str, category: str, ingredients: list[object]
+) -> Iterator[str]:
+    """Yield messages on parts of an object that lines cannot hold, or that are unusual there.
+
+    ``flag``, ``category`` and ``ingredients`` are parts of the object ``value`` that have been read before.
+    """
     if flag not in {"", *MOTION_FLAGS}:
         yield f"the motion flag {flag!r} is not 0 or 1"
     if category and not flag:
@@ -254,34 +289,39 @@ def _left_out(value: dict[str, object], flag: str, category: str, ingredients: l
             yield "states and containers of ingredients left out: only their labels count"
 
 
-def _ingredient(value: object) -> str:
-    """Return the name of an ingredient; for a whole object, its label."""
+def _ingredient_name(value: object) -> str:
+    """Return the name of an ingredient, without blanks around it; an object is named by its label."""
     if isinstance(value, dict):
         return read_object(value).line.label
-    return _name(value, "ingredients").strip(" ")
+    return _checked_name(value, "ingredients").strip(" ")
 
 
-def _list(value: dict[str, object], key: str, items: object) -> list[object]:
-    """Return the list under a key, empty for a missing one; raises :class:`ValueError` for another value."""
+def _checked_list(key: str, items: object) -> list[object]:
+    """Return a value that is a list; an empty list for ``None``, which stands for a missing key.
+
+    Raises :class:`ValueError`, which names ``key``, for another value.
+    """
     if items is None:
         return []
     if not isinstance(items, list):
-        raise ValueError(f'found {shown(items)} as "{key}", expected a list of names')
+        raise ValueError(f'found {excerpt_of(items)} as "{key}", expected a list of names')
     return items
 
 
-def _name(value: object, key: str, expected: str = "a name") -> str:
+def _checked_name(value: object, key: str, expected: str = "a name") -> str:
+    """Return a value that is a text; raises :class:`ValueError`, which names ``key``, for any other value."""
     if not isinstance(value, str):
-        raise ValueError(f'found {shown(value)} as "{key}", expected {expected}')
+        raise ValueError(f'found {excerpt_of(value)} as "{key}", expected {expected}')
     return value
 
 
-def shown(value: object) -> str:
-    """Return a value as it is written, for a message; a long one is cut."""
+def excerpt_of(value: object) -> str:
+    """Return the first 40 letters of a value in JSON, for a message."""
     if isinstance(value, JsonNumber):
         return value.text[:40]
     return json_line(value, _plain_number)[:40]
 
 
 def _plain_number(value: JsonNumber) -> object:
+    """Return a number as a value that Python writes as JSON; a number of 20 letters or more as text."""
     return json.loads(value.text) if len(value.text) < 20 else value.text

@@ -1,8 +1,9 @@
 """FOON units in JSON, in the two published forms.
 
-The one is ``{"source": [...], "functional_units": [...]}`` with ``object_label``, ``object_states`` and ids;
-the other a bare list of units whose objects have ``label``, ``states``, ``ingredients`` and ``container``.
-Both are read into the lines of FOON text, so that all later stages are independent of the form.
+The first form is ``{"source": [...], "functional_units": [...]}`` with ``object_label``, ``object_states``
+and ids. The second is a bare list of units whose objects have ``label``, ``states``, ``ingredients`` and
+``container``. Both are read into the lines of FOON text, so that all later stages are independent of the
+form.
 """
 
 from collections.abc import Iterator
@@ -13,9 +14,9 @@ from foon_asp.text.json_list import JsonElement, JsonList, JsonNumber
 from foon_asp.text.json_object import (
     NODE_KEYS,
     check_keys,
-    number,
+    digits_under,
     optional_name,
-    price_of,
+    price_from_json,
     read_object,
     stated_amount,
 )
@@ -23,7 +24,7 @@ from foon_asp.text.line import MotionLine, StateLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
 from foon_asp.text.motion_times import is_rate, is_time
 from foon_asp.text.reading import Reading
-from foon_asp.text.text_units import no_motion
+from foon_asp.text.text_units import no_motion_message
 
 _NEEDED = {"input_nodes", "motion_node", "output_nodes"}
 _KEYS = {*_NEEDED, "price"}
@@ -32,21 +33,22 @@ _MOTION_KEYS = {"motion_id", "motion_label", "start_time", "end_time", "robot_ty
 
 
 def read_json_units(text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
-    """Yield the units in order; diagnostics are added to ``reading``.
+    """Yield the units of a JSON text in order; diagnostics are added to ``reading``.
 
-    A ``container`` without a word is read as the relation ``in``.
+    A ``container`` without a word is read as the relation ``in``. Units without input objects are left out,
+    with a warning. A list of objects alone has no units, and causes a warning.
     """
     elements = JsonList(text, Path(file), "functional_units")
     listed = list(elements)
     videos = _videos(elements.others.get("source"))
     if listed and not elements.errors and all(_is_object(element.value) for element in listed):
-        reading.warn("no-motion", no_motion(len(listed)), listed[0].source)
+        reading.warn("no-motion", no_motion_message(len(listed)), listed[0].source)
         return
     for element in listed:
         try:
             unit, remarks = _unit(element, videos)
         except ValueError as problem:
-            elements.error(element.source, str(problem))
+            elements.add_error(element.source, str(problem))
             continue
         for remark in remarks:
             reading.warn("json-value", remark, element.source)
@@ -62,31 +64,39 @@ def read_json_units(text: str, file: str, reading: Reading) -> Iterator[ListedUn
 
 
 def _is_object(value: object) -> bool:
+    """Whether a value is a JSON object with the label of an object node, and with no key of a unit."""
     return isinstance(value, dict) and not value.keys() & _NEEDED and bool(value.keys() & _LABELS)
 
 
 def _videos(value: object) -> tuple[str, ...]:
-    """Return the addresses of the annotated videos from one address or a list."""
+    """Return the addresses of the annotated videos from one address or a list; other values are skipped."""
     values = value if isinstance(value, list) else [value]
     return tuple(" ".join(video.split()) for video in values if isinstance(video, str) and video.strip())
 
 
 def _unit(element: JsonElement, videos: tuple[str, ...]) -> tuple[ListedUnit, list[str]]:
-    """Read a unit, with remarks on what was left out or assumed."""
+    """Return the unit of an element, and messages on what was left out or assumed, each once.
+
+    Raises :class:`ValueError` for an element of another form.
+    """
     value, source = element
     if not isinstance(value, dict) or not value.keys() >= _NEEDED:
         raise ValueError(f"found no functional unit, expected an object with {', '.join(sorted(_NEEDED))}")
     check_keys(value, _KEYS)
     remarks: list[str] = []
     inputs, outputs = (_blocks(value, key, source, remarks) for key in ("input_nodes", "output_nodes"))
-    motion = _motion(value["motion_node"], remarks)
-    price = price_of(value.get("price"))
+    motion = _motion_line(value["motion_node"], remarks)
+    price = price_from_json(value.get("price"))
     unit = ListedUnit(motion, inputs, outputs, (source._replace(videos=videos),), source, price)
     return unit, list(dict.fromkeys(remarks))
 
 
 def _blocks(unit: dict[str, object], key: str, source: Source, remarks: list[str]) -> tuple[ObjectBlock, ...]:
-    """Return the object blocks of one side of a unit."""
+    """Return the object blocks of a side of a unit, which is the list under ``key``.
+
+    Messages on what was left out or assumed are added to ``remarks``. Raises :class:`ValueError` for objects
+    of another form.
+    """
     objects = unit[key]
     if not isinstance(objects, list):
         raise ValueError(f'found no list as "{key}", expected a list of objects')
@@ -94,18 +104,23 @@ def _blocks(unit: dict[str, object], key: str, source: Source, remarks: list[str
     for value in objects:
         line, states, container, object_remarks = read_object(value, NODE_KEYS)
         remarks += object_remarks
-        if container is not None and not any(_names(state, container) for state in states):
+        if container is not None and not any(_relates_to(state, container) for state in states):
             states = (*states, StateLine(Relation("in", container)))
         blocks.append(ObjectBlock(line, states, source, stated_amount(value)))
     return tuple(blocks)
 
 
-def _names(state: StateLine, container: str) -> bool:
+def _relates_to(state: StateLine, container: str) -> bool:
+    """Whether a state line is a relation to an object, by any word."""
     return isinstance(state.attribute, Relation) and state.attribute.object == container
 
 
-def _motion(value: object, remarks: list[str]) -> MotionLine:
-    """Return the motion line of a unit, with the fields that its JSON has."""
+def _motion_line(value: object, remarks: list[str]) -> MotionLine:
+    """Return the motion line of a unit, with the times, entity and success rate that its JSON has.
+
+    ``value`` is the JSON object of the motion, or its label alone. Messages on what was left out or assumed
+    are added to ``remarks``. Raises :class:`ValueError` for a motion without a label, and for other faults.
+    """
     if not isinstance(value, dict):
         value = {"motion_label": value}
     check_keys(value, _MOTION_KEYS)
@@ -130,5 +145,5 @@ def _motion(value: object, remarks: list[str]) -> MotionLine:
     elif entity is not None:
         remarks.append(f"the robot_type {entity!r} has no weight_success; left out")
     return MotionLine(
-        label.rstrip("* ") if composite else label, number(value, "motion_id"), composite, tuple(fields)
+        label.rstrip("* ") if composite else label, digits_under(value, "motion_id"), composite, tuple(fields)
     )

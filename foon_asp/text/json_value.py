@@ -1,4 +1,4 @@
-"""JSON texts and plain values, and the schema names of foon-asp with their versions."""
+"""Writing and reading of JSON, and the schema names of foon-asp with their versions."""
 
 import json
 import re
@@ -14,20 +14,27 @@ _VERSIONS = {"verify": 2}  # 1 for all others; changing or removing a key needs 
 
 
 def schema_name(kind: str) -> str:
-    """Return the schema name of a kind of JSON, ``foon-asp/answer/1``; ``foon-asp schema`` describes it."""
+    """Return the schema name of a kind of document: ``foon-asp/answer/1`` for ``answer``.
+
+    The command ``foon-asp schema`` prints the schema.
+    """
     return f"foon-asp/{kind}/{_VERSIONS.get(kind, 1)}"
 
 
 def json_text(value: object) -> str:
-    """Write plain values as a JSON text of their own; a list or an object that fits stands on one line.
+    """Return plain values as JSON with indents and a line end; a list or object that fits stands on one line.
 
-    To be independent of folders, this counts only the last part of an absolute path.
+    So that line breaks do not depend on folders, only the last part of an absolute path counts for the
+    width.
     """
     return _laid_out(value, "\n") + "\n"
 
 
 def _laid_out(value: object, newline: str) -> str:
-    """Return a value as JSON, on one line where it fits, else with an element on each line."""
+    """Return a value as JSON, on one line where it fits, else with an element on each line.
+
+    ``newline`` is a line feed and the indent of the value.
+    """
     inner = f"{newline}  "
     if isinstance(value, dict):
         opening, closing = "{}"
@@ -44,7 +51,10 @@ def _laid_out(value: object, newline: str) -> str:
 
 
 def json_line(value: object, default: Callable[[Any], object] | None = None) -> str:
-    """Write plain values as JSON on one line; ``default`` converts all other values."""
+    """Return plain values as JSON on one line; ``default`` converts values that JSON has not.
+
+    If the text has half a character, which UTF-8 cannot hold, all letters beyond ASCII are escaped.
+    """
     line = _encode(value) if default is None else json.dumps(value, ensure_ascii=False, default=default)
     try:
         line.encode()
@@ -54,10 +64,10 @@ def json_line(value: object, default: Callable[[Any], object] | None = None) -> 
 
 
 def read_json(text: str | bytes, pairs: Callable[[list[tuple[str, Any]]], object] | None = None) -> Any:
-    """Parse a JSON text; ``pairs`` makes its objects from pairs of keys and values.
+    """Return the value of a JSON text; ``pairs`` makes its objects from pairs of keys and values.
 
-    Raises :class:`ValueError` for any fault, also for lists nested deeper and numbers longer than Python
-    can read.
+    Raises :class:`ValueError` for any fault, also for lists nested too deeply and numbers too long for
+    Python.
     """
     try:
         return json.loads(text, object_pairs_hook=pairs)

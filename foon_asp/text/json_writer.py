@@ -1,4 +1,4 @@
-"""Writing units and objects in JSON, in the two published forms.
+"""Writing of units and objects in JSON, in the two published forms.
 
 The texts are laid out like the published files, and read by :mod:`foon_asp.text.json_units`.
 """
@@ -26,7 +26,10 @@ _JSON_NUMBER = re.compile(r"(0|[1-9][0-9]*)(\.[0-9]+)?")
 
 
 class JsonWriter:
-    """A writer of one of the JSON forms, which reads each part back to find changed meanings and losses."""
+    """A writer of one of the JSON forms, which reads each part back to find changed meanings and losses.
+
+    See :class:`~foon_asp.text.format.Writer` for its methods.
+    """
 
     holds_prices = True
     holds_no_inputs = False
@@ -36,56 +39,79 @@ class JsonWriter:
         self._level = 1 if self._is_list else 2  # at which a unit stands
 
     def block(self, block: ObjectBlock, in_list: bool) -> WrittenPart:
-        """Write an object."""
+        """Return the JSON of an object, laid out for its place, and its losses.
+
+        An amount is written in a list, and above 1 in a unit. Raises :class:`CannotHoldError` where the text
+        would be read as another object.
+        """
         line, states = block.object, block.states
-        text = (list_object if self._is_list else json_object)(line, states)
+        text = (object_without_ids if self._is_list else object_with_ids)(line, states)
         if block.amount is not None and (in_list or block.amount > 1):
             text = f'{text[:-1]},"amount":{block.amount}}}'
-        back = _listed(text) if in_list else _unit(text, '"x"').inputs[0]
-        losses = lost_in_line(line, back.object) + lost_in_states(states, back.states)
+        read_back = _read_back_object(text) if in_list else _read_back_unit(text, '"x"').inputs[0]
+        losses = lost_in_line(line, read_back.object) + lost_in_states(states, read_back.states)
         return lay_out(text, 1 if in_list else self._level + 2), losses
 
     def motion(self, line: MotionLine) -> WrittenPart:
-        """Write a motion."""
-        text = (list_motion if self._is_list else json_motion)(line)
-        back = _unit('{"label":"x"}', text).motion
-        return lay_out(text, self._level + 1), lost_in_line(line, back)
+        """Return the JSON of a motion, laid out for its place in a unit, and its losses.
+
+        Raises :class:`CannotHoldError` where the text would be read as another motion.
+        """
+        text = (motion_without_ids if self._is_list else motion_with_ids)(line)
+        read_back = _read_back_unit('{"label":"x"}', text).motion
+        return lay_out(text, self._level + 1), lost_in_line(line, read_back)
 
     def unit(self, inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str) -> str:
-        """Put a unit together."""
-        return written_unit(inputs, motion, outputs, price, self._level)
+        """Return the JSON of a unit from that of its parts; ``price`` is empty for a unit without one."""
+        return unit_text(inputs, motion, outputs, price, self._level)
 
     def network(self, units: Sequence[str], videos: Sequence[str]) -> str:
-        """Put a file together."""
-        return self.objects(units) if self._is_list else written_network(videos, units)
+        """Return the JSON of a file from that of its units.
+
+        The form ``json-list`` leaves out ``videos``, for which it has no key.
+        """
+        return self.objects(units) if self._is_list else network_text(videos, units)
 
     def objects(self, parts: Sequence[str]) -> str:
-        """Put a list together."""
-        return written_list(parts, 0) + "\n"
+        """Return the JSON of a list from that of its values, with a line end."""
+        return list_text(parts, 0) + "\n"
 
     def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
-        """Return ``videos`` if the form has a key for videos and the file has no other videos, else none."""
+        """Return ``videos`` if the file can name them as its own, else none.
+
+        The form has to have a key for videos, and the comments have to name these videos and no copies of
+        units.
+        """
         named = tuple(video for video in map(read_video, comments) if video)
         return videos if not self._is_list and named == videos and not any(map(read_copy, comments)) else ()
 
 
 def with_container(block: ObjectBlock, pattern: NodePattern) -> ObjectBlock:
-    """Return a listed object with its container as a relation without a word, which comes last."""
+    """Return a listed object with its container as a relation without a word, the last of its states.
+
+    An object whose pattern has no container is returned as it is.
+    """
     if pattern.container is None:
         return block
     return block._replace(states=(*block.states, StateLine(Relation("", pattern.container))))
 
 
-def _listed(text: str) -> ObjectBlock:
-    """Read back an object from the JSON of a list; raises :class:`CannotHoldError` for an error."""
+def _read_back_object(text: str) -> ObjectBlock:
+    """Return the object that the JSON of an object in a list is read as.
+
+    Raises :class:`CannotHoldError` if it is read with an error.
+    """
     reading = Reading()
     blocks = [with_container(*entry) for entry in read_json_objects(f"[{text}]", "", reading)]
     _raise_first_error(reading)
     return blocks[0]
 
 
-def _unit(node: str, motion: str) -> ListedUnit:
-    """Return a unit of one node and one motion, read back from JSON."""
+def _read_back_unit(node: str, motion: str) -> ListedUnit:
+    """Return the unit that the JSON of a node and of a motion is read as; the node is input and output.
+
+    Raises :class:`CannotHoldError` if it is read with an error.
+    """
     text = f'[{{"input_nodes":[{node}],"motion_node":{motion},"output_nodes":[{node}]}}]'
     reading = Reading()
     units = list(read_json_units(text, "", reading))
@@ -100,15 +126,15 @@ def _raise_first_error(reading: Reading) -> None:
             raise CannotHoldError(diagnostic.message)
 
 
-def json_object(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
-    """Write an object with its ids and flag, every state line as a state.
+def object_with_ids(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
+    """Return the JSON of an object in the form ``json``: with ids, flag, and each state line as a state.
 
     A relation without a word becomes the ``container``. The first contents with the word ``contains`` become
-    the ingredients; other contents become a state such as ``coated {salt}``.
+    the ingredients. Other contents become a state such as ``coated {salt}``.
     """
     ingredients: tuple[str, ...] = ()
     container = None
-    written: list[dict[str, object]] = []
+    state_values: list[dict[str, object]] = []
     for state in states:
         attribute = state.attribute
         label, related = str(attribute), None
@@ -118,50 +144,58 @@ def json_object(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
                 continue
             label, related = attribute
         elif isinstance(attribute, Contents):
-            has_contents = any(other["state_label"] == "contains" for other in written)
+            has_contents = any(earlier["state_label"] == "contains" for earlier in state_values)
             if attribute.word == "contains" and state.listed and not has_contents:
                 label, ingredients = "contains", state.listed
             else:
                 label = f"{attribute.word} {{{','.join(state.listed)}}}"
-        written.append({"state_id": _number(state.id), "state_label": label, "relative_object": related})
+        state_values.append(
+            {"state_id": _json_number(state.id), "state_label": label, "relative_object": related}
+        )
     value: dict[str, object] = {
-        "object_id": _number(line.id),
+        "object_id": _json_number(line.id),
         "object_label": line.label,
-        "object_states": written,
+        "object_states": state_values,
         "ingredients": list(ingredients),
-        "object_in_motion": _number(line.motion_flag or ""),
+        "object_in_motion": _json_number(line.motion_flag or ""),
     }
     if line.category and line.motion_flag:  # without a flag before it, it would be read as the flag
-        value["recipe_category"] = _number(line.category)
+        value["recipe_category"] = _json_number(line.category)
     if container is not None:
         value["container"] = container
-    return _text(value)
+    return _compact_json(value)
 
 
-def json_motion(line: MotionLine) -> str:
-    """Write a motion with its id, its times, who moves and the success rate."""
+def motion_with_ids(line: MotionLine) -> str:
+    """Return the JSON of a motion in the form ``json``: with id, times, moving entity and success rate.
+
+    Parts that the line does not have are null.
+    """
     times, entity, rate = MotionFields.of(line.fields)
     begin, end, *_ = (*in_two_fields(times), None, None)
-    return _text(
+    return _compact_json(
         {
-            "motion_id": _number(line.id),
+            "motion_id": _json_number(line.id),
             "motion_label": line.motion + "*" * line.composite,
             "start_time": begin,
             "end_time": end,
             "robot_type": entity,
-            "weight_success": _number(rate or ""),
+            "weight_success": _json_number(rate or ""),
         }
     )
 
 
-def list_object(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
-    """Write an object with label, states, ingredients and one container, preferably the one of ``in``."""
+def object_without_ids(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
+    """Return the JSON of an object in the form ``json-list``: label, states, ingredients and one container.
+
+    The container is the object of the first relation ``in``, or else of the first relation.
+    """
     attributes = [state.attribute for state in states]
     relations = sorted(
         (attribute for attribute in attributes if isinstance(attribute, Relation)),
-        key=lambda p: p.word != "in",
+        key=lambda relation: relation.word != "in",
     )
-    return _text(
+    return _compact_json(
         {
             "label": line.label,
             "states": [state for state in attributes if isinstance(state, str)],
@@ -171,51 +205,54 @@ def list_object(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
     )
 
 
-def list_motion(line: MotionLine) -> str:
-    """Write a motion as its name alone."""
-    return _text(line.motion)
+def motion_without_ids(line: MotionLine) -> str:
+    """Return the JSON of a motion in the form ``json-list``: its name alone."""
+    return _compact_json(line.motion)
 
 
-def written_unit(inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str, level: int) -> str:
-    """Return the text of a unit at a level from the texts of its parts.
+def unit_text(inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str, level: int) -> str:
+    """Return the JSON of a unit, laid out for nesting ``level``, from that of its parts.
 
-    The text of its motion is laid out one level deeper, the texts of its objects two levels. ``price`` is
-    empty for a unit without a price.
+    The motion is laid out one level deeper, the objects two levels. ``price`` is empty for a unit without
+    one.
     """
-    key = "\n" + STEP * (level + 1)
-    lists = (written_list(objects, level + 1) for objects in (inputs, outputs))
-    last = f',{key}"price": {_text(_number(price))}' if price else ""
+    key_indent = "\n" + STEP * (level + 1)
+    lists = (list_text(objects, level + 1) for objects in (inputs, outputs))
+    price_part = f',{key_indent}"price": {_compact_json(_json_number(price))}' if price else ""
     return '{{{0}"input_nodes": {1},{0}"motion_node": {3},{0}"output_nodes": {2}{4}{5}}}'.format(
-        key, *lists, motion, last, "\n" + STEP * level
+        key_indent, *lists, motion, price_part, "\n" + STEP * level
     )
 
 
-def written_network(videos: Sequence[str], units: Sequence[str]) -> str:
-    """Return the text of a whole file from the texts of its units, laid out for level 2."""
-    source = f'    "source": {written_list(list(map(_text, videos)), 1)},\n' if videos else ""
-    return f'{{\n{source}    "functional_units": {written_list(units, 1)}\n}}\n'
+def network_text(videos: Sequence[str], units: Sequence[str]) -> str:
+    """Return the JSON of a file in the form ``json``; its ``units`` are JSON laid out for level 2."""
+    source = f'    "source": {list_text(list(map(_compact_json, videos)), 1)},\n' if videos else ""
+    return f'{{\n{source}    "functional_units": {list_text(units, 1)}\n}}\n'
 
 
-def written_list(values: Sequence[str], level: int) -> str:
-    """Return the text of a list from the texts of its values, laid out one level deeper."""
+def list_text(values: Sequence[str], level: int) -> str:
+    """Return the JSON of a list at nesting ``level`` from that of its values, laid out one level deeper."""
     if not values:
         return "[]"
     start = "\n" + STEP * (level + 1)
     return "[" + ",".join(start + value for value in values) + "\n" + STEP * level + "]"
 
 
-def _number(digits: str) -> object:
+def _json_number(digits: str) -> object:
+    """Return digits as a number of JSON, or as a text where JSON has no such number; ``None`` for none."""
     if not digits:
         return None
     return JsonNumber(digits) if _JSON_NUMBER.fullmatch(digits) else digits
 
 
-def _text(value: object) -> str:
-    """Return plain values as a JSON text of published layout."""
+def _compact_json(value: object) -> str:
+    """Return plain values and numbers of ``JsonNumber`` as JSON without blanks."""
     if isinstance(value, JsonNumber):
         return value.text
     if isinstance(value, dict):
-        return "{" + ",".join(f"{_text(key)}:{_text(item)}" for key, item in value.items()) + "}"
+        return (
+            "{" + ",".join(f"{_compact_json(key)}:{_compact_json(item)}" for key, item in value.items()) + "}"
+        )
     if isinstance(value, list):
-        return "[" + ",".join(map(_text, value)) + "]"
+        return "[" + ",".join(map(_compact_json, value)) + "]"
     return json_line(value)

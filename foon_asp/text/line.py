@@ -11,7 +11,10 @@ SLIPPED_FLAGS = {"00", "01"}
 
 
 class NameKind(StrEnum):
-    """The kind of a name; objects, containers and ingredients are one kind."""
+    """The kind of a name: the label of an object, a state, the word of a relation or contents, or a motion.
+
+    Containers and ingredients are objects.
+    """
 
     OBJECT = "object"
     STATE = "state"
@@ -20,7 +23,7 @@ class NameKind(StrEnum):
 
 
 class Mention(NamedTuple):
-    """A mention of a name in a file, with its id, if any."""
+    """A mention of a name in a file, with its id, which may be empty."""
 
     kind: NameKind
     name: str
@@ -28,7 +31,7 @@ class Mention(NamedTuple):
 
 
 class Remark(NamedTuple):
-    """A warning about one column (from 1) of a line, which could be read in spite of it."""
+    """A slip in a line that could be read all the same: its column (from 1), its kind and a message."""
 
     column: int
     code: str
@@ -36,7 +39,7 @@ class Remark(NamedTuple):
 
 
 class ObjectLine(NamedTuple):
-    """``O278⇥mixing bowl⇥1⇥15``: starts an object node.
+    """A line ``O278⇥mixing bowl⇥1⇥15``, which starts an object node.
 
     ``id`` is the number after the letter, or empty. ``fields`` are the texts after the label: the motion
     flag, and for a goal its recipe category or the mark ``!``. Neither ``id`` nor ``fields`` are part of the
@@ -56,20 +59,21 @@ class ObjectLine(NamedTuple):
 
     @property
     def is_goal(self) -> bool:
-        """Whether the line is tagged as a goal of the recipe, by a category or the mark ``!``."""
+        """Whether the line marks a goal of the recipe, by a category or by ``!``."""
         return bool(self.fields) and (self.category is not None or "!" in self.fields)
 
     @property
     def category(self) -> str | None:
-        """The recipe category of a goal, a number, where the line has one."""
+        """The recipe category of a goal, which is a number; ``None`` for a line without one."""
         fields = self.fields if self.motion_flag is None else self.fields[1:]
         return next((field for field in fields if is_number(field) and field not in SLIPPED_FLAGS), None)
 
 
 class StateLine(NamedTuple):
-    """``S41⇥empty``, ``S65⇥in⇥[bowl]`` or ``S23⇥contains⇥{salt}``: one attribute of the node above.
+    """A line that states an attribute of the node above it: a state, a relation or contents.
 
-    ``listed`` are the ingredients of contents in the order written, which is no part of the node.
+    Examples are ``S41⇥empty``, ``S65⇥in⇥[bowl]`` and ``S23⇥contains⇥{salt}``. ``listed`` are the ingredients
+    of contents in the order written; this order is no part of the node.
     """
 
     attribute: str | Relation | Contents
@@ -79,11 +83,11 @@ class StateLine(NamedTuple):
 
 
 class MotionLine(NamedTuple):
-    """``M54⇥pour*⇥1:10⇥1:11``: the motion of a unit.
+    """A line ``M54⇥pour*⇥1:10⇥1:11``: the motion of a unit.
 
-    ``composite`` is true for a ``*`` after the motion: several motions annotated as one. ``fields`` are the
-    times and, where there is a success rate, the moving entity and this rate, as written. No field is
-    part of the unit.
+    ``composite`` is true for a ``*`` after the motion, which stands for several motions annotated as one.
+    ``fields`` are the times and, where there is a success rate, the moving entity and this rate, as written.
+    No field is part of the unit.
     """
 
     motion: str
@@ -97,7 +101,10 @@ Line = ObjectLine | StateLine | MotionLine
 
 
 def name_of(line: Line) -> str:
-    """Return the name that the id of a line belongs to: a label, a motion, a state or a relation's word."""
+    """Return the name that the id of a line belongs to.
+
+    It is a label, a motion, a state, or the word of a relation or of contents.
+    """
     if isinstance(line, ObjectLine):
         return line.label
     if isinstance(line, MotionLine):
@@ -113,7 +120,10 @@ def kind_of(line: Line) -> NameKind:
 
 
 def line_names(line: Line) -> Iterator[Mention]:
-    """Yield the names that a line mentions, the first with the id of the line."""
+    """Yield a mention of each name in a line.
+
+    The first is that of :func:`name_of`, with the id of the line. All others are objects without an id.
+    """
     yield Mention(kind_of(line), name_of(line), line.id)
     if isinstance(line, StateLine):
         if isinstance(line.attribute, Relation):
@@ -123,9 +133,9 @@ def line_names(line: Line) -> Iterator[Mention]:
 
 
 class LineError(Exception):
-    """A line that the grammar does not accept: the column (from 1), what was found, and what was expected.
+    """A text that the grammar does not accept: the column (from 1), what was found, and what was expected.
 
-    ``advice`` is a correction, if it can be guessed.
+    ``advice`` is a correction that is added to the message; empty for none.
     """
 
     def __init__(self, column: int, found: str, expected: tuple[str, ...], advice: str = "") -> None:
@@ -137,12 +147,12 @@ class LineError(Exception):
         self.found = found
         self.expected = expected
 
-    def kept(self) -> Self:
-        """Return the error as a value to keep, without traceback and context."""
+    def without_traceback(self) -> Self:
+        """Return the error itself, after its traceback and context are removed, so that it may be kept."""
         self.__context__ = None
         return self.with_traceback(None)
 
 
 def is_number(field: str) -> bool:
-    """Whether a field is a number such as an id: digits, of the Latin script."""
+    """Whether a field is a number such as an id: only digits of ASCII, at least one."""
     return field.isascii() and field.isdigit()

@@ -1,6 +1,6 @@
-"""Reading lines of FOON text and nodes in one-line notation.
+"""Reading of lines of FOON text and of nodes in one-line notation.
 
-Lark is imported only for lines that are not well-formed.
+Lark is imported only for texts that :mod:`foon_asp.text.clean_line` cannot read.
 """
 
 from functools import lru_cache
@@ -13,23 +13,26 @@ from foon_asp.text.line import Line, LineError, StateLine
 
 
 def parse_line(text: str) -> Line:
-    """Read an object, state or motion line, given without its line end.
+    """Return the parsed line of a text: an object, state or motion line without its line end.
 
     Raises :class:`LineError` when the grammar does not accept it.
     """
-    return clean_line(text) or cast(Line, _build("line", text + "\n"))
+    return clean_line(text) or cast(Line, _parse_by_grammar("line", text + "\n"))
 
 
 @lru_cache(50_000)  # of the 35,576 lines of the universal FOON, 2,123 are different
 def read_line(text: str) -> Line | LineError:
-    """Return the parsed line of a text, or its error."""
+    """Return the parsed line of a text, or its error; results are cached.
+
+    A text of more than a million letters is an error.
+    """
     max_letters = 1_000_000
     try:
         if len(text) > max_letters:
             raise LineError(max_letters + 1, f"a line of {len(text)} letters", (f"at most {max_letters}",))
         return parse_line(text)
     except LineError as error:
-        return error.kept()
+        return error.without_traceback()
 
 
 def parse_node(notation: str) -> ObjectNode:
@@ -54,13 +57,14 @@ def parse_node(notation: str) -> ObjectNode:
     if not isinstance(notation, str):
         raise UserError(f"found notation={notation!r}, expected text")
     notation = notation.rstrip(" ")
-    return clean_node(notation) or cast(ObjectNode, _build("node", notation))
+    return clean_node(notation) or cast(ObjectNode, _parse_by_grammar("node", notation))
 
 
 def parse_name(text: str) -> str | ObjectNode:
-    """Return the label if a text is a label alone, else the node of a one-line notation, such as ``onion;``.
+    """Return the label if a text is a label alone, else the node of a one-line notation.
 
-    Raises :class:`LineError` like :func:`parse_node`.
+    ``onion;`` is notation: the node with this label and without states. Raises :class:`LineError` like
+    :func:`parse_node`.
     """
     node = parse_node(text)
     is_label = node == ObjectNode(node.label) and not text.rstrip(" ").endswith(";")
@@ -68,9 +72,10 @@ def parse_name(text: str) -> str | ObjectNode:
 
 
 def read_state(text: str) -> StateLine:
-    """Read a state of a JSON file as on a state line: ``whole``, ``in [bowl]``, ``coated {a,b}``.
+    """Return the state line of a state in a JSON file: ``whole``, ``in [bowl]``, ``coated {a,b}``.
 
-    Raises :class:`LineError`, with the column in ``text``, when the grammar does not accept it.
+    A blank before a bracket is no slip there. Raises :class:`LineError`, with the column in ``text``, when
+    the grammar does not accept it.
     """
     for column, letter in enumerate(text, 1):
         if letter in "\t\r\n":
@@ -83,7 +88,8 @@ def read_state(text: str) -> StateLine:
     return cast(StateLine, line)._replace(remarks=remarks) if line.remarks else cast(StateLine, line)
 
 
-def _build(start: str, text: str) -> object:
-    from foon_asp.text.line_builder import build  # noqa: PLC0415 (imports Lark)
+def _parse_by_grammar(start: str, text: str) -> object:
+    """Call the function of this name in ``line_builder``, whose import takes long, since it imports Lark."""
+    from foon_asp.text.line_builder import parse_by_grammar  # noqa: PLC0415 (imports Lark)
 
-    return build(start, text)
+    return parse_by_grammar(start, text)

@@ -1,4 +1,4 @@
-"""Object blocks and functional units as listed in a file, with lines, ids and sources."""
+"""Object blocks and functional units as a file lists them, with lines, ids and sources."""
 
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
@@ -11,7 +11,7 @@ from foon_asp.text.stated_amounts import counted_amounts
 class ObjectBlock(NamedTuple):
     """A mention of an object node: its object line, the state lines under it, its source and its amount.
 
-    ``amount`` is ``None`` where none is stated; this means one copy in a unit, and any number of copies in a
+    ``amount`` is ``None`` where none is stated. This means one copy in a unit, and any number of copies in a
     kitchen.
     """
 
@@ -22,20 +22,20 @@ class ObjectBlock(NamedTuple):
 
     @property
     def node(self) -> ObjectNode:
-        """The object node that is mentioned; order, ids and fields are no part of it."""
+        """The object node that is mentioned; order, ids and fields of the lines are no part of it."""
         return node_of(self.object.label, (state.attribute for state in self.states))
 
     @property
     def lines(self) -> tuple[Line, ...]:
-        """The lines of the block, in order."""
+        """The object line, then the state lines in the order of the file."""
         return self.object, *self.states
 
 
 class ReadUnit(NamedTuple):
-    """A copy of a unit: its motion, its nodes in the order listed, and its sources.
+    """A copy of a unit without its lines: motion, nodes in the order listed, sources and amounts.
 
-    ``sources`` has one entry; in a merged file, it has one for each copy that the unit was merged from.
-    ``amounts`` has the nodes that the copy takes or makes several times, with their numbers.
+    ``sources`` has one entry. In a merged file, it has one for each copy that the unit was merged from.
+    ``amounts`` has the nodes of which the copy takes or makes several.
     """
 
     motion: str
@@ -46,16 +46,15 @@ class ReadUnit(NamedTuple):
 
     @property
     def source(self) -> Source:
-        """The place of the first copy."""
+        """The first of the sources."""
         return self.sources[0]
 
 
 class ListedUnit(NamedTuple):
     """A copy of a functional unit with its lines as read, nodes in the order listed.
 
-    ``sources`` has one entry; in a merged file, it has one for each copy that the unit was merged from.
-    ``motion_source`` is the place of the motion. ``price`` is the price of this copy as written, empty for
-    none.
+    ``sources`` has one entry. In a merged file, it has one for each copy that the unit was merged from.
+    ``motion_source`` is the place of the motion. ``price`` is the price of this copy as written, or empty.
     """
 
     motion: MotionLine
@@ -72,31 +71,38 @@ class ListedUnit(NamedTuple):
 
     @property
     def amounts(self) -> UnitAmounts:
-        """The amount of each input and output node: the sum over all lines that list the node."""
+        """The amounts above 1 of nodes on each side; those of a node that is listed twice are added up."""
         return counted_amounts(
             *([(block.node, block.amount or 1) for block in blocks] for blocks in (self.inputs, self.outputs))
         )
 
     @property
     def without_repeats(self) -> "ListedUnit":
-        """The unit with each node once on a side, with its greatest amount, as in FOON text."""
-        return self._replace(inputs=_each_once(self.inputs, max), outputs=_each_once(self.outputs, max))
+        """The unit with each node once on a side, with the greatest of its amounts, as in FOON text."""
+        return self._replace(
+            inputs=_merge_mentions(self.inputs, max), outputs=_merge_mentions(self.outputs, max)
+        )
 
     @property
     def with_totals(self) -> "ListedUnit":
-        """The unit with each node once on a side, and with the sum of its amounts."""
-        return self._replace(inputs=_each_once(self.inputs, sum), outputs=_each_once(self.outputs, sum))
+        """The unit with each node once on a side, with the sum of its amounts, as in JSON."""
+        return self._replace(
+            inputs=_merge_mentions(self.inputs, sum), outputs=_merge_mentions(self.outputs, sum)
+        )
 
     @property
     def identity(self) -> ReadUnit:
-        """The unit without its lines."""
+        """The unit without its lines and amounts."""
         return ReadUnit(self.motion.motion, *self.sides, self.sources)
 
 
-def _each_once(
+def _merge_mentions(
     blocks: tuple[ObjectBlock, ...], combine: Callable[[Iterable[int]], int]
 ) -> tuple[ObjectBlock, ...]:
-    """Return the first mention of each node, with the amounts of all its mentions combined."""
+    """Return the first block of each node; ``combine`` makes its amount from those of all its blocks.
+
+    Blocks without repeats are returned as they are.
+    """
     mentions: dict[ObjectNode, list[ObjectBlock]] = {}
     for block in blocks:
         mentions.setdefault(block.node, []).append(block)
@@ -109,7 +115,7 @@ def _each_once(
 
 
 def node_of(label: str, attributes: Iterable[str | Relation | Contents]) -> ObjectNode:
-    """Return the node of a label and the attributes of the state lines under it."""
+    """Return the node of a label and attributes: its states, relations and contents."""
     states: list[str] = []
     relations: list[Relation] = []
     contents: list[Contents] = []

@@ -12,7 +12,7 @@ from foon_asp.text.writer import write_motion, write_node
 
 
 def merged_text(network: Network, comment: str, amounts: Amounts = MappingProxyType({})) -> Iterator[str]:
-    """Yield the text piece by piece: a comment, then the units in order of first reading, in plain form.
+    """Yield a network as plain FOON text in pieces: a comment, then the units in order of first reading.
 
     Above each unit stands a line ``# From:`` for every copy of the unit, with file, line and videos. A copy
     that was read twice, from a file and from a merge of that file, is listed once. The text is read back as
@@ -24,25 +24,28 @@ def merged_text(network: Network, comment: str, amounts: Amounts = MappingProxyT
     comments: dict[Source, str] = {}
     yield f"# {comment}\n//\n"
     counted_motions = {unit.motion for unit in amounts}
-    for number, (motion, inputs, outputs, sources) in enumerate(
+    for unit_id, (motion, inputs, outputs, sources) in enumerate(
         zip(network.motions, network.inputs, network.outputs, network.sources, strict=True)
     ):
         if not inputs:
             raise UserError(f"the unit {motion!r} has no inputs, which FOON text cannot hold; a store can")
         for source in dict.fromkeys(source._replace(column=1) for source in sources):
-            yield comments.get(source) or comments.setdefault(source, _copy(source))
-        of_unit = amounts.get(network.unit(number), ALL_ONE) if motion in counted_motions else None
+            yield comments.get(source) or comments.setdefault(source, _checked_copy_comment(source))
+        amounts_of_unit = amounts.get(network.unit(unit_id), ALL_ONE) if motion in counted_motions else None
         for side, nodes in enumerate((inputs, outputs)):
             yield motions[motion] if side else ""
             for node in nodes:
                 yield blocks[node]
-                if of_unit and (amount := of_unit[side].get(network.objects[node])):
+                if amounts_of_unit and (amount := amounts_of_unit[side].get(network.objects[node])):
                     yield write_amount(amount)
         yield "//\n"
 
 
-def _copy(source: Source) -> str:
-    """Return the comment of a source; raises :class:`UserError` if it is not read back as the same source."""
+def _checked_copy_comment(source: Source) -> str:
+    """Return the line ``# From:`` of a source.
+
+    Raises :class:`UserError` if the line would not be read back as the same source.
+    """
     written = write_copy(source)
     if (
         "\n" in written[:-1]

@@ -1,4 +1,4 @@
-"""The fields of motion lines: times in the source video, the moving entity, its success rate."""
+"""The fields of motion lines: times in the source video, the moving entity and its success rate."""
 
 import re
 from typing import NamedTuple
@@ -18,7 +18,7 @@ def is_time(field: str) -> bool:
 
 
 def mended_time(field: str) -> str:
-    """Return the time of a field with an obvious slip, and any other field as it is.
+    """Return the time that a field with an obvious slip means, and any other field as it is.
 
     Obvious slips are a letter missing in ``Assumed`` and a bracket too many or too few.
     """
@@ -32,12 +32,12 @@ def mended_time(field: str) -> str:
 
 
 def is_rate(field: str) -> bool:
-    """Whether a field of a motion line is a success rate, a decimal from 0 to 1: ``0.85``."""
+    """Whether a field of a motion line is a success rate: a decimal from 0 to 1, such as ``0.85``."""
     return re.fullmatch(r"0(\.[0-9]*)?|\.[0-9]+|1(\.0*)?", field) is not None
 
 
 class MotionFields(NamedTuple):
-    """The fields of a motion line: its times, and with a success rate the moving entity and the rate."""
+    """The fields of a motion line: its times, and where stated the moving entity and its success rate."""
 
     times: tuple[str, ...]
     entity: str | None = None
@@ -45,21 +45,25 @@ class MotionFields(NamedTuple):
 
     @classmethod
     def of(cls, fields: tuple[str, ...]) -> "MotionFields":
-        """Sort the fields of a motion line; a success rate is the last field, after an entity (no time)."""
+        """Return the fields of a motion line by their meaning.
+
+        If the last field is a success rate and the one before it is no time, these two are rate and entity.
+        All other fields are times.
+        """
         if len(fields) > 1 and is_rate(fields[-1]) and not is_time(fields[-2]):
             return cls(fields[:-2], fields[-2], fields[-1])
         return cls(fields)
 
     @property
     def fields(self) -> tuple[str, ...]:
-        """The fields in the order in which they stand on the line."""
+        """The fields in the order of the line: times, then entity and rate if there are both."""
         return (
             self.times if self.entity is None or self.rate is None else (*self.times, self.entity, self.rate)
         )
 
 
 def in_two_fields(times: tuple[str, ...]) -> tuple[str, ...]:
-    """Write the time ``<0:14,0:20>`` as two fields, ``0:14`` and ``0:20``; other times stay as they are."""
+    """Return the time ``<0:14,0:20>`` as two fields, ``0:14`` and ``0:20``; other times as they are."""
     if len(times) == 1:
         span = _SPAN_OF_TWO.fullmatch(times[0]) or _ASSUMED.fullmatch(times[0])
         if span and is_time(times[0]):
@@ -68,7 +72,7 @@ def in_two_fields(times: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def in_one_field(times: tuple[str, ...]) -> tuple[str, ...]:
-    """Write the two fields ``0:14`` and ``0:20`` as one, ``<0:14,0:20>``; other times stay as they are."""
+    """Return the two fields ``0:14`` and ``0:20`` as one, ``<0:14,0:20>``; other times as they are."""
     if len(times) == 2 and not any(time[:1] == "<" for time in times):
         begin, end = times
         field = f"<{begin}>" if begin == end and begin[:1] in {"A", "a"} else f"<{begin},{end}>"

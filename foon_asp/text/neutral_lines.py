@@ -1,8 +1,8 @@
 """Networks in the neutral form: a unit on each line, as JSON with plain names.
 
-``{"id": "drive a b", "inputs": ["at a"], "outputs": ["at b"], "price": 3}``: the id is the motion, and a name
-is the label of an object node without states, and is never read as notation. A side may also be an object of
-amounts by name, ``{"plank": 2}``; a name that is listed twice is meant twice.
+An example is ``{"id": "drive a b", "inputs": ["at a"], "outputs": ["at b"], "price": 3}``. The id is the
+motion. A name is the label of an object node without states, and is never read as notation. A side may also
+be an object of amounts by name, ``{"plank": 2}``. A name that is listed twice means two copies.
 """
 
 import json
@@ -18,10 +18,10 @@ from foon_asp.text.format import Dialect, Writer
 from foon_asp.text.json_layout import on_one_line
 from foon_asp.text.json_list import DECODER, JsonFaultError, JsonNumber, json_fault
 from foon_asp.text.json_names import json_mentions
-from foon_asp.text.json_object import amount_of, check_keys, price_of, shown
+from foon_asp.text.json_object import amount_from_json, check_keys, excerpt_of, price_from_json
 from foon_asp.text.line import Mention, MotionLine, ObjectLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, ReadUnit
-from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, not_utf_8, opened, split_lines, usual_line_end
+from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, not_utf_8, open_bytes, split_lines, usual_line_end
 from foon_asp.text.reading import REPORT_BYTES, Reading, progress_report
 
 if TYPE_CHECKING:
@@ -32,13 +32,13 @@ _KEYS = {*_NEEDED, "price"}
 
 
 class NeutralLines(FoonJson):
-    """Neutral units, read line by line."""
+    """The neutral form, of which each line is read on its own."""
 
     dialects = (Dialect.NEUTRAL,)
     suffix = NEUTRAL_SUFFIXES[0]
 
     def recognises(self, text: str, file: str) -> bool:
-        """Whether a file has the suffix of neutral files, or its first line is a neutral unit."""
+        """Whether the file has a suffix of neutral files, or the first line of the text is a neutral unit."""
         if file.endswith(NEUTRAL_SUFFIXES):
             return True
         start = len(text[:1_000]) - len(text[:1_000].lstrip("\ufeff \t\r\n"))
@@ -52,24 +52,24 @@ class NeutralLines(FoonJson):
         return isinstance(unit, dict) and unit.keys() >= {"inputs", "outputs"} and "schema" not in unit
 
     def dialect(self, text: str) -> Dialect:
-        """Return the neutral form."""
+        """Return ``NEUTRAL``, the only dialect."""
         return Dialect.NEUTRAL
 
     def lists_objects(self, text: str) -> bool:
-        """Return false: neutral files have units only."""
+        """Return false, since neutral files have units only."""
         return False
 
     def file_units(self, file: Path, reading: Reading) -> Iterator[ReadUnit]:
-        """Yield the units of a file in order, a line at a time."""
-        return _priced(_units(_lines_of(file), str(file), reading), reading)
+        """Yield the units of a file in order, read line by line; prices are recorded in ``reading``."""
+        return _record_prices(_units_and_prices(_read_lines(file), str(file), reading), reading)
 
     def units(self, text: str, file: str, reading: Reading) -> Iterator[ReadUnit]:
-        """Yield the units of a text in order."""
-        return _priced(_units(split_lines(text), file, reading), reading)
+        """Yield the units of a text in order; prices are recorded in ``reading``."""
+        return _record_prices(_units_and_prices(split_lines(text), file, reading), reading)
 
     def listed_units(self, text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
-        """Yield the units of a text in order, with the lines that they would have."""
-        for unit, price in _units(split_lines(text), file, reading):
+        """Yield the units of a text in order, with the lines that they would have in FOON text."""
+        for unit, price in _units_and_prices(split_lines(text), file, reading):
             inputs, outputs = (
                 tuple(
                     ObjectBlock(ObjectLine(node.label), (), unit.source, amounts.get(node, 1))
@@ -79,30 +79,35 @@ class NeutralLines(FoonJson):
             )
             yield ListedUnit(MotionLine(unit.motion), inputs, outputs, unit.sources, unit.source, price)
 
-    def normalised(self, text: str, file: str, lenient: bool = False) -> str:
-        """Return each line laid out anew; if ``lenient``, lines that cannot be understood stay unchanged."""
+    def canonical_text(self, text: str, file: str, lenient: bool = False) -> str:
+        """Return each line laid out anew, without the blanks that are not needed.
+
+        Raises :class:`InputError` for lines that cannot be understood; if ``lenient``, they stay unchanged.
+        """
         lines = split_lines(text.removeprefix("\ufeff"))
         reading = Reading(lenient)
-        understood = {unit.source.line for unit, _ in _units(lines, file, reading)}
+        understood_lines = {unit.source.line for unit, _ in _units_and_prices(lines, file, reading)}
         reading.raise_errors()
-        new = [on_one_line(line) if number in understood else line for number, line in enumerate(lines, 1)]
-        if new[-1]:
-            new.append("")
-        return usual_line_end(text).join(new)
+        new_lines = [
+            on_one_line(line) if number in understood_lines else line for number, line in enumerate(lines, 1)
+        ]
+        if new_lines[-1]:
+            new_lines.append("")
+        return usual_line_end(text).join(new_lines)
 
-    def names(self, text: str, file: str) -> Iterator[Mention]:
-        """Yield every mention of a name."""
+    def mentions(self, text: str, file: str) -> Iterator[Mention]:
+        """Yield every mention of a name; faulty lines are not noticed."""
         return json_mentions(text)
 
     def writer(self, target: Dialect, numbering: "Numbering") -> Writer:
-        """Return a writer of networks, and of lists of their names."""
+        """Return a writer of networks, and of lists of their names; ``numbering`` is not used."""
         from foon_asp.text.neutral_writer import NeutralWriter  # noqa: PLC0415 (only for conversions)
 
         return NeutralWriter()
 
 
-def _priced(units: Iterable[tuple[ReadUnit, str]], reading: Reading) -> Iterator[ReadUnit]:
-    """Yield the units, and record their prices in ``reading``; the cheapest copy of a unit counts."""
+def _record_prices(units: Iterable[tuple[ReadUnit, str]], reading: Reading) -> Iterator[ReadUnit]:
+    """Yield the units, and record their prices in ``reading``, where the cheapest copy of a unit counts."""
     exact = cache(read_price)
     for unit, price in units:
         if price:
@@ -111,13 +116,13 @@ def _priced(units: Iterable[tuple[ReadUnit, str]], reading: Reading) -> Iterator
         yield unit
 
 
-def _lines_of(file: Path) -> Iterator[str]:
-    """Yield the lines of a file, read lazily.
+def _read_lines(file: Path) -> Iterator[str]:
+    """Yield the lines of a file with their line ends, lazily; progress is reported.
 
     Raises :class:`InputError` with line and column of the first byte that is not UTF-8.
     """
     report, unreported = progress_report(), 0
-    with opened(file) as lines:
+    with open_bytes(file) as lines:
         for number, line in enumerate(lines, 1):
             unreported += len(line)
             if report and unreported >= REPORT_BYTES:
@@ -131,16 +136,19 @@ def _lines_of(file: Path) -> Iterator[str]:
         report(unreported)
 
 
-def _units(lines: Iterable[str], file: str, reading: Reading) -> Iterator[tuple[ReadUnit, str]]:
-    """Yield the units in order with their prices, exact decimals as text, empty for none."""
+def _units_and_prices(lines: Iterable[str], file: str, reading: Reading) -> Iterator[tuple[ReadUnit, str]]:
+    """Yield the units in order, each with its price as an exact decimal text, empty for none.
+
+    Faulty lines are recorded in ``reading`` and left out. Blank lines are skipped.
+    """
     nodes: dict[str, ObjectNode] = {}
     for number, line in enumerate(lines, 1):
         line = line.rstrip("\r\n")  # noqa: PLW2901 (a fault at the end is on this line)
         if line.isspace() or not line:
             continue
         try:
-            unit, price = _unit(line, Source(file, number), nodes)
-        except _LineError as fault:
+            unit, price = _unit_and_price(line, Source(file, number), nodes)
+        except _NeutralFaultError as fault:
             reading.reject("json", str(fault), Source(file, number, fault.column), line)
             continue
         if not unit.outputs:
@@ -148,26 +156,29 @@ def _units(lines: Iterable[str], file: str, reading: Reading) -> Iterator[tuple[
         yield unit, price
 
 
-class _LineError(Exception):
+class _NeutralFaultError(Exception):
+    """A fault of a neutral line, and its column, from 1."""
+
     def __init__(self, message: str, column: int) -> None:
         super().__init__(message)
         self.column = column
 
 
-def _unit(line: str, source: Source, nodes: dict[str, ObjectNode]) -> tuple[ReadUnit, str]:
-    """Return the unit of a line, and its price as written, which may be empty.
+def _unit_and_price(line: str, source: Source, nodes: dict[str, ObjectNode]) -> tuple[ReadUnit, str]:
+    """Return the unit of a line, and its price as an exact decimal text, empty for none.
 
-    ``nodes`` has the nodes read before, by name; new nodes are added.
+    ``nodes`` has the nodes read before, by name; new nodes are added. Raises :class:`_NeutralFaultError` for
+    a line of another form.
     """
     try:
         value = DECODER.decode(line)
     except json.JSONDecodeError as problem:
         syntax_fault = json_fault(problem)
-        raise _LineError(syntax_fault.message, syntax_fault.column) from None
+        raise _NeutralFaultError(syntax_fault.message, syntax_fault.column) from None
     except JsonFaultError as fault:
-        raise _LineError(str(fault), 1) from None
+        raise _NeutralFaultError(str(fault), 1) from None
     except RecursionError:
-        raise _LineError("found lists nested too deeply, expected a unit", 1) from None
+        raise _NeutralFaultError("found lists nested too deeply, expected a unit", 1) from None
     key = ""
     try:
         if not isinstance(value, dict) or not value.keys() >= _NEEDED:
@@ -175,44 +186,54 @@ def _unit(line: str, source: Source, nodes: dict[str, ObjectNode]) -> tuple[Read
         check_keys(value, _KEYS)
         key = "id"
         name = value[key]
-        name = _name(name.text if isinstance(name, JsonNumber) else name, key)
+        name = _checked_name(name.text if isinstance(name, JsonNumber) else name, key)
         key = "inputs"
-        inputs, input_amounts = _nodes(value[key], key, nodes)
+        inputs, input_amounts = _nodes_and_amounts(value[key], key, nodes)
         key = "outputs"
-        outputs, output_amounts = _nodes(value[key], key, nodes)
+        outputs, output_amounts = _nodes_and_amounts(value[key], key, nodes)
         key = "price"
         price = value.get(key)
-        written = _number_price(price.text) if isinstance(price, JsonNumber) else price_of(price)
+        written = _price_of_number(price.text) if isinstance(price, JsonNumber) else price_from_json(price)
         return ReadUnit(name, inputs, outputs, (source,), UnitAmounts(input_amounts, output_amounts)), written
     except ValueError as problem:
-        raise _LineError(str(problem), line.find(f'"{key}"') + 1 if key else 1) from None
+        raise _NeutralFaultError(str(problem), line.find(f'"{key}"') + 1 if key else 1) from None
 
 
 @lru_cache(10_000)
-def _number_price(written: str) -> str:
-    return price_of(JsonNumber(written), exponents=True)
+def _price_of_number(written: str) -> str:
+    """Return the price that a JSON number states, as a decimal without exponent.
+
+    Raises :class:`ValueError` for a number that is no price. Results are cached.
+    """
+    return price_from_json(JsonNumber(written), exponents=True)
 
 
-def _nodes(
+def _nodes_and_amounts(
     value: object, key: str, nodes: dict[str, ObjectNode]
 ) -> tuple[list[ObjectNode], dict[ObjectNode, int]]:
-    """Read one side of a unit: a list of names, or an object of amounts by name.
+    """Return the nodes of a side of a unit, each once, and the amounts above 1.
 
-    Returns the nodes, each once, and the amounts above 1. ``nodes`` has the nodes read before, by name; new
-    nodes are added.
+    The side is a list of names, or an object of amounts by name. ``nodes`` has the nodes read before, by
+    name; new nodes are added. Raises :class:`ValueError`, which names ``key``, for a side of another form.
     """
     if not isinstance(value, list | dict):
-        raise ValueError(f'found {shown(value)} as "{key}", expected a list of names, or amounts by name')
+        raise ValueError(
+            f'found {excerpt_of(value)} as "{key}", expected a list of names, or amounts by name'
+        )
     listed: dict[ObjectNode, int] = {}
     for name in value:
         if not isinstance(name, str) or name not in nodes:
-            nodes[name] = ObjectNode(_name(name, key))
-        amount = amount_of(value[name]) if isinstance(value, dict) else 1
+            nodes[name] = ObjectNode(_checked_name(name, key))
+        amount = amount_from_json(value[name]) if isinstance(value, dict) else 1
         listed[nodes[name]] = listed.get(nodes[name], 0) + amount
     return list(listed), {node: amount for node, amount in listed.items() if amount > 1}
 
 
-def _name(value: object, key: str) -> str:
+def _checked_name(value: object, key: str) -> str:
+    """Return a value that is a name without blanks around it.
+
+    Raises :class:`ValueError`, which names ``key``, for any other value.
+    """
     if not isinstance(value, str) or not value or value != value.strip(" "):
-        raise ValueError(f'found {shown(value)} in "{key}", expected a name, without blanks around it')
+        raise ValueError(f'found {excerpt_of(value)} in "{key}", expected a name, without blanks around it')
     return value

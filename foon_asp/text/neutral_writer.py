@@ -1,4 +1,4 @@
-"""Writing units and objects in the neutral form."""
+"""Writing of units and objects in the neutral form."""
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
@@ -8,27 +8,32 @@ from foon_asp.network import ObjectNode
 from foon_asp.text.conversion_loss import CannotHoldError, Loss, lost_in_line
 from foon_asp.text.format import WrittenPart
 from foon_asp.text.json_value import json_line
-from foon_asp.text.json_writer import written_list
+from foon_asp.text.json_writer import list_text
 from foon_asp.text.line import MotionLine, ObjectLine
 from foon_asp.text.listed_unit import ObjectBlock
-from foon_asp.text.text_writer import with_word
+from foon_asp.text.text_writer import with_container_word
 
 
 def write_neutral_unit(id_: str, inputs: Iterable[str], outputs: Iterable[str], price: str) -> str:
-    """Write a unit as one line of plain names."""
+    """Return the line of a unit, with its line end, from plain names; ``price`` is empty for none."""
     sides = ([(json_line(name), 1) for name in names] for names in (inputs, outputs))
-    return _line(id_, price, *sides)
+    return _unit_line(id_, price, *sides)
 
 
-def _line(id_: str, price: str, inputs: Sequence[tuple[str, int]], outputs: Sequence[tuple[str, int]]) -> str:
-    """Write a unit from names as JSON, with their amounts."""
-    input_list, output_list = map(_names_text, (inputs, outputs))
-    last = f', "price": {Decimal(price):f}' if price else ""
-    return f'{{"id": {json_line(id_)}, "inputs": {input_list}, "outputs": {output_list}{last}}}\n'
+def _unit_line(
+    id_: str, price: str, inputs: Sequence[tuple[str, int]], outputs: Sequence[tuple[str, int]]
+) -> str:
+    """Return the line of a unit from names, which are JSON already, and their amounts."""
+    input_list, output_list = map(_side_text, (inputs, outputs))
+    price_part = f', "price": {Decimal(price):f}' if price else ""
+    return f'{{"id": {json_line(id_)}, "inputs": {input_list}, "outputs": {output_list}{price_part}}}\n'
 
 
-def _names_text(names: Sequence[tuple[str, int]]) -> str:
-    """Write a list of names; or an object, where some amount is not 1."""
+def _side_text(names: Sequence[tuple[str, int]]) -> str:
+    """Return a side of a unit in JSON: a list of names, or amounts by name if some amount is not 1.
+
+    The amounts of a name that comes twice are added up.
+    """
     if all(amount == 1 for _, amount in names):
         return f"[{', '.join(name for name, _ in names)}]"
     totals: Counter[str] = Counter()
@@ -38,7 +43,10 @@ def _names_text(names: Sequence[tuple[str, int]]) -> str:
 
 
 class NeutralWriter:
-    """A writer of units with the motion as id, and object nodes as names in one-line notation."""
+    """A writer of neutral files: a unit's id is its motion, a node is named by its one-line notation.
+
+    See :class:`~foon_asp.text.format.Writer` for its methods.
+    """
 
     holds_prices = holds_no_inputs = True
 
@@ -46,8 +54,12 @@ class NeutralWriter:
         self._names: dict[str, ObjectNode] = {}
 
     def block(self, block: ObjectBlock, in_list: bool) -> WrittenPart:
-        """Return the name and the amount of an object node as JSON; no other node may have the same name."""
-        states = tuple(map(with_word, block.states))
+        """Return the name of an object node in JSON, with its amount unless this is one, and its losses.
+
+        In a list it is an object with ``label`` and, where stated, ``amount``. Raises
+        :class:`CannotHoldError` for blanks around the name, and if another node has the same name.
+        """
+        states = tuple(map(with_container_word, block.states))
         node = block._replace(states=states).node
         name = str(node) if states else node.label
         if not name or name != name.strip(" "):
@@ -63,27 +75,27 @@ class NeutralWriter:
         return json_line(name) + (f": {block.amount}" if (block.amount or 1) > 1 else ""), losses
 
     def motion(self, line: MotionLine) -> WrittenPart:
-        """Return the id of a unit."""
+        """Return the motion as plain text, and its losses."""
         return line.motion, lost_in_line(line, MotionLine(line.motion))
 
     def unit(self, inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str) -> str:
-        """Write a unit."""
-        return _line(motion, price, *(list(map(_amount, names)) for names in (inputs, outputs)))
+        """Return the line of a unit from its parts; ``price`` is empty for a unit without one."""
+        return _unit_line(motion, price, *(list(map(_name_and_amount, names)) for names in (inputs, outputs)))
 
     def network(self, units: Sequence[str], videos: Sequence[str]) -> str:
-        """Put a file together."""
+        """Return the lines of all units; ``videos`` is empty."""
         return "".join(units)
 
     def objects(self, parts: Sequence[str]) -> str:
-        """Put a JSON list of names together."""
-        return written_list(parts, 0) + "\n"
+        """Return a JSON list of nodes, with a line end."""
+        return list_text(parts, 0) + "\n"
 
     def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
-        """Return no videos, since the neutral form cannot name any."""
+        """Return none, since neutral files cannot name videos."""
         return ()
 
 
-def _amount(fragment: str) -> tuple[str, int]:
-    """Split the JSON of a node into its name, still JSON, and its amount."""
+def _name_and_amount(fragment: str) -> tuple[str, int]:
+    """Return the name, still JSON, and the amount in the text that ``block`` wrote for a node of a unit."""
     name, _, amount = (fragment, "", "1") if fragment.endswith('"') else fragment.rpartition(": ")
     return name, int(amount)

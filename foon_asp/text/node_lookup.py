@@ -17,10 +17,10 @@ _IN_QUOTES = re.compile(r' *"(?:\\(?:["\\/bfnrt]|u[0-9a-fA-F]{4})|[^"\\])*("?)')
 
 
 class Wording(NamedTuple):
-    """The noun for the node in messages, and the option that precedes each candidate to paste."""
+    """The words for a node in messages: a noun, and the option that precedes each candidate to paste."""
 
-    thing: str
-    before: str
+    noun: str
+    option: str
 
 
 _GOAL = Wording("goal", "--goal")
@@ -29,14 +29,14 @@ _GOAL = Wording("goal", "--goal")
 class GoalError(UserError):
     """A name that means no object node, or several.
 
-    ``message`` is without candidates, ``candidates`` are those shown, in one-line notation, and ``hidden``
-    counts the others. The text of the error has the candidates ready to paste, behind the option ``before``.
+    ``message`` is without candidates. ``candidates`` are those shown, in one-line notation, and ``hidden``
+    counts the others. The text of the error has the candidates ready to paste, behind ``option``.
     """
 
     def __init__(
-        self, message: str, candidates: Sequence[str] = (), hidden: int = 0, before: str = _GOAL.before
+        self, message: str, candidates: Sequence[str] = (), hidden: int = 0, option: str = _GOAL.option
     ) -> None:
-        lines = [message, *(f"  {before} {shlex.quote(candidate)}" for candidate in candidates)]
+        lines = [message, *(f"  {option} {shlex.quote(candidate)}" for candidate in candidates)]
         if hidden:
             lines.append(f"  ... and {hidden} more")
         super().__init__("\n".join(lines))
@@ -44,23 +44,23 @@ class GoalError(UserError):
 
 
 class NodeNames(Protocol):
-    """The names of nodes: a :class:`~foon_asp.network.Network`, or a store."""
+    """A network whose nodes are looked up by name: a :class:`~foon_asp.network.Network`, or a store."""
 
     @property
     def level(self) -> int:
         """The level of FOON, from 1 to 3."""
 
     def object_id(self, node: ObjectNode) -> int | None:
-        """Return the id of a node, or ``None`` if it does not exist."""
+        """Return the id of a node, ``None`` if it does not exist."""
 
     def node(self, object_id: int) -> ObjectNode:
         """Return the node with an id."""
 
     def find(self, pattern: NodePattern) -> Sequence[int]:
-        """Return the ids of the nodes that match a kitchen or goals entry."""
+        """Return the ids of the nodes that match an entry of a kitchen or goals file."""
 
     def labelled(self, label: str) -> tuple[int, Sequence[int]]:
-        """Return the number of nodes with a label, and the ids of at least the first twelve."""
+        """Return how many nodes have a label, and the ids of these or at least of the first twelve."""
 
     def beginning(self, start: str, max_labels: int) -> Sequence[str]:
         """Return labels that begin with ``start``, in alphabetical order, at most ``max_labels``."""
@@ -77,58 +77,61 @@ def find_goal(
 ) -> int:
     """Return the id of the object node that a goal names.
 
-    A name is tried in this order: the one-line notation of a node (``sweet potato; chopped;
-    in [cutting board]``), as ``str(node)`` returns it; the label of an entry of the goals file ``listed``;
-    the label of a single node.
+    A name is tried in this order: as the one-line notation of a node (``sweet potato; chopped; in [cutting
+    board]``); as the label of an entry of the goals file ``listed``; as the label of a single node.
 
-    A text that is no notation, or the notation of no node, is also tried literally as a label. A label with a
-    semicolon after it (``onion;``) is only tried as notation: it is the node without states. Raises
+    A text that is no notation, or the notation of no node, is also tried literally as a label. A label with
+    a semicolon after it (``onion;``) is only tried as notation: it is the node without states. Raises
     :class:`GoalError` with candidates ready to paste if the name is unknown or means several nodes.
-    ``wording`` has the noun for messages, by default that of a goal.
+    ``wording`` has the words for a goal in messages.
     """
-    named: str | ObjectNode = name
+    parsed_name: str | ObjectNode = name
     fault = None
-    node = as_written = ObjectNode(name.strip(" "))
+    node = literal_node = ObjectNode(name.strip(" "))
     try:
-        named = parse_name(name)
+        parsed_name = parse_name(name)
     except LineError as error:
         fault = error
     else:
-        node = node_at_level(ObjectNode(named) if isinstance(named, str) else named, names.level)
-    for exact in (node, as_written):
-        if (object_id := names.object_id(exact)) is not None:
+        node = node_at_level(
+            ObjectNode(parsed_name) if isinstance(parsed_name, str) else parsed_name, names.level
+        )
+    for candidate in (node, literal_node):
+        if (object_id := names.object_id(candidate)) is not None:
             return object_id
-    label = named if isinstance(named, str) else as_written.label
+    label = parsed_name if isinstance(parsed_name, str) else literal_node.label
     entries = [entry for entry in listed if entry.pattern.label == label]
     if entries:
-        meant = list(dict.fromkeys(o for entry in entries for o in listed_nodes(entry, names)))
-        return _only(name, names, len(meant), meant, wording)
+        matching_nodes = list(dict.fromkeys(o for entry in entries for o in nodes_of_entry(entry, names)))
+        return _only_node(name, names, len(matching_nodes), matching_nodes, wording)
     count, labelled = names.labelled(label)
     if count:
-        return _only(name, names, count, labelled, wording)
+        return _only_node(name, names, count, labelled, wording)
     if fault is not None:
         raise GoalError(
-            f"the {wording.thing} {name!r} cannot be read: at column {fault.column}, {fault}; "
-            f"a name with such letters in it is in quotes: {in_quotes(as_written.label)}"
+            f"the {wording.noun} {name!r} cannot be read: at column {fault.column}, {fault}; "
+            f"a name with such letters in it is in quotes: {in_quotes(literal_node.label)}"
         )
     count, labelled = names.labelled(node.label)
     if count:
         message = f"no object node is exactly {str(node)!r}; with that label there are"
-        raise _unclear(message, names, count, _most_similar_first(node, labelled, names), wording)
-    raise _unknown(f"no object node has the label {node.label!r}", node, names, wording)
+        raise _error_with_candidates(
+            message, names, count, _most_similar_first(node, labelled, names), wording
+        )
+    raise _unknown_error(f"no object node has the label {node.label!r}", node, names, wording)
 
 
 def nodes_beginning(start: str, names: NodeNames, max_nodes: int) -> list[int]:
-    """Return the ids of nodes whose one-line notation, or whose label, begins with ``start``, by label.
+    """Return the ids of nodes whose one-line notation or label begins with ``start``, in order of labels.
 
-    At most ``max_nodes`` are returned. The text before the first semicolon is a whole label; without a
+    At most ``max_nodes`` are returned. The text before the first semicolon is a whole label. Without a
     semicolon, ``start`` is the beginning of a label. The label may be in quotes.
     """
     label, semicolon, _ = start.partition(";")
     labels = [label] if semicolon else []
-    if begun := _IN_QUOTES.match(start):
-        label = unquoted(begun[0].strip(" ") + '"' * (not begun[1]))
-        labels = [label] if begun[1] else [*names.beginning(label, max_nodes)]
+    if quoted := _IN_QUOTES.match(start):
+        label = unquoted(quoted[0].strip(" ") + '"' * (not quoted[1]))
+        labels = [label] if quoted[1] else [*names.beginning(label, max_nodes)]
     nodes: dict[int, None] = {}
     for candidate in dict.fromkeys([*labels, *names.beginning(start, max_nodes)]):
         for o in names.labelled(candidate)[1]:
@@ -140,50 +143,61 @@ def nodes_beginning(start: str, names: NodeNames, max_nodes: int) -> list[int]:
 
 
 def entry_names(listed: Sequence[ListedObject], names: NodeNames) -> Iterator[str]:
-    """Yield a name for each entry of a goals file: its label, or if that is ambiguous its notation."""
+    """Yield a name for each entry of a goals file, by which :func:`find_goal` finds the entry's node.
+
+    It is the label, or the notation of the node if the label also means another node.
+    """
     counts = Counter(entry.pattern.label for entry in listed)
     for entry in listed:
         label = entry.pattern.label
         nodes = names.find(entry.pattern)
-        exact = names.object_id(ObjectNode(label))
-        if len(nodes) != 1 or (counts[label] == 1 and exact in {None, nodes[0]}):
+        bare_node = names.object_id(ObjectNode(label))
+        if len(nodes) != 1 or (counts[label] == 1 and bare_node in {None, nodes[0]}):
             yield str(ObjectNode(label))
         else:
             yield str(names.node(nodes[0]))
 
 
-def listed_goal(entry: ListedObject, names: NodeNames) -> int:
-    """Return the only node that matches an entry of a goals file; raises :class:`UserError` for several."""
-    nodes = listed_nodes(entry, names)
-    return _only(str(entry.pattern), names, len(nodes), nodes, _GOAL)
+def node_of_entry(entry: ListedObject, names: NodeNames) -> int:
+    """Return the id of the only node that matches an entry of a goals file.
+
+    Raises :class:`GoalError` if several nodes match, or none.
+    """
+    nodes = nodes_of_entry(entry, names)
+    return _only_node(str(entry.pattern), names, len(nodes), nodes, _GOAL)
 
 
-def listed_nodes(entry: ListedObject, names: NodeNames) -> Sequence[int]:
-    """Return the nodes that match an entry of a goals file; raises :class:`UserError` if there are none."""
+def nodes_of_entry(entry: ListedObject, names: NodeNames) -> Sequence[int]:
+    """Return the ids of the nodes that match an entry of a goals file.
+
+    Raises :class:`GoalError` with similar candidates if there are none.
+    """
     nodes = names.find(entry.pattern)
     if not nodes:
         count, labelled = names.labelled(entry.pattern.label)
         position = f"{entry.source}:{entry.source.column}"
         message = f"{position}: error: the goal {str(entry.pattern)!r} matches no object node"
         if count:
-            raise _unclear(f"{message}; with that label there are", names, count, labelled, _GOAL)
-        raise _unknown(f"{message} of the network", ObjectNode(entry.pattern.label), names, _GOAL)
+            raise _error_with_candidates(
+                f"{message}; with that label there are", names, count, labelled, _GOAL
+            )
+        raise _unknown_error(f"{message} of the network", ObjectNode(entry.pattern.label), names, _GOAL)
     return nodes
 
 
-def _only(name: str, names: NodeNames, count: int, nodes: Sequence[int], wording: Wording) -> int:
-    """Return the only node of a name; raises :class:`GoalError` with candidates if there are several.
+def _only_node(name: str, names: NodeNames, count: int, nodes: Sequence[int], wording: Wording) -> int:
+    """Return the only one of ``nodes``; raises :class:`GoalError` with candidates if there are several.
 
-    ``count`` is the number of nodes with the name; ``nodes`` are the ids of at least the first ones.
+    ``count`` is the number of nodes that ``name`` means. ``nodes`` are the ids of at least the first ones.
     """
     if count > 1:
-        message = f"the {wording.thing} {name!r} means {count} object nodes"
-        raise _unclear(f"{message}; paste the one you mean", names, count, nodes, wording)
+        message = f"the {wording.noun} {name!r} means {count} object nodes"
+        raise _error_with_candidates(f"{message}; paste the one you mean", names, count, nodes, wording)
     return nodes[0]
 
 
 def _most_similar_first(node: ObjectNode, nodes: Sequence[int], names: NodeNames) -> Sequence[int]:
-    """Return nodes sorted by similarity to an unknown ``node``; unsorted if ``node`` is a label alone."""
+    """Return ids of nodes sorted by similarity of notation to ``node``; unsorted if this is a label alone."""
     if node == ObjectNode(node.label):
         return nodes
     import difflib  # noqa: PLC0415 (only for error messages)
@@ -195,18 +209,23 @@ def _most_similar_first(node: ObjectNode, nodes: Sequence[int], names: NodeNames
     ]
 
 
-def _unknown(message: str, node: ObjectNode, names: NodeNames, wording: Wording) -> GoalError:
-    """Return the error about an unknown node, with some nodes of each similar label."""
+def _unknown_error(message: str, node: ObjectNode, names: NodeNames, wording: Wording) -> GoalError:
+    """Return the error about an unknown node, with some nodes of each similar label as candidates."""
     labels = dict.fromkeys((*names.beginning(node.label, _MAX_CANDIDATES), *names.near(node.label, 3)))
     counted_nodes = [names.labelled(label) for label in labels]
     if not counted_nodes:
         return GoalError(message)
-    share = max(1, _MAX_CANDIDATES // len(counted_nodes))
+    nodes_per_label = max(1, _MAX_CANDIDATES // len(counted_nodes))
     total = sum(count for count, _ in counted_nodes)
-    first = [o for _, nodes in counted_nodes for o in _most_similar_first(node, nodes, names)[:share]]
-    return _unclear(f"{message}; similar are", names, total, first, wording)
+    candidates = [
+        o for _, nodes in counted_nodes for o in _most_similar_first(node, nodes, names)[:nodes_per_label]
+    ]
+    return _error_with_candidates(f"{message}; similar are", names, total, candidates, wording)
 
 
-def _unclear(message: str, names: NodeNames, count: int, first: Iterable[int], wording: Wording) -> GoalError:
-    shown = [str(names.node(o)) for o in [*first][:_MAX_CANDIDATES]]
-    return GoalError(message, shown, count - len(shown), wording.before)
+def _error_with_candidates(
+    message: str, names: NodeNames, count: int, candidates: Iterable[int], wording: Wording
+) -> GoalError:
+    """Return an error with up to twelve of the candidates, which are ids; ``count`` is their number."""
+    shown = [str(names.node(o)) for o in [*candidates][:_MAX_CANDIDATES]]
+    return GoalError(message, shown, count - len(shown), wording.option)

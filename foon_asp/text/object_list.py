@@ -11,7 +11,7 @@ from foon_asp.text.reading import Reading
 
 
 class ListedObject(NamedTuple):
-    """An entry of a kitchen or goals file, and its source.
+    """An entry of a kitchen or goals file: the pattern of the nodes it means, its source and its amount.
 
     ``amount`` is how many there are, or are wanted; ``None`` where the file does not say it.
     """
@@ -22,11 +22,11 @@ class ListedObject(NamedTuple):
 
 
 def read_object_list(file: Path, warnings: list[Diagnostic] | None = None) -> list[ListedObject]:
-    """Read a JSON list of ``{"label", "states", "ingredients", "container", "amount"}``, or object blocks.
+    """Return the entries of a kitchen or goals file, in JSON or as object blocks of FOON text.
 
-    In JSON, only the label is required. Warnings are added to ``warnings``. Raises :class:`InputError` with
-    the line and column of every entry of another form, and of every entry whose node is listed before with
-    another amount.
+    In JSON, it is a list of ``{"label", "states", "ingredients", "container", "amount"}``, of which only the
+    label is required. Warnings are added to ``warnings``. Raises :class:`InputError` with the line and
+    column of every entry of another form, and of every entry that is listed before with another amount.
     """
     text = read_plain_text(file)
     format_ = JSON if file.suffix == JSON.list_suffix else format_of(text, str(file))

@@ -1,4 +1,4 @@
-"""The provenance of units: comment lines of a FOON file that name videos and copies.
+"""The provenance of units: comment lines of FOON text that name videos and copies.
 
 ``# Source:⇥ADDRESS`` at the top of a file names a video that was annotated. ``# From:⇥FILE:LINE⇥ADDRESS``
 above a unit of a merged file names one copy that the unit was merged from, and the videos of that copy.
@@ -11,33 +11,36 @@ _COPY = "# From:"
 
 
 def read_video(comment: str) -> str | None:
-    """Return the video that a comment line names; ``None`` for another comment, or one that names none."""
+    """Return the video that a comment line ``# Source:`` names.
+
+    ``None`` stands for another comment, and for one that names no video.
+    """
     if not comment.startswith(_VIDEO):
         return None
-    return " ".join(_fields(comment[len(_VIDEO) :])) or None  # a tab ends it in a # From: line
+    return " ".join(_nonempty_fields(comment[len(_VIDEO) :])) or None  # a tab ends it in a # From: line
 
 
 def is_video(comment: str) -> bool:
-    """Whether a comment line is meant to name a video, which it may leave empty."""
+    """Whether a comment line begins with ``# Source:``, even if it names no video."""
     return comment.startswith(_VIDEO)
 
 
 def read_copy(comment: str) -> Source | None:
-    """Return the place that a comment line above a merged unit names; ``None`` for another comment."""
+    """Return the source that a comment line ``# From:`` names; ``None`` for any other comment."""
     if not comment.startswith(_COPY):
         return None
     position, *videos = comment[len(_COPY) :].lstrip("\t ").split("\t")
     file, colon, line = (position if videos else position.rstrip()).rpartition(":")
     if not (file and colon and line.isascii() and line.isdigit() and len(line) <= 9):
         return None
-    return Source(file, int(line), 1, tuple(_fields("\t".join(videos))))
+    return Source(file, int(line), 1, tuple(_nonempty_fields("\t".join(videos))))
 
 
 def write_copy(source: Source) -> str:
-    """Return the comment line, with its line end, that :func:`read_copy` reads."""
+    """Return the comment line ``# From:`` of a source, with its line end; its column is left out."""
     return "\t".join((f"{_COPY}\t{source.file}:{source.line}", *source.videos)) + "\n"
 
 
-def _fields(text: str) -> list[str]:
-    """Return the texts between tabs without blanks around them, in linear time."""
+def _nonempty_fields(text: str) -> list[str]:
+    """Return the texts between tabs, without blanks around them, without empty ones."""
     return [field.strip() for field in text.split("\t") if field.strip()]

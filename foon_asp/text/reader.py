@@ -1,4 +1,4 @@
-"""Reading FOON files into a network: FOON text of every dialect, and JSON."""
+"""Reading of FOON files of any format into a network."""
 
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -9,21 +9,21 @@ from foon_asp.text.formats import format_of
 from foon_asp.text.line import Line, LineError
 from foon_asp.text.line_parser import read_line
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, ReadUnit
-from foon_asp.text.plain_file import beginning, plain_text, read_plain_text, split_lines
+from foon_asp.text.plain_file import plain_text, read_beginning_text, read_plain_text, split_lines
 from foon_asp.text.reading import Reading
 from foon_asp.text.repeated_node import RepeatedNode, repeated_node
 from foon_asp.text.text_units import TextUnits
 
 
 class FoonReader(Reading):
-    r"""Reads any number of FOON files; each distinct line and object block is parsed once.
+    r"""A reader of any number of FOON files, which parses each distinct line and object block once.
 
-    With ``lenient``, what is not understood is left out with a warning; otherwise it is an error.
+    With ``lenient``, parts that are not understood are left out with a warning; otherwise they are errors.
     ``diagnostics`` has the findings in all files read so far. ``left_out`` counts the lines that were not
     understood or do not form a unit. ``prices`` and ``amounts`` are those that copies of units state.
-    ``marked`` are the nodes with the goal mark ``!``, each with its first place. ``last_units`` has, by id,
-    the place of the last unit with outputs of each file that :meth:`read_network` read. ``repeated`` are the
-    nodes that a copy of a unit lists twice.
+    ``marked`` are the nodes with the goal mark ``!``, each with its first place. ``repeated`` are the nodes
+    that a copy of a unit lists twice. ``last_units`` maps ids of units to places: it has the last unit with
+    outputs of each file that :meth:`read_network` read.
 
     Example:
         >>> from pathlib import Path
@@ -48,7 +48,9 @@ class FoonReader(Reading):
         self.last_units: dict[int, Source] = {}
 
     def read_network(self, files: Iterable[Path]) -> Network:
-        """Read files and merge them into one network.
+        """Return the network that files are merged into.
+
+        The last unit of each file is recorded in ``last_units``.
 
         Parameters:
             files: The paths of the files.
@@ -69,7 +71,9 @@ class FoonReader(Reading):
         return builder.build()
 
     def tree_units(self, text: str, file: str) -> list[tuple[FunctionalUnit, Source]]:
-        """Return the units of a text in listed order, copies included.
+        """Return the units of a text in listed order, copies included, each with its first source.
+
+        Their amounts are recorded in ``amounts``.
 
         Parameters:
             text: The FOON text.
@@ -89,16 +93,20 @@ class FoonReader(Reading):
         return units
 
     def file_units(self, file: Path) -> Iterator[ReadUnit]:
-        """Yield the units of a file in order; one in the neutral form is read line by line.
+        """Yield the units of a file in order; FOON text and neutral files are read piece by piece.
+
+        Amounts and repeated nodes are recorded. A file that is not text adds an error to ``diagnostics``.
 
         Parameters:
             file: The path of the file.
         """
         is_pipe = not file.is_file()  # which can be read only once
-        begins = self.text(file) if is_pipe else beginning(file)
-        format_ = format_of(begins, file.name)
+        beginning_text = self.text(file) if is_pipe else read_beginning_text(file)
+        format_ = format_of(beginning_text, file.name)
         try:
-            for unit in format_.units(begins, str(file), self) if is_pipe else format_.file_units(file, self):
+            for unit in (
+                format_.units(beginning_text, str(file), self) if is_pipe else format_.file_units(file, self)
+            ):
                 node = None if format_.machine_written else repeated_node(unit.inputs, unit.outputs)
                 if node:
                     self.repeated.append(RepeatedNode(str(node), unit.source))
@@ -111,11 +119,11 @@ class FoonReader(Reading):
             self.diagnostics += error.diagnostics
 
     def text(self, file: Path, content: bytes | None = None) -> str:
-        """Return the text of a file; it is empty, and an error is noted, if the file is not text.
+        """Return the text of a file; if the file is not text, record an error and return an empty text.
 
         Parameters:
             file: The path of the file.
-            content: Its bytes, if they are known and the file is not to be read.
+            content: Its bytes, if they are known; ``None`` to read the file.
         """
         try:
             return read_plain_text(file) if content is None else plain_text(content, file)
@@ -142,7 +150,7 @@ class FoonReader(Reading):
         return format_of(text, file).listed_units(text, file, self)
 
     def object_blocks(self, text: str, file: str) -> list[ObjectBlock]:
-        """Return the object nodes of a text that lists them without motions: a kitchen, or goals.
+        """Return the object blocks of FOON text without motions: a kitchen, or goals.
 
         Parameters:
             text: The text.

@@ -1,4 +1,4 @@
-"""The state of reading files: diagnostics, prices and goal marks, and reports of progress."""
+"""The state of reading files: diagnostics, prices, amounts and goal marks; and reports of progress."""
 
 import contextlib
 from collections.abc import Callable, Iterable, Iterator
@@ -12,16 +12,16 @@ from foon_asp.text.stated_amounts import StatedAmounts
 from foon_asp.text.stated_prices import StatedPrices
 
 Report = Callable[[int], None]
-"""Is called with the number of bytes read since its last call."""
+"""A function that is called with the number of bytes read since its last call."""
 
 REPORT_BYTES = 65_536
-"""Bytes that are read from one report to the next, at least."""
+"""The least number of bytes that are read from one report to the next."""
 
 _report: ContextVar[Report | None] = ContextVar("_report", default=None)
 
 
 class Reading:
-    """The diagnostics of files, and the prices, amounts and goal marks that these files state.
+    """The findings while files are read: diagnostics, and prices, amounts and goal marks that files state.
 
     ``lenient``: whether parts that are not understood are left out with a warning; otherwise they are errors.
     ``diagnostics``: the findings in all files read so far.
@@ -49,7 +49,7 @@ class Reading:
     def warn(
         self, code: str, message: str, source: Source, excerpt: str = "", fix: str | None = None
     ) -> None:
-        """Record a warning about an assumption."""
+        """Record a warning about an assumption; ``fix`` is the corrected line, ``None`` if none is known."""
         self.diagnostics.append(Diagnostic(Severity.WARNING, code, message, source, excerpt, fix))
 
     def raise_errors(self, earlier: int = 0) -> None:
@@ -68,7 +68,7 @@ class Reading:
 
 @contextlib.contextmanager
 def reporting_to(report: Report) -> Iterator[None]:
-    """Report progress to a function while networks are read in a ``with`` block."""
+    """Return a context in which the reading of networks calls ``report``, see ``Report``."""
     token = _report.set(report)
     try:
         yield
@@ -77,10 +77,10 @@ def reporting_to(report: Report) -> Iterator[None]:
 
 
 def progress_report() -> Report | None:
-    """Return the function that receives reports of progress, if any."""
+    """Return the function that receives reports of progress; ``None`` outside of :func:`reporting_to`."""
     return _report.get()
 
 
 def size_of(files: Iterable[Path]) -> int:
-    """Return the total size of files in bytes."""
+    """Return the total size of files in bytes; a pipe or a missing file counts as empty."""
     return sum(file.stat().st_size for file in files if file.is_file())

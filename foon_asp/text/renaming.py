@@ -1,4 +1,4 @@
-"""Renaming of a name everywhere in a file: FOON text, JSON, and the tables beside them."""
+"""Renaming of a name everywhere in a file: in FOON text, JSON, and the tables beside a network."""
 
 import re
 from collections import Counter
@@ -24,7 +24,7 @@ _FIELD = re.compile(r"[^\t\[\]{},]+")
 
 
 class Renaming:
-    """A renaming of one name, applied after all mentions in all files have been learnt.
+    """A renaming of one name, to be applied after :meth:`learn` has read all mentions in all files.
 
     If the new name already has an id, lines with the old name get this id; else they keep their own.
     ``mentions`` counts the mentions of the old name, ``already`` the mentions of the new name.
@@ -36,7 +36,7 @@ class Renaming:
         self._ids: Counter[str] = Counter()
 
     def learn(self, mentions: Iterable[Mention]) -> None:
-        """Count the mentions in a file, and record the ids of the new name."""
+        """Count mentions of the old and of the new name, and record the ids of the new name."""
         kind, old, new = self.rename
         for name_kind, name, id_ in mentions:
             if name_kind == kind and name == new:
@@ -45,27 +45,33 @@ class Renaming:
             self.mentions += name_kind == kind and name == old
 
     def learn_ids(self, ids: Mapping[str, int]) -> None:
-        """Add counts of the ids of the new name."""
+        """Record ids of the new name, with the number of lines that have each."""
         self._ids.update(ids)
 
     def line(self, line: str) -> str:
-        """Return a line of FOON text with the new name."""
+        """Return a line of FOON text with the new name; its spelling stays where that is possible.
+
+        An id of the old name is replaced, too, see :meth:`id`. Lines without the old name, and lines that
+        cannot be understood, are returned as they are.
+        """
         if self.rename.old not in line or line[:1] not in {"O", "S", "M"}:
             return line
         parsed = read_line(line)
         if isinstance(parsed, LineError):
             return line
-        renamed = self._renamed(parsed)
+        renamed = self._rename_in_line(parsed)
         if renamed == parsed:
             return line
-        if self._names_it(parsed):
+        if self._id_belongs_to_old_name(parsed):
             renamed = renamed._replace(id=self.id(parsed.id))
-        letter = line.partition("\t")[0]
-        fields = line[len(letter) :]
-        head = f"{line[:1]}{renamed.id}" if letter == f"{line[:1]}{parsed.id}" else letter
+        letter_and_id = line.partition("\t")[0]
+        fields = line[len(letter_and_id) :]
+        new_letter_and_id = (
+            f"{line[:1]}{renamed.id}" if letter_and_id == f"{line[:1]}{parsed.id}" else letter_and_id
+        )
         _, old, new = self.rename
-        text = head + _FIELD.sub(
-            lambda m: m[0].replace(old, new) if m[0].strip(" *") == old else m[0], fields
+        text = new_letter_and_id + _FIELD.sub(
+            lambda match: match[0].replace(old, new) if match[0].strip(" *") == old else match[0], fields
         )
         parsed_back = read_line(text)
         # the spelling of the line stays, unless the old name is in it with another meaning
@@ -74,7 +80,7 @@ class Renaming:
         ) == renamed._replace(remarks=())
         return text if is_same else write_line(renamed)
 
-    def _names_it(self, line: Line) -> bool:
+    def _id_belongs_to_old_name(self, line: Line) -> bool:
         """Whether the id of a line belongs to the old name."""
         return name_of(line) == self.rename.old and self.rename.kind == kind_of(line)
 
@@ -86,35 +92,43 @@ class Renaming:
         return self._ids.most_common(1)[0][0] if old_id and self._ids else old_id
 
     def name(self, kind: NameKind, name: str) -> str:
-        """Return a name of a kind, renamed if it is the old one."""
+        """Return a name of a kind: the new name in place of the old one, any other name as it is."""
         return self.rename.new if (kind, name) == self.rename[:2] else name
 
-    def _renamed(self, line: Line) -> Line:
-        """Return a line in which the name is replaced."""
+    def _rename_in_line(self, line: Line) -> Line:
+        """Return a parsed line with the new name in place of the old one; its id stays."""
         if isinstance(line, ObjectLine):
             return line._replace(label=self.name(NameKind.OBJECT, line.label))
         if isinstance(line, MotionLine):
             return line._replace(motion=self.name(NameKind.MOTION, line.motion))
-        return line._replace(attribute=self._attribute(line.attribute), listed=self._items(line.listed))
+        return line._replace(
+            attribute=self._rename_in_attribute(line.attribute), listed=self._rename_ingredients(line.listed)
+        )
 
-    def _attribute(self, attribute: str | Relation | Contents) -> str | Relation | Contents:
-        """Return a state, relation or contents in which the name is replaced."""
+    def _rename_in_attribute(self, attribute: str | Relation | Contents) -> str | Relation | Contents:
+        """Return a state, relation or contents with the new name in place of the old one."""
         if isinstance(attribute, str):
             return self.name(NameKind.STATE, attribute)
         word = self.name(NameKind.WORD, attribute.word)
         if isinstance(attribute, Relation):
             return Relation(word, self.name(NameKind.OBJECT, attribute.object))
-        return Contents(word, tuple(sorted(self._items(attribute.ingredients))))
+        return Contents(word, tuple(sorted(self._rename_ingredients(attribute.ingredients))))
 
-    def _items(self, items: tuple[str, ...]) -> tuple[str, ...]:
-        """Return ingredients with the old name replaced, or removed where they already have the new name."""
+    def _rename_ingredients(self, items: tuple[str, ...]) -> tuple[str, ...]:
+        """Return ingredients with the new name in place of the old one.
+
+        If the new name is among them already, the old one is removed.
+        """
         kind, old, new = self.rename
         if kind == NameKind.OBJECT and new in items:
             return tuple(item for item in items if item != old)
         return tuple(self.name(NameKind.OBJECT, item) for item in items)
 
     def node(self, field: str) -> str:
-        """Return a node in one-line notation with the new name; other texts stay."""
+        """Return a node in one-line notation with the new name; any other text as it is.
+
+        A node without the old name is returned as it is written, too.
+        """
         try:
             node = parse_node(field.strip())
         except LineError:
@@ -122,14 +136,14 @@ class Renaming:
         renamed = ObjectNode.of(
             self.name(NameKind.OBJECT, node.label),
             (self.name(NameKind.STATE, state) for state in node.states),
-            (self._attribute(relation) for relation in node.relations),  # type: ignore[misc]
-            (self._attribute(contents) for contents in node.contents),  # type: ignore[misc]
+            (self._rename_in_attribute(relation) for relation in node.relations),  # type: ignore[misc]
+            (self._rename_in_attribute(contents) for contents in node.contents),  # type: ignore[misc]
         )
         return field if renamed == node else str(renamed) + ";" * field.rstrip().endswith(";")
 
 
 def is_name(kind: str, name: str) -> bool:
-    """Whether a text can be a name of a kind in all positions of FOON text."""
+    """Whether a text can be a name of a kind in every position of FOON text where such a name may stand."""
     if not name or any(letter in name for letter in "\r\n"):
         return False
     letter, brackets = {"object": ("O", ("[", "]", "{", "}")), "motion": ("M", ())}.get(kind, ("S", ()))

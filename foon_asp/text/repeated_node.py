@@ -7,14 +7,14 @@ from foon_asp.network import ObjectNode, Source, counted
 
 
 class RepeatedNode(NamedTuple):
-    """The first node that a copy of a unit lists twice on one side, and its source."""
+    """The first node that a copy of a unit lists twice on one side, in one-line notation, and its source."""
 
     node: str
     source: Source
 
 
 def repeated_node(inputs: Sequence[ObjectNode], outputs: Sequence[ObjectNode]) -> ObjectNode | None:
-    """Return the first node that is twice on one side of a unit, else ``None``."""
+    """Return the first node that is listed twice on one side of a unit, ``None`` if there is none."""
     for nodes in (inputs, outputs):
         labels = {node.label for node in nodes}  # mostly enough, and strings keep their hashes
         if len(labels) < len(nodes) and len(set(nodes)) < len(nodes):
@@ -23,7 +23,7 @@ def repeated_node(inputs: Sequence[ObjectNode], outputs: Sequence[ObjectNode]) -
 
 
 def repeated_note(repeated: Sequence[RepeatedNode]) -> list[str]:
-    """Return a note of one line about all repeated nodes; empty if there are none."""
+    """Return a note about all repeated nodes, one line in a list; an empty list if there are none."""
     if not repeated:
         return []
     first = repeated[0]

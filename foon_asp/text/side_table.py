@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from foon_asp.errors import UserError
 from foon_asp.text.foon_text import FoonText
 from foon_asp.text.line import Mention
-from foon_asp.text.plain_file import each_line, split_lines
+from foon_asp.text.plain_file import map_lines, split_lines
 from foon_asp.text.tables import DURATIONS, RATES, TOOLS, UTENSILS
 from foon_asp.text.unit_amount_list import UNIT_AMOUNTS
 from foon_asp.text.unit_price_list import UNIT_PRICES
@@ -28,38 +28,47 @@ TABLES: dict[str, Table[Any, Any]] = {
 
 
 class SideTable(FoonText):
-    """A table beside a network, which has names to rename and no units."""
+    """The format of a table beside a network, which has names to rename and no units."""
 
     dialects = ()
 
     def recognises(self, text: str, file: str) -> bool:
-        """Whether the file has the name of a table."""
+        """Whether the file has the name of a table, such as ``motion.txt``."""
         return PurePath(file).name in TABLES
 
-    def normalised(self, text: str, file: str, lenient: bool = False) -> str:
-        """Return a table as it is; raises :class:`InputError` with the rows that cannot be understood."""
+    def canonical_text(self, text: str, file: str, lenient: bool = False) -> str:
+        """Return a table as it is.
+
+        Raises :class:`InputError` with the rows that cannot be understood, unless ``lenient``.
+        """
         if not lenient:
             TABLES[PurePath(file).name].rows(Path(file), text)
         return text
 
-    def names(self, text: str, file: str) -> Iterator[Mention]:
-        """Yield the names in the first column."""
+    def mentions(self, text: str, file: str) -> Iterator[Mention]:
+        """Yield a mention of each name in the first column; rows need not be well-formed."""
         for line in split_lines(text):
             if line.lstrip()[:1] not in {"", "#"}:
                 yield Mention(TABLES[PurePath(file).name].names, line.partition("\t")[0].strip())
 
-    def renamed(self, text: str, file: str, renaming: "Renaming") -> str:
-        """Return a table with the new name; raises :class:`UserError` if the name gets two different rows."""
-        new = each_line(text, lambda line: _renamed_row(line, PurePath(file).name, renaming))
-        rows = (line.split("\t") for line in split_lines(new))
+    def renamed_text(self, text: str, file: str, renaming: "Renaming") -> str:
+        """Return a table with the new name.
+
+        Raises :class:`UserError` if the table would then have two different rows for the new name.
+        """
+        new_text = map_lines(text, lambda line: _renamed_row(line, PurePath(file).name, renaming))
+        rows = (line.split("\t") for line in split_lines(new_text))
         name = renaming.rename.new
         if len({"\t".join(row) for row in rows if len(row) == 2 and row[0].strip() == name}) > 1:
             raise UserError(f"{file} would have two different rows for {name!r}; take one of them out before")
-        return new
+        return new_text
 
 
 def _renamed_row(line: str, table: str, renaming: "Renaming") -> str:
-    """Return the row of a table in which the name is replaced."""
+    """Return a line of the table file ``table`` with the new name; blank lines and comments stay.
+
+    Nodes in one-line notation are renamed in the tables of tools, prices and amounts.
+    """
     if line.lstrip()[:1] in {"", "#"}:
         return line
     first, *fields = line.split("\t")

@@ -1,4 +1,4 @@
-"""The files of a new data folder, with comments."""
+"""The files of a new data folder, with comments that explain them."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
@@ -37,10 +37,10 @@ def starter_files(
     goals: Iterable[ObjectNode],
     rates: Mapping[str, Fraction] | None = None,
 ) -> dict[str, str]:
-    """Return the texts of the files of a data folder by name.
+    """Return the texts of the files of a data folder by file name.
 
-    ``recipe`` is the text of the network. Without ``rates``, every motion gets 1, and a comment says that
-    this is not known.
+    ``recipe`` is the text of the network. ``kitchen`` are ids of nodes. Motions without a rate get 1.
+    Without ``rates``, a comment says that the rates are not known.
     """
     motions = sorted(dict.fromkeys(network.motions))
     all_rates = {motion: (rates or {}).get(motion, Fraction(1)) for motion in motions}
@@ -49,18 +49,17 @@ def starter_files(
         "kitchen.txt": _KITCHEN + "".join(write_node(network.objects[o]) for o in sorted(kitchen)),
         RATES_FILE: _MOTIONS
         + ("" if rates else _UNKNOWN)
-        + "".join(f"{motion}\t{_decimal(rate)}\n" for motion, rate in all_rates.items()),
+        + "".join(f"{motion}\t{float(rate):g}\n" for motion, rate in all_rates.items()),
         "utensils.txt": _UTENSILS_HEAD + "".join(f"{label}\n" for label in _utensils(network.objects)),
         "goal_nodes.txt": _GOALS + "".join(map(write_node, goals)),
     }
 
 
-def _decimal(rate: Fraction) -> str:
-    return f"{float(rate):g}"
-
-
 def _utensils(nodes: Sequence[ObjectNode]) -> list[str]:
-    """Return the labels of objects that contain others and are no ingredients."""
+    """Return the sorted labels of containers: they have contents, and relations lead to them.
+
+    Labels that are also ingredients are left out.
+    """
     holding = {node.label for node in nodes if node.ingredients}
     places = {relation.object for node in nodes for relation in node.relations}
     return sorted((holding & places).difference(item for node in nodes for item in node.ingredients))

@@ -12,61 +12,66 @@ UnitAmount = tuple[str, bool, ObjectNode]
 
 
 class StatedAmounts:
-    """A collection of amounts of copies of units; ``len`` counts the units."""
+    """The amounts that copies of units state."""
 
     def __init__(self) -> None:
         self._copies: dict[FunctionalUnit, dict[Source, UnitAmounts]] = {}
 
     def __len__(self) -> int:
+        """The number of units of which a copy states amounts."""
         return len(self._copies)
 
     def add(self, unit: FunctionalUnit, amounts: UnitAmounts, source: Source) -> None:
-        """Record the amounts of one copy, and where they are stated."""
+        """Record the amounts of one copy of a unit, and where they are stated."""
         self._copies.setdefault(unit, {})[source] = amounts
 
-    def settled(self, network: Network | None = None) -> DataAmounts:
-        """Return the amounts of each unit, and a message about the first two copies that disagree.
+    def amounts_by_unit(self, network: Network | None = None) -> DataAmounts:
+        """Return the amounts of the first copy of each unit, and a message if another copy disagrees.
 
         A copy that states no amounts has the amount 1 of each node. With ``network``, such copies are
-        compared, too; without it, only copies that state amounts are.
+        compared, too; without it, only copies that state amounts are. The message is about the first
+        disagreement.
         """
         amounts: dict[FunctionalUnit, UnitAmounts] = {}
         conflict = ""
         for unit, copies in self._copies.items():
-            number = None if network is None else network.unit_id(unit)
-            sources = tuple(copies) if network is None or number is None else network.sources[number]
-            first = sources[0]
-            of_copies = [(copies.get(source, UnitAmounts()), source) for source in sources]
-            amounts[unit] = of_copies[0][0]
-            other = next((source for counted, source in of_copies if counted != amounts[unit]), None)
-            if other is not None and not conflict:
+            unit_id = None if network is None else network.unit_id(unit)
+            sources = tuple(copies) if network is None or unit_id is None else network.sources[unit_id]
+            first_source = sources[0]
+            amounts_of_copies = [(copies.get(source, UnitAmounts()), source) for source in sources]
+            amounts[unit] = amounts_of_copies[0][0]
+            differing_source = next(
+                (source for counted, source in amounts_of_copies if counted != amounts[unit]), None
+            )
+            if differing_source is not None and not conflict:
                 conflict = (
-                    f"{other}: found a copy of the unit {unit.motion!r} of {first} with other amounts, "
-                    "expected the same, since items used up are counted: give one of the two another name"
+                    f"{differing_source}: found a copy of the unit {unit.motion!r} of {first_source} with "
+                    "other amounts, expected the same, since items used up are counted: "
+                    "give one of the two another name"
                 )
         return DataAmounts(amounts, conflict)
 
 
-def with_table(
+def apply_amount_table(
     stated: DataAmounts, rows: Sequence[Row[UnitAmount, int]], units: Iterable[FunctionalUnit]
 ) -> tuple[DataAmounts, list[Diagnostic]]:
-    """Return stated amounts with those of a table in their place, and warnings about rows that match no unit.
+    """Return stated amounts overridden by a table, and warnings about rows that match no unit.
 
-    ``units`` are all units whose motion is in the table.
+    ``rows`` are those of the table. ``units`` are all units whose motion is in the table.
     """
     amounts = dict(stated.units)
-    used: set[UnitAmount] = set()
+    matched_names: set[UnitAmount] = set()
     by_name = {row.name: row.value for row in rows}
     for unit in units:
         sides: list[dict[ObjectNode, int]] = []
         for is_output, nodes in enumerate((unit.inputs, unit.outputs)):
-            current = dict(amounts.get(unit, UnitAmounts())[is_output])
+            amounts_of_side = dict(amounts.get(unit, UnitAmounts())[is_output])
             for node in nodes:
                 name = unit.motion, bool(is_output), node
                 if name in by_name:
-                    used.add(name)
-                    current[node] = by_name[name]
-            sides.append({node: amount for node, amount in current.items() if amount != 1})
+                    matched_names.add(name)
+                    amounts_of_side[node] = by_name[name]
+            sides.append({node: amount for node, amount in amounts_of_side.items() if amount != 1})
         amounts[unit] = UnitAmounts(*sides)
     warnings = [
         Diagnostic(
@@ -76,20 +81,24 @@ def with_table(
             row.source,
         )
         for row in rows
-        if row.name not in used
+        if row.name not in matched_names
     ]
-    counted = {unit: sides for unit, sides in amounts.items() if sides}
-    return stated._replace(units=counted), warnings
+    amounts_above_one = {unit: sides for unit, sides in amounts.items() if sides}
+    return stated._replace(units=amounts_above_one), warnings
 
 
 def counted_amounts(
     inputs: Iterable[tuple[ObjectNode, int]], outputs: Iterable[tuple[ObjectNode, int]]
 ) -> UnitAmounts:
-    """Return the amounts of nodes that may come several times."""
-    return UnitAmounts(_above_one(inputs), _above_one(outputs))
+    """Return the amounts above 1 of a unit from pairs of node and amount.
+
+    Amounts of a node that comes several times on a side are added up.
+    """
+    return UnitAmounts(_totals_above_one(inputs), _totals_above_one(outputs))
 
 
-def _above_one(side: Iterable[tuple[ObjectNode, int]]) -> dict[ObjectNode, int]:
+def _totals_above_one(side: Iterable[tuple[ObjectNode, int]]) -> dict[ObjectNode, int]:
+    """Return the sum of the amounts of each node, without sums of 1."""
     totals: Counter[ObjectNode] = Counter()
     for node, amount in side:
         totals[node] += amount

@@ -1,4 +1,4 @@
-"""The kinds of tables beside a network, and how their columns are read."""
+"""The kinds of tables beside a network, and how their rows are read."""
 
 import re
 from collections.abc import Mapping
@@ -37,18 +37,21 @@ class Duration(NamedTuple):
     passive: bool = False
 
 
-def motion_column(name: str, what: str) -> str:
-    """Return the motion in the first column; raises :class:`LineError` if it is empty."""
+def motion_in_first_column(name: str, found: str) -> str:
+    """Return ``name``, the motion in the first column of a row.
+
+    Raises :class:`LineError` if it is empty; ``found`` describes the column behind it.
+    """
     if not name:
-        raise LineError(1, what, ("the motion before it",))
+        raise LineError(1, found, ("the motion before it",))
     return name
 
 
 def stated_name(name: str) -> str | ObjectNode:
-    """Return the name in the first column: a label, which means all nodes with the label, or a single node.
+    """Return the name in the first column: a label, which means all nodes with it, or a single node.
 
-    A label with a semicolon after it is the node without states, relations and contents. Raises
-    :class:`LineError` for a text that cannot be read as a name.
+    A label with a semicolon after it is the node without states, relations and contents. A text without
+    semicolon that is no notation is a label. Raises :class:`LineError` for other faults of notation.
     """
     name = name.strip()
     if not name:
@@ -61,18 +64,18 @@ def stated_name(name: str) -> str | ObjectNode:
         return name  # a label as it is
 
 
-def _rate(name: str, value: str, column: int) -> tuple[str, Fraction]:
-    """Read a row of success rates."""
-    motion = motion_column(name, "a success rate")
+def _rate_row(name: str, value: str, column: int) -> tuple[str, Fraction]:
+    """Return the motion and the exact success rate of a row; raises :class:`LineError` at a fault."""
+    motion = motion_in_first_column(name, "a success rate")
     rate = read_decimal(value, column, "a success rate as a decimal such as 0.85")
     if not 0 < rate <= 1:
         raise LineError(column, f"the success rate {value}", ("a rate above 0 and at most 1",))
     return motion, rate
 
 
-def _duration(name: str, value: str, column: int) -> tuple[str, Duration]:
-    """Read a row of durations."""
-    motion = motion_column(name, "a duration")
+def _duration_row(name: str, value: str, column: int) -> tuple[str, Duration]:
+    """Return the motion and the duration of a row; raises :class:`LineError` at a fault."""
+    motion = motion_in_first_column(name, "a duration")
     written, tab, word = value.partition("\t")
     if tab and word.strip() != "passive":
         raise LineError(column + len(written) + 1, repr(word), ("passive", "the end of the line"))
@@ -80,7 +83,10 @@ def _duration(name: str, value: str, column: int) -> tuple[str, Duration]:
 
 
 def _seconds(written: str, column: int) -> Fraction:
-    """Read a duration, which may have a unit, in seconds."""
+    """Return the seconds of a duration such as ``90``, ``25 min`` or ``1.5 h``, exactly.
+
+    Raises :class:`LineError` for another form, and for 0; ``column`` is that of ``written`` in its line.
+    """
     number, _, unit = written.partition(" ")
     unit = unit.strip()
     if unit not in _TIME_UNITS:
@@ -91,7 +97,7 @@ def _seconds(written: str, column: int) -> Fraction:
     return seconds
 
 
-def _tool(name: str, value: str, column: int) -> tuple[str | ObjectNode, int | None]:
+def _tool_row(name: str, value: str, column: int) -> tuple[str | ObjectNode, int | None]:
     """Return the tool of a row, as a label or a node, and its number; ``None`` for the word ``free``.
 
     Raises :class:`LineError` at the column of another value.
@@ -101,62 +107,72 @@ def _tool(name: str, value: str, column: int) -> tuple[str | ObjectNode, int | N
     return stated_name(name), None if value == "free" else int(value)
 
 
-def _stays(name: str, value: str, column: int) -> tuple[str | ObjectNode, bool]:
+def _stays_row(name: str, value: str, column: int) -> tuple[str | ObjectNode, bool]:
+    """Return the item of a row, as a label or a node, and whether it stays.
+
+    Raises :class:`LineError` at a fault.
+    """
     if value not in _STAYS:
         raise LineError(column, repr(value), tuple(_STAYS))
     return stated_name(name), _STAYS[value]
 
 
-def _copies(name: str, value: str, column: int) -> tuple[ObjectNode, int]:
+def _copies_row(name: str, value: str, column: int) -> tuple[ObjectNode, int]:
+    """Return the node of a row and how many copies of it there are; raises :class:`LineError` at a fault."""
     max_copies = 1_000_000  # of a node; clingo's integers are limited
     if not _COPIES.fullmatch(value) or len(value) > len(str(max_copies)) or int(value) > max_copies:
         raise LineError(column, repr(value), (f"a number of copies, from 0 to {max_copies}",))
     return parse_node(name), int(value)
 
 
-def _price(name: str, value: str, column: int) -> tuple[str | ObjectNode, Fraction]:
+def _price_row(name: str, value: str, column: int) -> tuple[str | ObjectNode, Fraction]:
+    """Return the item of a row, as a label or a node, and its exact price.
+
+    Raises :class:`LineError` at a fault.
+    """
     if not _PRICE.fullmatch(value):
         raise LineError(column, repr(value[:40]), ("a price as a decimal such as 1.99",))
     return parse_name(name), Fraction(value)
 
 
-def _label(name: str, _: str, __: int) -> tuple[str, None]:
+def _label_row(name: str, _: str, __: int) -> tuple[str, None]:
+    """Return the label of a row, which has no value."""
     return name, None
 
 
-RATES = Table("rate", NameKind.MOTION, "a success rate", _rate, "a second success rate for {name!r}")
+RATES = Table("rate", NameKind.MOTION, "a success rate", _rate_row, "a second success rate for {name!r}")
 """``motion⇥0.85``: success rates of motions, decimals above 0 and at most 1, kept exactly."""
 
 DURATIONS = Table(
-    "duration", NameKind.MOTION, "a number of seconds", _duration, "a second duration for {name!r}"
+    "duration", NameKind.MOTION, "a number of seconds", _duration_row, "a second duration for {name!r}"
 )
 """``motion⇥90`` and ``motion⇥25 min⇥passive``: durations of motions, above 0, kept exactly."""
 
 TOOLS = Table(
-    "tool", NameKind.OBJECT, "a number from 1, or free,", _tool, "{value}, and something else above"
+    "tool", NameKind.OBJECT, "a number from 1, or free,", _tool_row, "{value}, and something else above"
 )
 """``NAME⇥2`` and ``NAME⇥free``: how many there are of tools and vessels; ``None`` is for what is free."""
 
-STAYS = Table("stays", NameKind.OBJECT, "stays or used-up", _stays, "{value}, and the opposite above")
+STAYS = Table("stays", NameKind.OBJECT, "stays or used-up", _stays_row, "{value}, and the opposite above")
 """``NAME⇥stays`` and ``NAME⇥used-up``: of items that are used up, which of them stay."""
 
-STOCK = Table("stock", NameKind.OBJECT, "a number of copies", _copies, "a second count for {name!r}")
+STOCK = Table("stock", NameKind.OBJECT, "a number of copies", _copies_row, "a second count for {name!r}")
 """``NODE⇥12``: how many copies of an object node there are."""
 
-PRICES = Table("price", NameKind.OBJECT, "a price", _price, "a second price for {name!r}")
+PRICES = Table("price", NameKind.OBJECT, "a price", _price_row, "a second price for {name!r}")
 """``NAME⇥1.99``: prices of things to buy, with up to nine digits before the point and six behind it."""
 
-UTENSILS = Table("utensil", NameKind.OBJECT, "", _label)
+UTENSILS = Table("utensil", NameKind.OBJECT, "", _label_row)
 """``LABEL``: labels of utensils, one on each line."""
 
 
 def read_utensils(file: Path) -> frozenset[str]:
-    """Read labels of utensils, one on each line."""
+    """Return the labels of utensils in a file, which has one on each line."""
     return frozenset(UTENSILS.read(file))
 
 
 def read_stock(file: Path) -> dict[ObjectNode, int]:
-    """Read how many copies of nodes there are, from a table, or from FOON text.
+    """Return how many copies of nodes there are, from a table, or from FOON text.
 
     In FOON text, each object block counts as one copy, or as its amount. Raises :class:`InputError` for a
     line of another form, and for a node with two different counts in a table.
@@ -174,15 +190,18 @@ def read_stock(file: Path) -> dict[ObjectNode, int]:
 
 
 def read_default_duration(written: str) -> Fraction:
-    """Read the default duration, written as in files; raises :class:`UserError` for another form."""
+    """Return the seconds of the default duration, ``90`` or ``25 min``.
+
+    Raises :class:`UserError` for another form.
+    """
     try:
         return _seconds(written.strip(), 1)
     except LineError as error:
         raise UserError(f"the default duration: {error}") from None
 
 
-def template_text(motions: Mapping[str, Duration | None]) -> str:
-    """Return a file of durations with the placeholder SECONDS for each unknown duration."""
+def duration_template(motions: Mapping[str, Duration | None]) -> str:
+    """Return the text of a file of durations, with the placeholder SECONDS for each ``None``."""
     lines = ["# motion, tab, seconds (or 25 min, 1.5 h); behind another tab passive, if nobody stands by"]
     for motion, duration in motions.items():
         seconds = "SECONDS" if duration is None else decimal_text(Fraction(duration.seconds))

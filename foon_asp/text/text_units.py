@@ -1,4 +1,4 @@
-"""The units of FOON text, and the objects of one that lists them without motions.
+"""Reading of FOON text: its units, or the objects of a list without motions.
 
 A well-formed unit is read by its object blocks, and each distinct block is parsed once. Any other unit is
 read line by line, with remarks.
@@ -12,7 +12,7 @@ from typing import cast
 
 from foon_asp.network import ObjectNode, Source
 from foon_asp.text.amount_mark import is_amount, read_amount
-from foon_asp.text.json_list import before_json
+from foon_asp.text.json_list import fault_before_json
 from foon_asp.text.line import Line, LineError, MotionLine, ObjectLine, StateLine
 from foon_asp.text.line_parser import read_line
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock, ReadUnit, node_of
@@ -26,7 +26,7 @@ _SEPARATOR = "\n//\n"
 
 @dataclass(slots=True)
 class _OpenBlock:
-    """An object block, while lines may still be added."""
+    """An object block to which lines may still be added."""
 
     line: ObjectLine
     states: list[StateLine]
@@ -35,10 +35,10 @@ class _OpenBlock:
 
 
 @lru_cache(50_000)  # of the 11,625 object blocks of the universal FOON, 4,361 are different
-def _clean_node(block: str) -> ObjectNode | None:
-    """Return the node of an object block, given without its first letter.
+def _node_of_clean_block(block: str) -> ObjectNode | None:
+    """Return the node of a well-formed object block, given without its first ``O``; results are cached.
 
-    ``None`` for a block with remarks, and for a goal, whose source has to be recorded.
+    ``None`` stands for a block with remarks, and for a goal, whose source has to be recorded.
     """
     head, line_end, states = block.partition("\n")
     line = read_line(f"O{head}")
@@ -46,26 +46,36 @@ def _clean_node(block: str) -> ObjectNode | None:
         return None
     if not line_end:
         return ObjectNode(line.label)
-    blank = _clean_blank(states)
+    blank = _blank_of_clean_states(states)
     return None if blank is None else ObjectNode(line.label, *blank[1:])
 
 
 @lru_cache(50_000)  # the states under very many objects are the same
-def _clean_blank(states: str) -> ObjectNode | None:
-    """Return a node without label with the attributes of state lines; ``None`` if a line has remarks."""
+def _blank_of_clean_states(states: str) -> ObjectNode | None:
+    """Return a node with an empty label and the attributes of state lines; results are cached.
+
+    Returns ``None`` if one of the lines has a remark or is no state line.
+    """
     lines = map(read_line, states.split("\n"))
     attributes = [line.attribute for line in lines if isinstance(line, StateLine) and not line.remarks]
     return node_of("", attributes) if len(attributes) == states.count("\n") + 1 else None
 
 
-def _clean_nodes(blocks: str) -> list[ObjectNode] | None:
-    """Return the nodes of the object blocks on one side of a unit; ``None`` if a block is not well-formed."""
-    nodes = list(map(_clean_node, blocks.split("\nO")))
+def _nodes_of_clean_blocks(blocks: str) -> list[ObjectNode] | None:
+    """Return the nodes of object blocks, given without the first ``O``.
+
+    Returns ``None`` if one of the blocks is not well-formed.
+    """
+    nodes = list(map(_node_of_clean_block, blocks.split("\nO")))
     return cast(list[ObjectNode], nodes) if all(nodes) else None
 
 
 class TextUnits:
-    """A pass over the text of a file, which may come in pieces whose lines end with a line feed."""
+    """A reader of one FOON text, given in pieces, which can be read once.
+
+    All line ends have to be line feeds. ``file`` is the name of the file in sources. Diagnostics and goal
+    marks are recorded in ``reading``.
+    """
 
     def __init__(self, pieces: Iterable[str], file: str, reading: Reading) -> None:
         self.reading = reading
@@ -79,7 +89,7 @@ class TextUnits:
         self._sections = 0  # between separators, with anything in them, so far
 
     def units(self) -> Iterator[ReadUnit]:
-        """Yield the units in order."""
+        """Yield the units in order, without their lines."""
         for chunk, last in self._chunks():
             unit = None if last else self._clean_unit(chunk)
             if unit:
@@ -87,26 +97,29 @@ class TextUnits:
                 self._sections += 1
                 yield unit
             else:
-                yield from map(_identity, self._line_by_line(chunk, last))
+                yield from map(_without_lines, self._units_line_by_line(chunk, last))
 
     def listed_units(self) -> Iterator[ListedUnit]:
         """Yield the units in order, with their lines as written."""
         for chunk, last in self._chunks():
-            yield from self._line_by_line(chunk, last)
+            yield from self._units_line_by_line(chunk, last)
 
     def objects(self) -> list[ObjectBlock]:
-        """Return the objects of a kitchen or of goals."""
+        """Return the object blocks of a kitchen or of goals; a motion is recorded as a fault."""
         self._objects = []
         for _ in self.listed_units():
             pass
         return self._objects
 
     def _chunks(self) -> Iterator[tuple[str, bool]]:
-        """Yield the text between separators, each chunk with whether it is the last."""
+        """Yield the chunks between lines ``//``, each with whether it is the last; progress is reported.
+
+        If the text is JSON behind other text, this fault is recorded, and there are no chunks.
+        """
         report, unreported = progress_report(), 0
         pieces = [next(self._pieces, "")]
-        if message := before_json(pieces[0]):
-            self._reject_json(message, pieces[0])
+        if message := fault_before_json(pieces[0]):
+            self._reject_text_before_json(message, pieces[0])
             return
         for piece in chain(self._pieces, [""]):
             pieces.append(piece)
@@ -127,60 +140,60 @@ class TextUnits:
         if report:
             report(unreported + len(pieces[0].encode()))
 
-    def _reject_json(self, message: str, text: str) -> None:
-        """Record text before JSON as the only fault of the file."""
-        begins = text.lstrip()
-        line = text[: len(text) - len(begins)].count("\n") + 1
-        self.reading.reject("json", message, Source(self.file, line, 1), split_lines(begins)[0])
+    def _reject_text_before_json(self, message: str, text: str) -> None:
+        """Record ``message`` as the only fault of the file, at its first line that is not blank."""
+        content = text.lstrip()
+        line = text[: len(text) - len(content)].count("\n") + 1
+        self.reading.reject("json", message, Source(self.file, line, 1), split_lines(content)[0])
 
     def _clean_unit(self, chunk: str) -> ReadUnit | None:
-        """Read a unit by its object blocks; ``None`` where it has to be read line by line."""
-        first, copies = self._number, []
+        """Return the unit of a well-formed chunk, read by its object blocks; ``None`` for another chunk."""
+        first_line, copies = self._number, []
         while chunk[:1] == "#":
             comment, line_end, chunk = chunk.partition("\n")
             copy = read_copy(comment)
             if not copy or not line_end:
                 return None
             copies.append(copy)
-            first += 1
+            first_line += 1
         if chunk[:1] != "O":
             return None
-        head, _, tail = chunk.partition("\nM")
-        motion_line, _, tail = tail.partition("\nO")
-        if not (motion_line and tail) or "\n" in motion_line:
+        input_blocks, _, motion_and_outputs = chunk.partition("\nM")
+        motion_line, _, output_blocks = motion_and_outputs.partition("\nO")
+        if not (motion_line and output_blocks) or "\n" in motion_line:
             return None
         motion = read_line(f"M{motion_line}")
         if not isinstance(motion, MotionLine) or motion.remarks:
             return None
-        inputs, outputs = _clean_nodes(head[1:]), _clean_nodes(tail)
+        inputs, outputs = _nodes_of_clean_blocks(input_blocks[1:]), _nodes_of_clean_blocks(output_blocks)
         if inputs is None or outputs is None:
             return None
-        sources = tuple(copies) or (Source(self.file, first, 1, self._videos),)
+        sources = tuple(copies) or (Source(self.file, first_line, 1, self._videos),)
         return ReadUnit(motion.motion, inputs, outputs, sources)
 
-    def _line_by_line(self, chunk: str, last: bool) -> Iterator[ListedUnit]:
-        """Yield the units of a chunk, read line by line.
+    def _units_line_by_line(self, chunk: str, last: bool) -> Iterator[ListedUnit]:
+        """Yield the units of a chunk, read line by line; remarks and faults are recorded.
 
-        Separators with blanks after ``//`` are recognised, too. ``last`` is true for the last chunk of a
-        file.
+        A chunk has several units where blanks stand behind ``//``. ``last`` is true for the last chunk of a
+        file. Videos that comments name are those of the units after them.
         """
         self._lines = lines = chunk.split("\n")
         start = 0
         for index, line in enumerate(lines):
-            first = line[:1]
-            if first == "#" and is_video(line):
+            letter = line[:1]
+            if letter == "#" and is_video(line):
                 video = read_video(line)
                 self._videos = (*(self._videos if self._header_open else ()), *([video] if video else []))
                 self._header_open = True
-            elif first == "/" and line.rstrip(" \t") == "//":
-                unit = self._unit(start, index, closed=True)
+            elif letter == "/" and line.rstrip(" \t") == "//":
+                unit = self._read_unit(start, index, closed=True)
                 if line != "//":
                     self._warn("outer-space", "blanks after // left out", index, 3, "//")
                 if unit:
                     self._header_open = False
                     yield unit
                 start = index + 1
-        unit = self._unit(start, len(lines), closed=not last)
+        unit = self._read_unit(start, len(lines), closed=not last)
         if unit:
             self._header_open = False
             if last:
@@ -189,8 +202,12 @@ class TextUnits:
                 self._warn("missing-separator", message, end, len(lines[end]) + 1)
             yield unit
 
-    def _unit(self, start: int, end: int, closed: bool) -> ListedUnit | None:
-        """Read the lines between two separators as a unit; ``None`` if they are no unit."""
+    def _read_unit(self, start: int, end: int, closed: bool) -> ListedUnit | None:
+        """Return the unit of the lines from index ``start`` to before ``end``; ``None`` if they are no unit.
+
+        ``closed`` is true if ``//`` follows. Goal marks, warnings and faults are recorded. In a list without
+        motions, the objects are collected instead.
+        """
         section = _Section(end, closed, self.reading.left_out)
         for index in range(start, end):
             line = self._lines[index]
@@ -199,33 +216,36 @@ class TextUnits:
                 copy = read_copy(line)
                 section.copies += [copy] if copy else []
                 if is_amount(line):
-                    self._amount(section, index)
+                    self._add_amount(section, index)
             elif letter and not line.isspace():
-                if section.first < 0:
-                    section.first = index
-                self._line(section, index)
-        if section.first < 0:
+                if section.first_index < 0:
+                    section.first_index = index
+                self._add_line(section, index)
+        if section.first_index < 0:
             return None
         self._sections += 1
         if self._objects is not None:
-            self._objects += _blocks(section.inputs + section.outputs)
+            self._objects += _closed_blocks(section.inputs + section.outputs)
             return None
         if len(section.motions) != 1 or not section.inputs:
             self._warn_of_no_unit(section)
             return None
         index, motion = section.motions[0]
         if not section.outputs:
-            self._warn("no-outputs", f"the unit {motion.motion!r} has no output objects", section.first)
-        inputs, outputs = _blocks(section.inputs), _blocks(section.outputs)
+            self._warn("no-outputs", f"the unit {motion.motion!r} has no output objects", section.first_index)
+        inputs, outputs = _closed_blocks(section.inputs), _closed_blocks(section.outputs)
         for block in (*inputs, *outputs):
             if block.object.is_goal:
                 self.reading.marked.setdefault(block.node, block.source)
-        sources = tuple(section.copies) or (self._source(section.first)._replace(videos=self._videos),)
+        sources = tuple(section.copies) or (self._source(section.first_index)._replace(videos=self._videos),)
         return ListedUnit(motion, inputs, outputs, sources, self._source(index))
 
-    def _amount(self, section: "_Section", index: int) -> None:
-        """Add the amount of a comment to the object above it, or record its fault."""
-        if section.lost:
+    def _add_amount(self, section: "_Section", index: int) -> None:
+        """Set the amount of the current object to that in a comment line, or record the line as a fault.
+
+        An amount of an object that could not be read is dropped.
+        """
+        if section.object_unreadable:
             self.reading.left_out += self.reading.lenient
             return
         if section.block is None or section.block.amount is not None:
@@ -238,27 +258,30 @@ class TextUnits:
         except LineError as error:
             self._reject("amount", str(error), index, error.column)
 
-    def _line(self, section: "_Section", index: int) -> None:
-        """Add a line to its section; record a fault if the line is broken or out of place."""
+    def _add_line(self, section: "_Section", index: int) -> None:
+        """Add an object, state or motion line to its section.
+
+        A line that is broken or out of place is recorded as a fault. So are slips in any line, as warnings.
+        """
         line = self._lines[index]
         parsed = read_line(line)
         if isinstance(parsed, LineError):
             self._reject("syntax", str(parsed), index, parsed.column)
-            section.lost = section.lost or line[0] == "O"
-            section.blamed = section.blamed or line[0] != "S"
+            section.object_unreadable = section.object_unreadable or line[0] == "O"
+            section.has_error = section.has_error or line[0] != "S"
             return
-        self._remark(parsed, index)
+        self._report_remarks(parsed, index)
         if isinstance(parsed, StateLine):
-            if section.lost:
+            if section.object_unreadable:
                 self.reading.left_out += self.reading.lenient
             elif section.block is None:
                 message = "found a state line, expected an object line before it"
                 self._reject("state-without-object", message, index)
-                section.blamed = True
+                section.has_error = True
             else:
                 section.block.states.append(parsed)
             return
-        section.lost = False
+        section.object_unreadable = False
         if isinstance(parsed, ObjectLine):
             section.block = _OpenBlock(parsed, [], self._source(index))
             (section.outputs if section.motions else section.inputs).append(section.block)
@@ -271,13 +294,13 @@ class TextUnits:
         elif len(section.motions) > 1:
             message = "found a second motion in one unit, expected an object line or //"
             self._reject("second-motion", message, index)
-            section.blamed = True
+            section.has_error = True
 
     def _warn_of_no_unit(self, section: "_Section") -> None:
-        """Warn that lines are no unit, unless an error among them explains it already."""
-        if section.blamed and not self.reading.lenient:
+        """Warn that lines are no unit, and count them as left out, unless a recorded error explains it."""
+        if section.has_error and not self.reading.lenient:
             return
-        lines, first = self._lines, section.first
+        lines, first = self._lines, section.first_index
         meaningful = [i for i in range(first, section.end) if lines[i].strip() and lines[i][0] != "#"]
         self.reading.left_out = section.left_out + len(meaningful)
         unit = f"the unit of line {self._number + first}"
@@ -287,17 +310,18 @@ class TextUnits:
             message = f"found a motion, expected an object line before it: {unit} has no input objects"
             self._warn("no-inputs", message + "; left out", section.motions[0][0])
         elif not section.closed and self._sections == 1:
-            self._warn("no-motion", no_motion(len(section.inputs)), first)
+            self._warn("no-motion", no_motion_message(len(section.inputs)), first)
         else:
             fault = "found //" if section.closed else "the file ends"
             message = f"{fault}, expected a motion line: {unit} has no motion; left out"
             self._warn("no-motion", message, section.end if section.closed else meaningful[-1])
 
     def _source(self, index: int, column: int = 1) -> Source:
+        """Return the source of the line at an index of the chunk."""
         return Source(self.file, self._number + index, column)
 
-    def _remark(self, line: Line, index: int) -> None:
-        """Report the remarks on a line, with the line in canonical form as their fix."""
+    def _report_remarks(self, line: Line, index: int) -> None:
+        """Record the remarks on a line as warnings, with the line in canonical form as their fix."""
         if line.remarks:
             mended = write_line(line)
             fix = mended if mended != self._lines[index] else None
@@ -305,48 +329,59 @@ class TextUnits:
                 self._warn(code, message, index, column, fix)
 
     def _warn(self, code: str, message: str, index: int, column: int = 1, fix: str | None = None) -> None:
+        """Record a warning about the line at an index of the chunk."""
         line = self._lines[index] if index < len(self._lines) else "//"
         self.reading.warn(code, message, self._source(index, column), line, fix)
 
     def _reject(self, code: str, message: str, index: int, column: int = 1) -> None:
+        """Record a fault of the line at an index of the chunk.
+
+        If ``lenient``, it is a warning, and the line counts as left out.
+        """
         self.reading.left_out += self.reading.lenient
         self.reading.reject(code, message, self._source(index, column), self._lines[index])
 
 
 class _Section:
-    """The lines between two separators, while they are read one by one; positions are indices of lines.
+    """The lines between two separators ``//``, while they are read one by one.
 
+    ``end``: the index behind the last line.
+    ``first_index``: the index of the first line with content; -1 without one.
+    ``closed``: true if ``//`` follows.
+    ``motions``: the motion lines, each with its index.
+    ``copies``: the sources that comment lines name.
     ``block``: the block of the current object line; ``None`` before the first object line.
-    ``lost``: true if the current object line cannot be read; the states under it are then left out.
-    ``blamed``: true if an error in a line may be the reason for a missing motion or object.
+    ``object_unreadable``: true if the current object line cannot be read. The states under it are left out.
+    ``has_error``: true if an error in a line may be the reason for a missing motion or object.
     ``left_out``: the number of lines of the file that were left out before this section.
     """
 
     def __init__(self, end: int, closed: bool, left_out: int) -> None:
         self.end, self.closed, self.left_out = end, closed, left_out
-        self.first = -1
+        self.first_index = -1
         self.motions: list[tuple[int, MotionLine]] = []
         self.inputs: list[_OpenBlock] = []
         self.outputs: list[_OpenBlock] = []
         self.copies: list[Source] = []
         self.block: _OpenBlock | None = None
-        self.lost = self.blamed = False
+        self.object_unreadable = self.has_error = False
 
 
-def no_motion(objects: int) -> str:
-    """Return the warning about a file of objects alone where a network was expected."""
+def no_motion_message(objects: int) -> str:
+    """Return the warning that a file of objects alone stands where a network was expected."""
     listed = "one object" if objects == 1 else f"{objects} objects"
     return f"{listed} and no motion: a list such as a kitchen or goals, without units"
 
 
-def _blocks(open_blocks: list[_OpenBlock]) -> tuple[ObjectBlock, ...]:
+def _closed_blocks(open_blocks: list[_OpenBlock]) -> tuple[ObjectBlock, ...]:
+    """Return object blocks to which no more lines will be added."""
     return tuple(
         ObjectBlock(block.line, tuple(block.states), block.source, block.amount) for block in open_blocks
     )
 
 
-def _identity(unit: ListedUnit) -> ReadUnit:
-    """Return a unit without its lines; a node that is listed twice counts once."""
+def _without_lines(unit: ListedUnit) -> ReadUnit:
+    """Return a unit without its lines; a node that is listed twice has its greatest amount."""
     if all(block.amount is None for block in (*unit.inputs, *unit.outputs)):
         return unit.identity
     return unit.identity._replace(amounts=unit.without_repeats.amounts)

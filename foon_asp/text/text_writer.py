@@ -1,4 +1,4 @@
-"""Writing units and objects as FOON text of a dialect."""
+"""Writing of units and objects as FOON text of a dialect."""
 
 from collections.abc import Sequence
 
@@ -16,7 +16,10 @@ from foon_asp.text.writer import write_line
 
 
 class TextWriter:
-    """A writer of FOON text, which reads each line back: names from JSON may mean something else in text."""
+    """A writer of FOON text, which reads each line back: names from JSON may mean something else in text.
+
+    See :class:`~foon_asp.text.format.Writer` for its methods.
+    """
 
     holds_prices = holds_no_inputs = False
 
@@ -25,28 +28,28 @@ class TextWriter:
         self._numbering = numbering
 
     def block(self, block: ObjectBlock, in_list: bool) -> WrittenPart:
-        """Write an object block."""
-        parts = list(map(self._line, block.lines))
+        """Return the lines of an object block, and its losses; an amount of 1 is written only in a list."""
+        parts = list(map(self._line_text, block.lines))
         mark = ""
         if block.amount is not None and (in_list or block.amount > 1):
             mark = write_amount(block.amount)
         return "".join(text for text, _ in parts) + mark, [loss for _, lost in parts for loss in lost]
 
     def motion(self, line: MotionLine) -> WrittenPart:
-        """Write a motion line."""
-        return self._line(line)
+        """Return the line of a motion, and its losses."""
+        return self._line_text(line)
 
     def unit(self, inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str) -> str:
-        """Put a unit together, the closing ``//`` included."""
+        """Return the lines of a unit from its parts, with a closing ``//``; ``price`` is lost."""
         return "".join((*inputs, motion, *outputs, "//\n"))
 
     def network(self, units: Sequence[str], videos: Sequence[str]) -> str:
-        """Put a file together, the videos at its top."""
+        """Return the text of a file from its units; lines ``# Source:`` at its top name the videos."""
         header = "".join(f"# Source:\t{video}\n" for video in videos) + "//\n" if videos else ""
         return header + "".join(units)
 
     def objects(self, parts: Sequence[str]) -> str:
-        """Put a list together."""
+        """Return the text of a list of objects."""
         return "".join(parts)
 
     def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
@@ -54,9 +57,12 @@ class TextWriter:
         return tuple(video for video in videos if read_video(f"# Source:\t{video}") == video)
 
     def in_dialect(self, line: Line) -> Line:
-        """Return a line with only the parts that the dialect can hold."""
+        """Return a line with only the parts that the dialect can hold, and in ``IDS`` with an id.
+
+        Remarks are removed. Times become one field or two, as the dialect has them.
+        """
         line = line._replace(remarks=())
-        line = with_word(line) if isinstance(line, StateLine) else line
+        line = with_container_word(line) if isinstance(line, StateLine) else line
         line = self._numbering.number(line) if self._target is Dialect.IDS else line._replace(id="")
         if self._target is Dialect.PLAIN:
             if isinstance(line, ObjectLine):
@@ -68,22 +74,22 @@ class TextWriter:
             return line._replace(fields=motion_fields._replace(times=convert(motion_fields.times)).fields)
         return line
 
-    def _line(self, line: Line) -> WrittenPart:
-        """Return a line as text, and what is lost in it.
+    def _line_text(self, line: Line) -> WrittenPart:
+        """Return the text of a line in the dialect, with its line end, and its losses.
 
-        Raises :class:`CannotHoldError` where the line cannot be read back.
+        Raises :class:`CannotHoldError` where the text would not be read back with the same meaning.
         """
         written = write_line(self.in_dialect(line))
         if any("\ud800" <= c <= "\udfff" for c in written):
             raise CannotHoldError(f"{written!r} contains half a character")
-        back = read_line(written) if "\n" not in written and "\r" not in written else None
-        if back is None or isinstance(back, LineError):
+        read_back = read_line(written) if "\n" not in written and "\r" not in written else None
+        if read_back is None or isinstance(read_back, LineError):
             raise CannotHoldError(f"{written!r} is no line of FOON text")
-        return written + "\n", lost_in_line(line, back)
+        return written + "\n", lost_in_line(line, read_back)
 
 
-def with_word(line: StateLine) -> StateLine:
-    """Return a state line; a container without a word gets the word ``in``."""
+def with_container_word(line: StateLine) -> StateLine:
+    """Return a state line in which a relation without a word, a container, has the word ``in``."""
     if isinstance(line.attribute, Relation) and not line.attribute.word:
         return line._replace(attribute=line.attribute._replace(word="in"))
     return line

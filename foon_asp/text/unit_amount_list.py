@@ -1,4 +1,4 @@
-"""Amounts of units: ``unit_amounts.txt``, a motion, an object node and how many of it on each line."""
+"""The table ``unit_amounts.txt``: on each line a motion, a node, and its amount in units of the motion."""
 
 import re
 
@@ -6,16 +6,16 @@ from foon_asp.network import MAX_AMOUNT
 from foon_asp.text.line import LineError, NameKind
 from foon_asp.text.line_parser import parse_node
 from foon_asp.text.stated_amounts import UnitAmount
-from foon_asp.text.tables import motion_column
+from foon_asp.text.tables import motion_in_first_column
 from foon_asp.text.value_table import Table
 
 _ARROWS = ("→", "->")
 _AMOUNT = re.compile(r"[1-9]\d{0,6}", re.ASCII)
 
 
-def _row(name: str, value: str, column: int) -> tuple[UnitAmount, int]:
-    """Read a row of amounts of units."""
-    motion = motion_column(name, "an object node")
+def _amount_row(name: str, value: str, column: int) -> tuple[UnitAmount, int]:
+    """Return motion, side and node of a row, and the amount; raises :class:`LineError` at a fault."""
+    motion = motion_in_first_column(name, "an object node")
     *fields, written = value.split("\t")
     written = written.strip()
     if not _AMOUNT.fullmatch(written) or int(written) > MAX_AMOUNT:
@@ -32,7 +32,7 @@ UNIT_AMOUNTS = Table(
     "unit-amount",
     NameKind.MOTION,
     "an object node, a tab and its amount",
-    _row,
+    _amount_row,
     "a second amount for {name!r}",
 )
 """``motion⇥NODE⇥2`` and ``motion⇥→⇥NODE⇥4``: how many of an input or output units of a motion have."""

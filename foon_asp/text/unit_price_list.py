@@ -1,4 +1,4 @@
-"""Prices of units: ``unit_prices.txt``, a motion or a single unit and its price on each line."""
+"""The table ``unit_prices.txt``: on each line a motion or a single unit, and its price."""
 
 from fractions import Fraction
 from pathlib import Path
@@ -8,14 +8,14 @@ from foon_asp.network import FunctionalUnit, ObjectNode, Source, UnitPrices, in_
 from foon_asp.text.exact_number import decimal_text, read_price
 from foon_asp.text.line import LineError, NameKind
 from foon_asp.text.line_parser import parse_node
-from foon_asp.text.tables import motion_column
+from foon_asp.text.tables import motion_in_first_column
 from foon_asp.text.value_table import Table
 
 _ARROWS = ("→", "->")
 
 
 class UnitPriceList(NamedTuple):
-    """The prices of a file by motion and by unit, with the sources of the units."""
+    """The prices of a file by motion and by single unit, and the sources of the prices by unit."""
 
     motions: dict[str, Fraction]
     units: dict[FunctionalUnit, Fraction]
@@ -23,10 +23,11 @@ class UnitPriceList(NamedTuple):
 
 
 def read_unit_prices(file: Path) -> UnitPriceList:
-    """Read ``motion⇥price`` lines, and ``motion⇥input⇥...⇥→⇥output⇥...⇥price`` for single units.
+    """Return the prices in a file of lines ``motion⇥price``, or for single units with their nodes.
 
-    Nodes are in one-line notation; ``->`` may stand for ``→``. Raises :class:`InputError` for a line of
-    another form, and for a motion or a unit with two different prices.
+    A single unit is written ``motion⇥input⇥...⇥→⇥output⇥...⇥price``. Nodes are in one-line notation; ``->``
+    may stand for ``→``. Raises :class:`InputError` for a line of another form, and for a motion or a unit
+    with two different prices.
     """
     price_list = UnitPriceList({}, {}, {})
     for name, price, source in UNIT_PRICES.rows(file):
@@ -37,38 +38,42 @@ def read_unit_prices(file: Path) -> UnitPriceList:
     return price_list
 
 
-def _row(name: str, value: str, column: int) -> tuple[str | FunctionalUnit, Fraction]:
-    motion = motion_column(name, "a price")
+def _price_row(name: str, value: str, column: int) -> tuple[str | FunctionalUnit, Fraction]:
+    """Return the motion or the single unit of a row, and its price; raises :class:`LineError` at a fault."""
+    motion = motion_in_first_column(name, "a price")
     *fields, written = value.split("\t")
     price = read_price(written.strip(), column + len(value) - len(written))
-    return _unit(motion, fields, column) if fields else motion, price
+    return _parse_unit(motion, fields, column) if fields else motion, price
 
 
-UNIT_PRICES = Table("unit-price", NameKind.MOTION, "a price", _row, "a second price for {name!r}")
+UNIT_PRICES = Table("unit-price", NameKind.MOTION, "a price", _price_row, "a second price for {name!r}")
 
 
 def write_unit_prices(prices: UnitPrices) -> str:
-    """Return the text of a file of prices."""
+    """Return the text of a file that :func:`read_unit_prices` reads as these prices."""
     lines = [f"{motion}\t{decimal_text(price)}\n" for motion, price in prices.motions.items()]
     for unit, price in prices.units.items():
         fields = [
             unit.motion,
-            *map(_field, unit.inputs),
+            *map(_node_field, unit.inputs),
             _ARROWS[0],
-            *map(_field, unit.outputs),
+            *map(_node_field, unit.outputs),
             decimal_text(price),
         ]
         lines.append("\t".join(fields) + "\n")
     return "".join(lines)
 
 
-def _field(node: ObjectNode) -> str:
-    """Write a node as a field; a label that is an arrow is quoted."""
+def _node_field(node: ObjectNode) -> str:
+    """Return a node as a field of a row; a label that is an arrow is in quotes."""
     return in_quotes(node.label) if str(node) in _ARROWS else str(node)
 
 
-def _unit(motion: str, fields: list[str], column: int) -> FunctionalUnit:
-    """Read a unit from its input, arrow and output fields, which begin at a column."""
+def _parse_unit(motion: str, fields: list[str], column: int) -> FunctionalUnit:
+    """Return the unit of a motion and the fields of its inputs, an arrow and its outputs.
+
+    ``column`` is where the fields begin. Raises :class:`LineError` at a fault.
+    """
     sides: list[list[ObjectNode]] = [[]]
     for field in fields:
         if field.strip() in _ARROWS:

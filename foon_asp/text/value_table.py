@@ -22,13 +22,13 @@ class Row(NamedTuple, Generic[K, V]):
 
 
 class Table(NamedTuple, Generic[K, V]):
-    """The description of a kind of table.
+    """A kind of table: how its rows are read, and the words for it in messages.
 
     ``code``: the code of diagnostics about the table.
     ``names``: the kind of the names in the first column.
     ``expected``: the noun for the value after the tab; empty for a table of one column.
-    ``row``: a function from the name, the text after the tab and the column of this text to the name and the
-    value as read; raises :class:`LineError`.
+    ``row``: a function that reads a row. Its parameters are the name, the text after the tab, and the column
+    of this text. It returns name and value as read, or raises :class:`LineError`.
     ``second``: the message about a name with two values.
     """
 
@@ -39,20 +39,21 @@ class Table(NamedTuple, Generic[K, V]):
     second: str = ""
 
     def rows(self, file: Path, text: str | None = None) -> list[Row[K, V]]:
-        """Return the rows of a file, or of its ``text`` if given, each name once.
+        """Return the first row of each name in a file, or in ``text`` in place of its content.
 
         Blank lines and ``#`` comments are skipped. Raises :class:`InputError` with every line of another
         form, and with every line that gives another value to a name than an earlier line.
         """
         rows_by_name: dict[K, Row[K, V]] = {}
 
-        def read(name: str, value: str, source: Source) -> None:
+        def add_row(name: str, value: str, source: Source) -> None:
+            """Record a row; raises :class:`LineError` if its name has another value already."""
             row = Row(*self.row(name.strip(), value, len(name) + 2), source)
             if rows_by_name.setdefault(row.name, row).value != row.value:
                 second = self.second.format(name=str(row.name), value=value)
                 raise LineError(len(name) + 2 + value.rfind("\t") + 1, second, ("one",))
 
-        read_rows(file, self.code, self.expected, read, text)
+        read_rows(file, self.code, self.expected, add_row, text)
         return list(rows_by_name.values())
 
     def read(self, file: Path) -> dict[K, V]:
@@ -69,8 +70,8 @@ def read_rows(
 ) -> None:
     """Call ``read`` with each line of a file: the name before the tab, the value behind it, and the source.
 
-    The file is not read if its ``text`` is given. Blank lines and ``#`` comments are skipped. If ``expected``
-    is empty, a line is a name without a tab and a value.
+    ``text``, if given, is read in place of the file. Blank lines and ``#`` comments are skipped. If
+    ``expected`` is empty, a line is a name without a tab and a value.
 
     Raises :class:`InputError` with diagnostics of this ``code``: for each line without a required tab, and
     for each line for which ``read`` raises :class:`LineError`.

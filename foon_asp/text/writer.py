@@ -1,4 +1,4 @@
-"""Writing FOON text: lines as they were read, and units without ids, flags or times."""
+"""Writing of FOON text: lines as they were read, and nodes and units without ids, flags or times."""
 
 import re
 from collections.abc import Iterable
@@ -24,9 +24,10 @@ from foon_asp.text.listed_unit import node_of
 
 
 def write_line(line: Line) -> str:
-    """Return the canonical text of a line, which is unchanged for a line read without a remark.
+    """Return the canonical text of a line, without line end.
 
-    Ids, fields and the order of ingredients are kept, but not the parts that were left out with a remark.
+    It is unchanged for a line that was read without a remark. Ids, fields and the order of ingredients are
+    kept. Parts that were left out with a remark are missing.
     """
     if isinstance(line, ObjectLine):
         return "\t".join((f"O{line.id}", line.label, *line.fields))
@@ -41,44 +42,50 @@ def write_line(line: Line) -> str:
 
 
 def write_node(node: ObjectNode) -> str:
-    """Return the object block of a node: its object line and, sorted, its state lines.
+    """Return the lines of a node: its object line and, sorted, its state lines.
 
     Raises :class:`UserError` for a name that means something else in FOON text.
     """
     states = [*map(StateLine, sorted(node.states)), *map(StateLine, sorted(node.relations))]
     states += [StateLine(contents, listed=contents.ingredients) for contents in node.contents]
-    written = [_readable(line) for line in (ObjectLine(node.label), *states)]
+    written = [_line_if_readable(line) for line in (ObjectLine(node.label), *states)]
     if None in written or node_of(node.label, [state.attribute for state in states]) != node:
         raise UserError(f"the object node {str(node)!r} has a name that FOON text cannot hold; JSON can")
     return "".join(filter(None, written))
 
 
-def counted_node(node: ObjectNode, amount: int | None) -> str:
-    """Return the object block of a node, with its amount unless ``amount`` is ``None``."""
+def write_counted_node(node: ObjectNode, amount: int | None) -> str:
+    """Return the lines of a node, and the line of its amount unless this is ``None``.
+
+    Raises :class:`UserError` for a name that means something else in FOON text.
+    """
     return write_node(node) + ("" if amount is None else write_amount(amount))
 
 
 def write_motion(motion: str) -> str:
-    """Return the line of a motion; raises :class:`UserError` for a name that FOON text cannot hold."""
-    written = _readable(MotionLine(motion))
+    """Return the line of a motion, with its line end.
+
+    Raises :class:`UserError` for a name that FOON text cannot hold.
+    """
+    written = _line_if_readable(MotionLine(motion))
     if written is None:
         raise UserError(f"the motion {motion!r} is a name that FOON text cannot hold; JSON can")
     return written
 
 
 @lru_cache(10_000, typed=True)  # many units have equal lines
-def _readable(line: Line) -> str | None:
-    """Return the text of a line; ``None`` where it would not be read back as the same line."""
+def _line_if_readable(line: Line) -> str | None:
+    """Return the text of a line with its line end; ``None`` if it is not read back as the same line."""
     written = write_line(line)
     try:
-        back = None if "\n" in written or "\r" in written else parse_line(written)._replace(remarks=())
+        read_back = None if "\n" in written or "\r" in written else parse_line(written)._replace(remarks=())
     except LineError:
         return None
-    return f"{written}\n" if back == line and encodable(written) == written else None
+    return f"{written}\n" if read_back == line and encodable(written) == written else None
 
 
 def write_unit(unit: FunctionalUnit, amounts: UnitAmounts = ALL_ONE) -> str:
-    """Return the lines of a unit with its amounts, the closing ``//`` included.
+    """Return the lines of a unit with its amounts, and a closing ``//``.
 
     Raises :class:`UserError` for a unit that cannot be read back: without inputs, or with names that FOON
     text cannot hold.
@@ -86,7 +93,7 @@ def write_unit(unit: FunctionalUnit, amounts: UnitAmounts = ALL_ONE) -> str:
     if not unit.inputs:
         raise UserError(f"the unit {unit.motion!r} has no inputs, which FOON text cannot hold; JSON can")
     inputs, outputs = (
-        "".join(counted_node(node, amounts_of_side.get(node)) for node in nodes)
+        "".join(write_counted_node(node, amounts_of_side.get(node)) for node in nodes)
         for nodes, amounts_of_side in zip((unit.inputs, unit.outputs), amounts, strict=True)
     )
     return f"{inputs}{write_motion(unit.motion)}{outputs}//\n"

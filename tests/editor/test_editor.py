@@ -144,7 +144,7 @@ def test_renaming_formatting_and_quick_fixes(client: LanguageClient, tmp_path: P
         text.ask("rename", 0, 4, newName="[x]")
     options = {"tabSize": 4, "insertSpaces": False}
     formatted = edited(text.text, text.whole("formatting", options=options))
-    assert formatted == format_of(source).normalised(source, "soup.txt")
+    assert formatted == format_of(source).canonical_text(source, "soup.txt")
     # quick fixes, each of which is taken
     everything = {"start": {"line": 0, "character": 0}, "end": {"line": 99, "character": 0}}
     actions = text.whole("codeAction", range=everything, context={"diagnostics": []})

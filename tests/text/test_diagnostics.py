@@ -10,8 +10,8 @@ from foon_asp.text.diagnostics import (
     Diagnostic,
     InputError,
     Severity,
+    brief_summary,
     excerpt_with_caret,
-    in_brief,
     summarize,
 )
 from tests.text.foon_strategies import steady
@@ -76,13 +76,13 @@ def test_an_input_error_shows_the_first_errors_and_counts_the_rest(count: int, s
 
 def test_in_brief_few_are_told_and_many_are_counted() -> None:
     few = [warning(line, code) for line in (3, 8) for code in ("time", "motion-flag", "outer-space")]
-    assert in_brief(few) == summarize(few)
+    assert brief_summary(few) == summarize(few)
     many = [*few, warning(9, "time"), warning(4, "syntax", "my kitchen.txt")]
-    assert in_brief(many) == [
+    assert brief_summary(many) == [
         "warning: 8 remarks on the data (3 time, 2 motion-flag, 2 outer-space, 1 syntax); "
         "see foon-asp lint f.txt 'my kitchen.txt'"
     ]
-    assert in_brief([]) == []
+    assert brief_summary([]) == []
 
 
 def test_each_kind_in_each_file_is_told_once_with_the_lines_of_the_others() -> None:
@@ -94,7 +94,7 @@ def test_each_kind_in_each_file_is_told_once_with_the_lines_of_the_others() -> N
         warning(2, "outer-space"),
         warning(9, "outer-space"),
     ]
-    assert summarize(found, places=1) == [
+    assert summarize(found, max_lines=1) == [
         f"{found[0]}\n    2 warnings of this kind (time); others on line 6",
         f"{found[1]}\n    3 warnings of this kind (outer-space); others on line 2, ...",
         str(found[3]),

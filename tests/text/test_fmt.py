@@ -39,7 +39,7 @@ LEFT_ALONE = [
 
 
 def format_text(text: str, file: str, lenient: bool = False) -> str:
-    return format_of(text, file).normalised(text, file, lenient)
+    return format_of(text, file).canonical_text(text, file, lenient)
 
 
 def network(text: str) -> list[ReadUnit]:

@@ -51,7 +51,7 @@ def test_a_line_as_it_should_be_is_understood_and_stays(line: str, meaning: str)
     (unit,), reader = read(text)
     assert reader.diagnostics == []
     assert (unit.motion if line[0] == "M" else str(unit.inputs[0])) == meaning
-    assert format_of(text).normalised(text, "f.txt") == text
+    assert format_of(text).canonical_text(text, "f.txt") == text
 
 
 @pytest.mark.parametrize(

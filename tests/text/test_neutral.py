@@ -126,8 +126,8 @@ def test_it_is_written_and_read_back(cli: Cli, tmp_path: Path) -> None:
     assert "1  times" in there.err
     file = written(tmp_path)
     lines = format_of(TEXT, "net.jsonl")
-    assert cli("convert", str(file), "--to", "neutral").out == lines.normalised(TEXT, "net.jsonl") == TEXT
-    assert lines.normalised(TEXT.replace(", ", " ,"), "net.jsonl") == TEXT
+    assert cli("convert", str(file), "--to", "neutral").out == lines.canonical_text(TEXT, "net.jsonl") == TEXT
+    assert lines.canonical_text(TEXT.replace(", ", " ,"), "net.jsonl") == TEXT
     priced = written(
         tmp_path, '[{"input_nodes": [{"label": "a"}], "motion_node": "m", "output_nodes": [], "price": ".5"}]'
     )

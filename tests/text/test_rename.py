@@ -28,8 +28,8 @@ IDS = (
 def renamed(text: str, kind: str, old: str, new: str, file: str = "a.txt") -> str:
     renaming = Renaming(Rename(kind, old, new))
     format_ = format_of(text, file)
-    renaming.learn(format_.names(text, file))
-    return format_.renamed(text, file, renaming)
+    renaming.learn(format_.mentions(text, file))
+    return format_.renamed_text(text, file, renaming)
 
 
 def test_lines_keep_everything_else() -> None:
@@ -81,7 +81,7 @@ def test_what_is_read_is_what_was_read_with_another_name(
         text = plain
     reader = FoonReader()
     before = [unit for unit, _ in reader.tree_units(text, "a.txt")]
-    names = sorted({(str(kind), name) for kind, name, _ in format_of(text).names(text, "a.txt")})
+    names = sorted({(str(kind), name) for kind, name, _ in format_of(text).mentions(text, "a.txt")})
     if not names:
         return
     kind, old = data.draw(st.sampled_from(names))
@@ -98,7 +98,9 @@ def test_the_word_of_ingredients_in_json_is_no_state() -> None:
     node = {"label": "cup", "states": ["contains", "contains"], "ingredients": ["milk"]}
     text = json.dumps([node, {"label": "jar", "states": ["contains"], "ingredients": ["none"]}])
     kinds = [
-        str(mention.kind) for mention in format_of(text).names(text, "a.json") if mention.name == "contains"
+        str(mention.kind)
+        for mention in format_of(text).mentions(text, "a.json")
+        if mention.name == "contains"
     ]
     assert kinds == ["relation", "state", "state"]
     assert json.loads(renamed(text, "state", "contains", "full"))[0]["states"] == ["contains", "full"]

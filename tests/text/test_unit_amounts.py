@@ -138,10 +138,10 @@ def test_every_dialect_keeps_amounts(tmp_path_factory: pytest.TempPathFactory, d
         path.write_text(text, encoding="utf-8", newline="")
         reader = FoonReader()
         merged = reader.read_network([path])
-        assert reader.amounts.settled(merged) == DataAmounts(expected)
+        assert reader.amounts.amounts_by_unit(merged) == DataAmounts(expected)
         path.write_text("".join(merged_text(merged, "a", expected)), encoding="utf-8", newline="")
         again = FoonReader()
-        assert again.amounts.settled(again.read_network([path])) == DataAmounts(expected)
+        assert again.amounts.amounts_by_unit(again.read_network([path])) == DataAmounts(expected)
 
 
 @pytest.mark.filterwarnings("ignore:note. 1 unit lists:foon_asp.FoonWarning")
