@@ -15,7 +15,7 @@ from foon_asp.batch.question_file import each_question, named_files, read_questi
 from foon_asp.batch.run_summary import RunSummary
 from foon_asp.batch.workers import answer_all
 from foon_asp.cli import shared_options
-from foon_asp.cli.batch_data import Opening, digest, measured
+from foon_asp.cli.batch_data import Opening, data_digest, measure_names
 from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath, WrittenPath
@@ -84,16 +84,19 @@ def command(
     with 3 when a limit stopped some, or ctrl-C the run.
     """
     check_outputs()
-    data["folder"], data["network"] = shared_options.with_sources(sources, data["folder"], data["network"])
-    measures = measured(data)
+    data["folder"], data["network"] = shared_options.folder_and_networks(
+        sources, data["folder"], data["network"]
+    )
+    measures = measure_names(data)
     lines = read_questions(questions, time_limit, measures)
     files = named_files(lines)
     refuse_inputs(results_file, files)
-    opening = Opening(tuple(data.items()), digest(data, files))
+    opening = Opening(tuple(data.items()), data_digest(data, files))
     opened = opening(quiet=False)
     distinct = list(each_question(lines, opened))
 
     def warn(message: str) -> None:
+        """Print a warning to standard error."""
         click.echo(message, err=True)
 
     settings = Settings(constraints, encodings, constants)
@@ -140,6 +143,7 @@ def command(
 
 
 def _exit_code(statuses: dict[str, int], interrupted: bool) -> ExitCode:
+    """Return the exit code for the number of questions by status, and for a run that ctrl-C ended."""
     if interrupted or statuses.keys() & {"feasible", "unknown"}:
         return ExitCode.LIMIT
     return ExitCode.NEGATIVE if "failed" in statuses else ExitCode.DONE

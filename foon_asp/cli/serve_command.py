@@ -21,11 +21,15 @@ _FILE_OPTIONS = {"output": "-o", "format_": "--format"}
 
 
 def with_serve_option(command: Callable[..., ExitCode], question: Question) -> Callable[..., ExitCode]:
-    """Return the command of ``view`` with the option ``--serve``."""
+    """Add the option ``--serve`` to the command of ``view``.
+
+    The options of the ``question`` are for the page; all others are for the data.
+    """
     option_names = {option.name for option in question.options}
 
     @functools.wraps(command)
     def answer_or_serve(serve: bool, **values: Any) -> ExitCode:
+        """Serve the page if ``serve``, else call the command."""
         if not serve:
             return command(**values)
         for name, flag in _FILE_OPTIONS.items():
@@ -40,7 +44,11 @@ def with_serve_option(command: Callable[..., ExitCode], question: Question) -> C
 
 
 def _serve(question: dict[str, Any], data: dict[str, Any], deadline: Deadline) -> ExitCode:
-    """Serve the page until ctrl-C, with the options of a question and of data."""
+    """Serve the page until ctrl-C.
+
+    ``question`` and ``data`` are the values of options by name. The ``deadline`` says the limits of each
+    answer. Raises :class:`UserError` if a package is missing, or for wrong rules.
+    """
     try:
         from foon_asp.serve.desk import Desk
         from foon_asp.serve.form import Form
