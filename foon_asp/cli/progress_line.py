@@ -82,7 +82,7 @@ class Progress(Reporter):
         self._costs = costs
 
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
-        """Store a bound; store it also as the first, with its time, if no bound of its objective came before."""
+        """Store a bound; the first of an objective is also stored as such, with its time."""
         if self._bound is None or self._bound[0] != objective:
             self._first_bound = (bound, time.monotonic())
         self._bound = (objective, bound)

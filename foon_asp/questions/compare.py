@@ -73,11 +73,14 @@ class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("c
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if every optimum is proved."""
+        """``DONE`` if every optimum is proved, else ``LIMIT``."""
         return Ending.DONE if self.proved else Ending.LIMIT
 
     def show(self) -> Iterator[Block]:
-        """Return the table, and for many goals a summary; trees, where they are asked for."""
+        """Yield the table, the trees where they are asked for, and for several goals a summary.
+
+        With ``published``, yield only the table of published figures.
+        """
         if isinstance(self.published, PublishedTable):
             yield from published_table(self.published, self.comparisons)
             return
@@ -93,7 +96,7 @@ class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("c
         yield from summary_tables(summarize_comparisons(self.comparisons), self.proved)
 
     def table_rows(self) -> Iterator[Json]:
-        """Return a row for each goal and search: optima with their status, ratios, whether it executes."""
+        """Return a row for each goal and search: measures, optima, ratios, and whether the tree executes."""
         conditions = {"containers": self.containers, "items": self.items, "level": self.level}
         return (row | conditions for comparison in self.comparisons for row in tidy_rows(comparison))
 
@@ -122,7 +125,7 @@ class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("c
         return f"<Compared: {', '.join(map(str, self.goals))}>"
 
 
-def _posed(
+def _pose_goals(
     command: Command,
     goals_named: Sequence[str],
     containers: str,
@@ -132,7 +135,11 @@ def _posed(
     stock: File | None,
     stays: File | None,
 ) -> tuple[Problem]:
-    """Pose the goals; raises :class:`UserError` for options that do not fit, before anything is solved."""
+    """Return the problem whose goals are compared, as the first argument of :func:`compare`.
+
+    With ``all_makeable``, it has any goal: :func:`compare` finds its goals. Raises :class:`UserError` for
+    goals that the published table does not have.
+    """
     if published:
         table = read_published(published_file())
         goals_named = goals_named or tuple(table.goals)
@@ -174,7 +181,7 @@ def _posed(
     when one was stopped at a limit.
     """,
     formats=(*TABLES, "foon"),
-    pose=_posed,
+    pose=_pose_goals,
 )
 def compare(
     problem: Problem,
@@ -241,16 +248,16 @@ def compare(
     table = read_published(published_file()) if published else None
     if table is not None and not table.goals.keys() >= {node.label for node in problem.goal_nodes}:
         table = None
-    comparisons = list(_compared_goals(problem, chosen, settings, rules, jobs, results))
+    comparisons = list(_compare_each_goal(problem, chosen, settings, rules, jobs, results))
     search_of = {search.name: search for search in chosen}
     retrieved: list[Retrieved] = []
     if trees or alone:
         for goal, row in zip(problem.goals, comparisons, strict=True):
-            asked_of = replace(problem, goals=(goal,))
+            goal_problem = replace(problem, goals=(goal,))
             for result in row.searches:
                 ids = problem.network.units_of_numbers(result.units or ())
                 retrieved.append(
-                    Retrieved.of(asked_of, search_of[result.search], result.ending, ids, result.stuck_at)
+                    Retrieved.of(goal_problem, search_of[result.search], result.ending, ids, result.stuck_at)
                 )
     if trees:
         steps = iter(retrieved)
@@ -268,7 +275,7 @@ def compare(
     ).knowing(retrieved=tuple(retrieved), summed_up=all_makeable)
 
 
-def _compared_goals(
+def _compare_each_goal(
     problem: Problem,
     searches: Sequence[Search],
     settings: SearchSettings,
@@ -276,7 +283,10 @@ def _compared_goals(
     jobs: int,
     results: File | None,
 ) -> Iterator[Comparison]:
-    """Return the comparison of each goal; comparisons that the file of results has are not repeated."""
+    """Return the comparison of each goal, in order.
+
+    Comparisons that the file of ``results`` has are not repeated. All others are added to it.
+    """
     goals = {str(node): goal for node, goal in zip(problem.goal_nodes, problem.goals, strict=True)}
     with contextlib.ExitStack() as stack:
         done: dict[object, Comparison] = {}

@@ -15,7 +15,7 @@ from foon_asp.network import counted
 from foon_asp.planning.strips_task import DERIVED, StripsTask
 from foon_asp.planning.task_files import read_task
 from foon_asp.problem import Costs, Objective, Problem
-from foon_asp.questions.answer import Answer, answered, of_status
+from foon_asp.questions.answer import Answer, answer_problem, ending_of_status
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import Limits, begin
 from foon_asp.questions.posing import no_data
@@ -131,7 +131,7 @@ class Relaxed(Result, frozen=True, kw_only=True, tag=schema_name("relax")):
     @property
     def ending(self) -> Ending:
         """``DONE`` if the plan is proved to be the cheapest, or that none exists."""
-        return of_status(self.status)
+        return ending_of_status(self.status)
 
     @property
     def claim(self) -> str:
@@ -237,7 +237,7 @@ def solved(task: StripsTask, deadline: Deadline) -> Relaxed:
     """
     proof_deadline = Deadline(within=deadline)
     reporter = _Enough(caller().reporter, task.objective, proof_deadline)
-    answer = answered(task.problem(), (task.objective,), Settings(deadline=proof_deadline), reporter)
+    answer = answer_problem(task.problem(), (task.objective,), Settings(deadline=proof_deadline), reporter)
     return Relaxed.of(task, answer)
 
 

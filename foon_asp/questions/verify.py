@@ -19,7 +19,7 @@ from foon_asp.proof import proved_checker
 from foon_asp.proof import verifier as proof
 from foon_asp.proof.rule_meaning import ALL_STEPS, OWN, Rule
 from foon_asp.proof.verify_plan import is_of_plan, verify_any
-from foon_asp.questions.certificate_text import bound_text, looked_at, trusted_text
+from foon_asp.questions.certificate_text import bound_text, proof_size, trusted_text
 from foon_asp.questions.common_options import Limits, begin
 from foon_asp.questions.posing import DATA, Command, the_data
 from foon_asp.questions.question import Kind, Option, Role, question
@@ -148,7 +148,7 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
             checked=tuple(claims) if with_clingo else (),
             not_covered=verified.not_covered,
             tree=verified.tree,
-            proved_by=looked_at(content),
+            proved_by=proof_size(content),
             used_up=None if items is None else tuple(_items_lines(items, network)),
             proved_checker=by_proved_checker,
         )
