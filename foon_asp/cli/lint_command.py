@@ -21,7 +21,7 @@ from foon_asp.linting.linted_files import LintedFiles
 from foon_asp.linting.mending import is_mendable, mended
 from foon_asp.linting.vocabulary import Vocabulary
 from foon_asp.network import counted
-from foon_asp.questions.lint import Findings, Linted, find, linted_files
+from foon_asp.questions.lint import Findings, Linted, find_findings, linted_files
 from foon_asp.questions.question import TABLES
 from foon_asp.questions.result import Ending
 from foon_asp.report.rule_page import rule_page
@@ -183,11 +183,11 @@ def command(
     if baseline and write_baseline:
         refuse_inputs(baseline, [*linted_files(on_disk, contents), *filter(None, [vocabulary])])
         check_replaceable(baseline)
-        findings = find(on_disk, contents, select, ignore, None, vocabulary).findings
+        findings = find_findings(on_disk, contents, select, ignore, None, vocabulary).findings
         write_whole(baseline, utf_8(json_text(plain(Baseline.of(baseline, findings)))))
         click.echo(f"wrote {baseline}: {counted(len(findings), 'finding')}", err=True)
         return ExitCode.DONE
-    found = find(on_disk, contents, select, ignore, baseline, vocabulary)
+    found = find_findings(on_disk, contents, select, ignore, baseline, vocabulary)
     count = 0
     if fix or diff:
         repaired = _repair(found, contents, unsafe_fixes)
@@ -195,7 +195,7 @@ def command(
         if diff:
             return _show_repairs(repaired, count)
         contents = _write(repaired, contents)
-        found = find(on_disk, contents, select, ignore, baseline, vocabulary)
+        found = find_findings(on_disk, contents, select, ignore, baseline, vocabulary)
         for content in contents.values():  # the mended text of standard input
             write_data(content)
     linted = found.linted(mended=count)

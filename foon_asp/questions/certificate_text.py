@@ -55,7 +55,7 @@ def _limit_text(units: list[int], bound: int, alike: bool) -> str:
 
 
 def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", file: str) -> Sequence[str]:
-    """Return lines with the proof of an answer, and what its certificate in ``file`` proves, if it has one."""
+    """Return lines on the proof of an answer, and on what a certificate in ``file`` proves."""
     by = outcome.proof or "none"
     if certificate is None and outcome.proof is None:
         return ["proof: none, so there is nothing to certify"]

@@ -55,11 +55,11 @@ def settings_of(options: CommonOptions) -> Settings:
         given_constraints(options.get("constraints", ())),
         None if encodings is None else Path(encodings),
         tuple(constants),
-        deadline=begin(options),
+        deadline=start_deadline(options),
     )
 
 
-def begin(options: Limits) -> Deadline:
+def start_deadline(options: Limits) -> Deadline:
     """Return a deadline whose time starts now; it ends no later than that of the calling command."""
     outer, (time, memory) = caller().deadline, limits_of(options)
     if time is None and memory is None and outer is not None:

@@ -17,7 +17,7 @@ from foon_asp.planning.task_files import read_task
 from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.questions.answer import Answer, answer_problem, ending_of_status
 from foon_asp.questions.caller import caller
-from foon_asp.questions.common_options import Limits, begin
+from foon_asp.questions.common_options import Limits, start_deadline
 from foon_asp.questions.posing import no_data
 from foon_asp.questions.question import Kind, Option, question
 from foon_asp.questions.result import Ending, Result
@@ -218,7 +218,7 @@ def relax(
         >>> str(relaxed.cost), str(relaxed.status)
         ('9', 'optimal')
     """
-    deadline = begin(limits)
+    deadline = start_deadline(limits)
     relaxed = solved(read_task(files(task), deadline), deadline)
     if certificate_file is None:
         return relaxed

@@ -31,7 +31,7 @@ from foon_asp.questions.alternatives import Alternatives, alternatives
 from foon_asp.questions.answer import Answer, answer_problem, answer_under_rules
 from foon_asp.questions.caller import caller
 from foon_asp.questions.certifying import solve_with_certificate
-from foon_asp.questions.common_options import CommonOptions, Limits, begin, settings_of
+from foon_asp.questions.common_options import CommonOptions, Limits, settings_of, start_deadline
 from foon_asp.questions.options import AMOUNT, CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.page_data import PageData, UnitRate
 from foon_asp.questions.pareto import Front, pareto
@@ -460,7 +460,10 @@ def pages(
         yield page
     if ruled:
         page = structs.replace(
-            page, without_rules=answer_problem(problem, chosen, Settings(deadline=begin(remaining_limits())))
+            page,
+            without_rules=answer_problem(
+                problem, chosen, Settings(deadline=start_deadline(remaining_limits()))
+            ),
         )
         yield page
     if answer.ending is Ending.NEGATIVE:
