@@ -92,11 +92,11 @@ class Envelope:
             return IntervalEnd(None, None, proved=False)
 
     def _end_from(self, motion: str, degree: int, raised_rate: Fraction) -> IntervalEnd:
-        """Return the end of the interval of a motion's rate, found from a distant rate towards the present one.
+        """Return the end of the interval of a motion's rate on the side of a distant rate.
 
-        The distant rate to the power of ``degree`` is ``raised_rate``. Each better tree gives the next rate
-        to try. At degree 0, all other rates count as 1, so that the tree with the fewest units of the motion
-        is found.
+        The distant rate to the power of ``degree`` is ``raised_rate``. A tree that is better there gives the
+        next rate to try, which is nearer to the present one, and so on. At degree 0, the motion has the rate
+        ``raised_rate`` and all others have 1, so that the tree with the fewest units of the motion is found.
         """
         tree = self._as_function(motion, self._tree)
         rate = Root(1, (self._problem.rates or {})[motion])

@@ -90,9 +90,8 @@ class ExplainedRule(Value, frozen=True):
         if self.one_of_a_set:
             yield f"  {self.kind}: {_ASKS_FOR_ONE}"
         else:
-            yield f"  {self.kind}: {
-                _KINDS[self.kind] if self.reason is None else self._remark_text(self.reason)
-            }"
+            effect = _KINDS[self.kind] if self.reason is None else self._remark_text(self.reason)
+            yield f"  {self.kind}: {effect}"
         if self.kind is Kind.HELPER or (self.reason is not None and self.kind is not Kind.OTHER):
             return
         if self.looks_beyond is None:
