@@ -36,7 +36,7 @@ def find_question(verb: str) -> Question:
 
 
 def values_with_role(question: Question, values: Mapping[str, Any], roles: Role) -> dict[str, Any]:
-    """Return the values, by name, of the options of a question that have one of some ``roles``.
+    """Return the ``values``, by name, of those options of a question whose role is one of ``roles``.
 
     An option without a value is left out.
     """
@@ -73,7 +73,7 @@ def ask(
 def _warn_of_measures(command: "_Command", values: Mapping[str, Any]) -> None:
     """Print a warning for each ``--measure`` file of which no measure is an objective of the question."""
     chosen = values.get("objectives")
-    if not command.measures_named or chosen is None:
+    if not command.names_measures or chosen is None:
         return
     chosen_names = {word.strip() for words in chosen for word in words.split(",")}
     measures_of: dict[str, list[str]] = {}
@@ -174,7 +174,7 @@ class _Command:
         return level
 
     @property
-    def measures_named(self) -> bool:
+    def names_measures(self) -> bool:
         """Whether the command names files of measures."""
         return bool(self._data.get("measures"))
 

@@ -143,7 +143,10 @@ def command(
 
 
 def _exit_code(statuses: dict[str, int], interrupted: bool) -> ExitCode:
-    """Return the exit code for the number of questions by status, and for a run that ctrl-C ended."""
+    """Return ``LIMIT`` if ctrl-C or a limit came first, ``NEGATIVE`` if a question failed, else ``DONE``.
+
+    ``statuses`` has the number of questions by status.
+    """
     if interrupted or statuses.keys() & {"feasible", "unknown"}:
         return ExitCode.LIMIT
     return ExitCode.NEGATIVE if "failed" in statuses else ExitCode.DONE

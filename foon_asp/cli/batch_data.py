@@ -45,7 +45,10 @@ class BatchData:
         self._datasets: dict[str | None, Dataset] = {None: dataset}
 
     def named(self, word: str, containers: ContainerRule, kitchen: str | None) -> Sequence[str]:
-        """Return the goals that ``@goals`` or ``@makeable`` stands for, in one-line notation."""
+        """Return the goals that ``@goals`` or ``@makeable`` stands for, in one-line notation.
+
+        ``@makeable`` depends on the container rule and on the kitchen, as in :meth:`_dataset_with_kitchen`.
+        """
         dataset = self._dataset_with_kitchen(kitchen)
         if word == "@makeable":
             problem = dataset.problem((0,), containers, everything=True)

@@ -57,7 +57,7 @@ def _split_sources(
     return value[len(words) :]
 
 
-def _complete(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
+def _complete_from_data(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
     """Return the completions of an incomplete word that names something in the data."""
     from foon_asp.cli.completed_words import completed_words
 
@@ -115,6 +115,6 @@ def click_option(option: Option) -> Callable[[Command], Command]:
         expose_value=option.role is not Role.EXTRA_VALUES,
         is_eager=option.role is Role.EXTRA_VALUES,  # before the option to which it adds
         callback=_parse_soft if option.kind is Kind.WEIGHTS else _CALLBACKS.get(option.name),
-        shell_complete=_complete if option.name in _NAMED_IN_DATA else None,
+        shell_complete=_complete_from_data if option.name in _NAMED_IN_DATA else None,
         help=f"{option.help[:-1]}; repeatable." if option.many else option.help,
     )

@@ -38,7 +38,7 @@ def _read_dataset(context: click.Context) -> Dataset:
     return load(source, **tables, measures=measures, level=level, lenient=True).dataset
 
 
-def _goals(context: click.Context, prefix: str) -> Iterable[str]:
+def _complete_goal(context: click.Context, prefix: str) -> Iterable[str]:
     """Return the entries of the goals file that begin with ``prefix``, then other nodes that do."""
     dataset = _read_dataset(context)
     names = dataset.names
@@ -46,14 +46,14 @@ def _goals(context: click.Context, prefix: str) -> Iterable[str]:
     return chain(listed, (str(names.node(o)) for o in nodes_beginning(prefix, names, MAX_COMPLETIONS)))
 
 
-def _objectives(context: click.Context, prefix: str) -> Iterable[str]:
+def _complete_objectives(context: click.Context, prefix: str) -> Iterable[str]:
     """Return completions of the last name in a list of objectives: of ``units,s``, ``units,success``."""
     done, comma, last = prefix.rpartition(",")
     others = [name for name in (*Objective, *_read_dataset(context).measures) if name not in done.split(",")]
     return (f"{done}{comma}{objective}" for objective in _words_with_prefix(others, last))
 
 
-def _constraints(context: click.Context, prefix: str) -> Iterable[str]:
+def _complete_constraint(context: click.Context, prefix: str) -> Iterable[str]:
     """Return the names of ready-made constraints; after ``NAME:``, the constants of this constraint."""
     name, colon, settings = prefix.partition(":")
     if not colon:
@@ -62,7 +62,7 @@ def _constraints(context: click.Context, prefix: str) -> Iterable[str]:
     return (f"{name}:{done}{comma}{constant}" for constant in _constants_of(name, context, last))
 
 
-def _constants(context: click.Context, prefix: str) -> Iterable[str]:
+def _complete_constant(context: click.Context, prefix: str) -> Iterable[str]:
     """Return completions of the constants that the constraints named on the command line have."""
     constraints = context.params.get("constraints") or ()
     names = [constraint.name.partition(":")[0] for constraint in constraints]
@@ -73,7 +73,7 @@ def _constants_of(constraint: str, context: click.Context, prefix: str) -> Itera
     """Return completions of ``CONSTANT=VALUE`` for a ready-made constraint.
 
     Up to the ``=``, they are the constants of the constraint. After it, they are motions or labels of the
-    data, where the name of the constant says that its values are such.
+    data, as the ending of the constant's name says; for a constant with another ending, there are none.
     """
     name, equals, value = prefix.partition("=")
     if not equals:
@@ -93,8 +93,8 @@ def _words_with_prefix(words: Iterable[str], prefix: str) -> Iterable[str]:
 
 
 _COMPLETED: Mapping[str, Callable[[click.Context, str], Iterable[str]]] = {
-    "goals_named": _goals,
-    "objectives": _objectives,
-    "constraints": _constraints,
-    "constants": _constants,
+    "goals_named": _complete_goal,
+    "objectives": _complete_objectives,
+    "constraints": _complete_constraint,
+    "constants": _complete_constant,
 }

@@ -11,7 +11,7 @@ _MESSAGE = b"interrupted before there was an answer\n"
 
 
 def end_at_ctrl_c() -> None:
-    """Make ctrl-C exit the process at once, unless it has a handler other than Python's own."""
+    """Make ctrl-C exit the process at once; a handler other than Python's default one stays."""
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, _exit_at_once)
 

@@ -30,7 +30,7 @@ class ExitCode(IntEnum):
 
 
 def exit_code_of(ending: "Ending") -> ExitCode:
-    """Return the exit code that has the name of the ending of a question."""
+    """Return the exit code with the same name as the ending of a question."""
     return ExitCode[ending.name]
 
 

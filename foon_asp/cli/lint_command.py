@@ -194,7 +194,7 @@ def command(
         count = sum(is_mendable(finding, unsafe_fixes) for finding in found.findings)
         if diff:
             return _show_repairs(repaired, count)
-        contents = _write(repaired, contents)
+        contents = _write_repairs(repaired, contents)
         found = find_findings(on_disk, contents, select, ignore, baseline, vocabulary)
         for content in contents.values():  # the mended text of standard input
             write_data(content)
@@ -238,7 +238,7 @@ def _repair(found: Findings, contents: Mapping[Path, bytes], unsafe: bool) -> _R
     return repaired
 
 
-def _write(repaired: _Repaired, contents: Mapping[Path, bytes]) -> dict[Path, bytes]:
+def _write_repairs(repaired: _Repaired, contents: Mapping[Path, bytes]) -> dict[Path, bytes]:
     """Write the repaired files, except those in ``contents``; return ``contents``, repaired."""
     for file, (before, after) in repaired.items():
         if before != after and file not in contents:
@@ -257,9 +257,10 @@ def _show_repairs(repaired: _Repaired, count: int) -> ExitCode:
 
 
 def _report(linted: Linted, statistics: bool, format_: str, err: bool) -> None:
-    """Print the findings, or with ``statistics`` their counts by code; ``err`` prints text to standard error.
+    """Print the findings, or with ``statistics`` their counts by code.
 
-    The format ``github`` is printed without escapes, since a program reads it.
+    With ``err``, text is printed to standard error. The format ``github`` is printed without escapes, since a
+    program reads it.
     """
     if format_ == "github":
         write_data(linted.github())

@@ -40,9 +40,11 @@ class _Verbs(click.Group):
     """The group of all verbs, which imports the module of a verb only when the verb is called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return all verbs."""
         return list(VERBS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Import and return the command of a verb, or ``None``; from now on, ctrl-C raises an exception."""
         command = verb_command(cmd_name) if cmd_name in VERBS else None
         raise_at_ctrl_c()  # after all imports
         return command
@@ -62,6 +64,7 @@ class _Verbs(click.Group):
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write only the verbs that most people need into the help."""
         write_verbs(formatter, "Verbs that most people need", FIRST_VERBS)
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> "list[CompletionItem[str]]":

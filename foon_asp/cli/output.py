@@ -93,7 +93,7 @@ class SafeStream:
 
     @contextlib.contextmanager
     def _user_errors(self) -> Iterator[None]:
-        """Raise :class:`UserError` for a failed write; for ``remarks``, ignore the failure.
+        """In a ``with`` block, raise :class:`UserError` for a failed write; for ``remarks``, ignore it.
 
         A ``BrokenPipeError`` is raised as it is: the reader of the output has ended.
         """
@@ -108,7 +108,7 @@ class SafeStream:
 
 @contextlib.contextmanager
 def safe_streams() -> Iterator[None]:
-    """Replace standard output and standard error by a :class:`SafeStream` each in a ``with`` block."""
+    """In a ``with`` block, let standard output and standard error be objects of :class:`SafeStream`."""
     out, err = sys.stdout, sys.stderr
     sys.stdout = cast(TextIO, SafeStream(out))
     sys.stderr = cast(TextIO, SafeStream(err, remarks=True))
@@ -119,7 +119,7 @@ def safe_streams() -> Iterator[None]:
 
 
 def show_remarks(shown: bool) -> None:
-    """Make standard error show all text that is written from now on, or drop it."""
+    """Make standard error show, or else drop, all text that is written from now on."""
     cast(SafeStream, sys.stderr).quiet = not shown
 
 

@@ -171,6 +171,7 @@ def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
 
     @functools.wraps(command)
     def limited(time_limit: float | None, memory_limit: int | None, **values: object) -> ExitCode:
+        """Call the command with its deadline; print advice if a limit stopped it."""
         deadline = start_deadline(time_limit, memory_limit)
         try:
             code = command(deadline=deadline, **values)
