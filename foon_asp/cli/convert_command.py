@@ -136,7 +136,7 @@ def _tasks(files: list[FolderFile], is_folder: bool, output: Path | None, target
 
 
 def _suffix(file: Path, target: Dialect) -> str:
-    """Return the ending for the name of a converted file; lists of objects, as kitchens, may have their own."""
+    """Return the ending for the name of a converted file; lists of objects may have one of their own."""
     text, format_ = read_plain_text(file), format_with(target)
     return format_.list_suffix if format_of(text, str(file)).lists_objects(text) else format_.suffix
 

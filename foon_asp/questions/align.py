@@ -143,7 +143,7 @@ def align(
     """Compare the nodes of a recipe with those of a network: known, one edit away, or new.
 
     Parameters:
-        data: The recipe. Its table of stand-ins is used, the usual one if it has none.
+        data: The recipe. Its table of stand-ins is used, or the usual table if it has none.
         to: The network whose words count, or its path.
 
     Returns:

@@ -52,7 +52,7 @@ class Optima(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("opt
         return Ending.LIMIT if stopped else Ending.DONE
 
     def show(self) -> Iterator[Block]:
-        """Yield a table, and notes on its words; a goal has a row for each distinct status and costs."""
+        """Yield a table and notes on its words; answers with equal goal, status and costs share a row."""
         first = self.answers[0]
         trees, tree = ("task trees", "tree") if self.items == "lasting" else ("plans", "plan")
         yield f"The best {trees} ({first.conditions})"
@@ -92,7 +92,7 @@ class Optima(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("opt
 
 
 def _cells(answers: list[Answer], list_count: int, columns: Iterable[Objective]) -> Iterator[str | Cell]:
-    """Yield the cells of a row after the goal, for answers with equal status and costs.
+    """Yield the cells of a row, without that of the goal, for answers with equal status and costs.
 
     ``list_count`` is the number of lists of objectives. If the answers are for all lists, a cell says
     ``all``.

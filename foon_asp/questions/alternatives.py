@@ -53,7 +53,7 @@ class Parting(Value, frozen=True):
 
 
 class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("alternatives")):
-    """Other trees, the best first; none contains all units of another.
+    """Trees for the goals of a problem, the best first; none contains all units of another.
 
     Attributes:
         complete: Whether every tree that was asked for is listed. If not, a limit was reached.
@@ -334,9 +334,9 @@ def _alternatives_of(problem: Problem, objectives: tuple[Objective, ...], pool: 
 
 
 def _partings(problem: Problem, trees: Sequence[frozenset[int]]) -> Iterator[Parting]:
-    """Yield the nodes where trees part, from the goals backwards.
+    """Yield the node nearest to the goals that the trees make in different ways, if there is one.
 
-    The nodes where all trees part come first, then those of each group of trees that agree so far.
+    Then follows such a node for each group of trees that make this node in one way, and so on.
     """
     groups = [tuple(range(len(trees)))]
     for group in groups:  # grows during the loop
@@ -432,9 +432,9 @@ def _rank_trees(
 ) -> _Pool:
     """Enumerate trees in order of costs, at most ``max_trees``.
 
-    The first objective of each is worse than the best value by at most the share ``max_loss`` of this value.
-    ``None`` allows any tree, and 0 only trees that are optimal by all objectives. After a limit, trees follow
-    that were found but are not proved to be the next ones.
+    ``max_loss`` is a share of the best value of the first objective: a tenth allows 11 units if 10 are best.
+    A loss of 0 allows only trees that are optimal by all objectives, and ``None`` allows all trees. After a
+    limit, the pool ends with trees that were found but are not proved to be the next ones.
     """
     if problem.items is not None and max_loss == 0:
         plans, proved, complete = best_plans(problem, objectives, settings, caller().reporter, max_trees)

@@ -40,7 +40,7 @@ if TYPE_CHECKING:  # slow to import, and not needed to print an answer
 
 
 def ending_of_status(status: Status) -> Ending:
-    """Return how a question ended whose answer has a status."""
+    """Return ``DONE`` for optimal, ``NEGATIVE`` for infeasible, and ``LIMIT`` for all other answers."""
     return {
         Status.OPTIMAL: Ending.DONE,
         Status.INFEASIBLE: Ending.NEGATIVE,
@@ -62,7 +62,7 @@ class SoftConstraint(ListedConstraint, frozen=True):
 
 
 class Alone(Value, frozen=True):
-    """One of several goals by itself.
+    """The best tree for one of several goals by itself.
 
     Attributes:
         costs: What the best tree for it costs; null without one.
@@ -192,18 +192,20 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         proof: What proves an optimal or infeasible answer; null for others.
         proof_by_objective: Of an optimal answer, what proves each objective.
         costs: What the tree costs by every objective; null without a tree.
-        lower_bound: By objective in order, a proved bound on its best value: the least cost, or the greatest
-            success. Only trees that are best by all objectives before it count.
+        lower_bound: By objective in order, a bound on its best value, as far as it is proved: no cost is
+        less,
+            no success is greater. Only trees that are best by all objectives before it count.
         used_up: Whether the steps, each done once, run where items are used up; null without a tree, and
             where items are used up anyway.
         units: The steps of the tree, in an order that executes; null without a tree.
         seconds: The time of each phase.
-        penalty: Under soft constraints, the sum of weight times ways over them; null without a tree.
+        penalty: Under soft constraints, the sum of all weights, each times the number of ways in which its
+            constraint is broken; null without a tree.
         soft_constraints: Every constraint that may be broken; empty without a tree.
         skipped: The goals that cannot be made and were left out, if that was asked for.
         goals_alone: For a few goals, the best tree for each by itself.
-        sum_of_goals_alone: What these cost by the first objective, added up (success: multiplied); null
-            if one has no tree.
+        sum_of_goals_alone: What these trees cost by the first objective, added up, or multiplied for success;
+            null if a goal has no tree.
         serves: For several goals, the goals that each unit is needed for.
         cross_check: The checks by other engines, where they are requested.
         policy: With ``--retries``, the trees to follow, and their chance; null without a tree, or if a limit
@@ -441,7 +443,10 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         return RobotPlan.of(self.problem, self.objectives, self.ids, self.durations, policy)
 
     def remark(self, format_: str) -> str:
-        """Return lines that a format cannot hold: notes, and the claim unless it is simply optimal."""
+        """Return lines on what a format cannot hold: the claim, and notes.
+
+        A tree that is proved optimal without soft constraints needs no claim.
+        """
         claim, *note = self.headlines()
         note += self.remarks()
         claimed = [] if self.status is Status.OPTIMAL and self.penalty is UNSET else [claim]
@@ -569,7 +574,7 @@ def answer_from_store(nearby: "Nearby", objectives: Sequence[Objective], setting
 
 
 def _answer_of(outcome: Outcome) -> Answer:
-    """Return the answer for an outcome, to whose ``seconds`` the time of reading is added if it is known."""
+    """Return the answer for an outcome; add the time of reading to its ``seconds``, if it is known."""
     read_seconds = caller().read_seconds
     if read_seconds is not None:
         outcome.seconds["read"] = read_seconds

@@ -29,12 +29,12 @@ from foon_asp.text.tables import RATES
 
 
 class AssistedTree(Value, frozen=True):
-    """The best tree of which a person does at most some units.
+    """The best tree of which a person does at most a given number of units.
 
     Attributes:
         most: The greatest number of units that the person may do.
         costs: What the tree costs, the person's rates included; null without a tree.
-        bound: A success that no such tree exceeds, as far as it is proved.
+        bound: The success that no such tree exceeds; null if none is proved.
         by_person: The ids of the units that the person does.
         used_up: Whether the steps, each done once, run where items are used up; null without a tree.
         units: The steps, in an order that executes, with who does each; null without a tree.
@@ -103,9 +103,9 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
 
     @property
     def ending(self) -> Ending:
-        """``LIMIT`` if a row is missing or not proved, else ``NEGATIVE`` if the success is not reached.
+        """``LIMIT`` if a row is missing or not proved.
 
-        Without a tree, it is ``NEGATIVE``, too; otherwise ``DONE``.
+        Otherwise ``NEGATIVE`` if there is no tree or the success to reach is not reached, else ``DONE``.
         """
         if not self.complete:
             return Ending.LIMIT

@@ -38,14 +38,16 @@ def solve_with_certificate(
     """
     deadline = settings.begun
     settings = settings._replace(deadline=deadline)
-    ruled = settings.constraints or settings.constants or settings.encodings
-    plain = not ruled and problem.items is None and Objective.PRICE not in objectives
-    nearby = near_goals(problem, objectives, settings) if plain else None
+    has_rules = settings.constraints or settings.constants or settings.encodings
+    is_plain = not has_rules and problem.items is None and Objective.PRICE not in objectives
+    nearby = near_goals(problem, objectives, settings) if is_plain else None
     with reading():
-        subject = nearby.subject() if nearby is not None else _certificate_subject(problem) if plain else None
+        subject = (
+            nearby.subject() if nearby is not None else _certificate_subject(problem) if is_plain else None
+        )
     if nearby is None:
-        only_best = problem.stand_ins is not None and asked_with(problem, settings, objectives) is problem
-        complete = problem if only_best or subject is not None else whole(problem)
+        suffices = problem.stand_ins is not None and asked_with(problem, settings, objectives) is problem
+        complete = problem if suffices or subject is not None else whole(problem)
         answer = answer_problem(complete, objectives, settings)
         proved = answer.problem
     else:

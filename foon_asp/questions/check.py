@@ -1,4 +1,4 @@
-"""Does a tree that some program wrote execute, and is it the best?"""
+"""Checks of a given tree: whether it executes, keeps to rules, and is the best."""
 
 from collections.abc import Iterable, Iterator
 from os import PathLike
@@ -39,7 +39,7 @@ if TYPE_CHECKING:  # clingo and linear programs, which only rules and certificat
 class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("check")):
     """Whether a given tree or plan executes, and what stops it if not.
 
-    A plan uses items up, so that it matters in which order and how often its units stand there.
+    In a plan, items are used up: the order of its units and their repeats count.
 
     Attributes:
         verdict: Whether the tree executes; a plan executes as listed or not at all.
@@ -49,7 +49,7 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
         used_up: Whether the tree, each step done once, runs where items are used up; null for a plan.
         costs: What the tree costs by every objective; null where the network does not have all of its units.
         not_in_network: The positions, from 1, of the units that are not in the network.
-        breaks: Under rules: those that the tree breaks; null if it does not execute or has units of its own.
+        breaks: The rules that the tree breaks; null if it does not execute or has units of its own.
 
     Example:
         >>> problem = foon_asp.load().problem("ice")
@@ -313,7 +313,7 @@ def check(
 
 
 def _user_rule_check(rules: "Settings", used_up: bool) -> "UserRuleCheck":
-    """Return the check by which trees, or plans if ``used_up``, are held against user rules."""
+    """Return a check of which user rules trees break, or with ``used_up`` plans; it takes clingo along."""
     from foon_asp.asp.user_rule_check import UserRuleCheck  # noqa: PLC0415 (takes clingo along)
 
     return UserRuleCheck(rules, used_up)

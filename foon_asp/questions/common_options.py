@@ -29,9 +29,9 @@ class Limits(TypedDict, total=False):
 
 
 class Posed(Limits, total=False):
-    """Keyword options of :class:`Limits`, and the goals and container rule of a problem that is posed here.
+    """Keyword options of :class:`Limits`, and the goals and container rule of the problem.
 
-    A question poses the problem itself if its first argument is a path or data.
+    A question needs these if its first argument is a path or data, and not a problem.
     """
 
     goal: str | ObjectNode | Iterable[str | ObjectNode]

@@ -111,7 +111,7 @@ class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("c
         return self.retrieved[0].foon()
 
     def write_chart(self, file: File) -> None:
-        """Draw a box for each search into a file: the units of its trees over the optimum, goal by goal.
+        """Write a chart with a box for each search: the units of its trees divided by the optimum, by goal.
 
         Parameters:
             file: The path of the file, which ends in ``.svg`` or ``.png``.
@@ -203,7 +203,8 @@ def compare(
     each tree that executes, the result lists the rules that the tree breaks.
 
     Parameters:
-        searches: A search to run; by default all of them, including those of other packages.
+        searches: A search to run; by default all of them, including those of other packages. Without success
+            rates, the default leaves greedy-success out.
         trees: Show the trees of the searches too, step by step.
         all_makeable: Compare for every object that can be made, and print a summary.
         published: Show the published figures beside the measured ones. Only some goals have such figures.
@@ -242,8 +243,8 @@ def compare(
         problem = replace(problem, goals=tuple(makeable(problem)))
         if not problem.goals:
             raise UserError("there are no goals: nothing can be made that is not in the kitchen")
-    alone = len(problem.goals) == len(chosen) == 1
-    if caller().form == "foon" and not alone:
+    is_single_search = len(problem.goals) == len(chosen) == 1
+    if caller().form == "foon" and not is_single_search:
         raise UserError(_ONE_TREE)
     table = read_published(published_file()) if published else None
     if table is not None and not table.goals.keys() >= {node.label for node in problem.goal_nodes}:
@@ -251,7 +252,7 @@ def compare(
     comparisons = list(_compare_each_goal(problem, chosen, settings, rules, jobs, results))
     search_of = {search.name: search for search in chosen}
     retrieved: list[Retrieved] = []
-    if trees or alone:
+    if trees or is_single_search:
         for goal, row in zip(problem.goals, comparisons, strict=True):
             goal_problem = replace(problem, goals=(goal,))
             for result in row.searches:

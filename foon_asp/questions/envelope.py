@@ -63,7 +63,7 @@ class Envelope:
             self._free_to_rise = set()
 
     def units(self, motion: str) -> int:
-        """Return how many units of the best tree have the rate of a motion, and none of their own."""
+        """Return how many units of the best tree have a motion, and no success rate of their own."""
         return self._count_by_motion(self._tree)[motion]
 
     def end(self, motion: str, above: bool) -> IntervalEnd:
@@ -127,10 +127,10 @@ class Envelope:
     def _motions_free_to_rise(self) -> set[str]:
         """Return motions whose rates may rise to 1 while the tree stays optimal; many are tested at once.
 
-        In the test, units with one of the motions, outside the tree, never fail. If the tree stays optimal,
-        it also does when the rate of one motion alone rises, since no other tree gains more by that.
-        Otherwise the motions by which the better tree gains are removed, and the test is repeated. If a limit
-        comes first, the set is empty.
+        A test sets the rates of all units outside the tree that have one of the motions to 1. If the tree
+        stays optimal, it also does when the rate of one motion alone rises, since no other tree gains more by
+        that. Otherwise the motions by which the better tree gains are removed, and the test is repeated. If a
+        limit comes first, the set is empty.
         """
         network, own_rates = self._problem.network, self._problem.own_rates
         motions = set(self.motions)

@@ -120,7 +120,7 @@ def _pose_export(
 
 
 def _has_merged_copies(problem: Problem, items: str | None) -> bool:
-    """Return whether all copies of a node are one, which is what ``items`` of ``set`` says.
+    """Return whether ``items`` is ``set``: then all copies of an object node are one.
 
     Raises :class:`UserError` if ``items`` contradict the problem.
     """

@@ -114,7 +114,7 @@ class PricedHelp:
         return self._outcomes[price]
 
     def _problem_at(self, price: Fraction) -> Problem:
-        """Return the problem with the better of the robot's rate and the person's rate times the price."""
+        """Return the problem with the person's rates times the price, where that exceeds the robot's rate."""
         rates = {m: max(rate, self._better.get(m, 0) * price) for m, rate in self._rates.items()}
         return replace(self._problem, rates=rates)
 
@@ -192,11 +192,11 @@ def helped_trees(
         for motion, robot in (problem.rates or {}).items()
         if (rate := Fraction(1) if person is None else person.get(motion, Fraction(0))) > robot
     }
-    counts = settings.replaced is not None
-    if not counts and sees_who_does_it(settings.constraints):
+    must_count = settings.replaced is not None
+    if not must_count and sees_who_does_it(settings.constraints):
         require_local(settings)
-        counts = True
-    search = (CountedHelp if counts else PricedHelp)(problem, better, settings, reporter)
+        must_count = True
+    search = (CountedHelp if must_count else PricedHelp)(problem, better, settings, reporter)
     rows: list[Outcome] = []
     with_any_help: Outcome | None = None
     complete = False
@@ -231,7 +231,7 @@ def _order_key(outcome: Outcome) -> tuple[int | Fraction, ...]:
 
 
 def _as_optimal(tree: Outcome) -> Outcome:
-    """Return an outcome with a tree as optimal, with its measures as bounds."""
+    """Return the outcome of a tree as proved optimal, with its own measures as bounds."""
     assert tree.costs is not None
     return tree._replace(
         status=Status.OPTIMAL, bounds={objective: tree.costs.measure(objective) for objective in _BEST}

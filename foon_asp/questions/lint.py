@@ -71,7 +71,7 @@ class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):
         """Return a table that counts the findings of each code, and a line of counts.
 
         Parameters:
-            width: The columns of a terminal; without it, lines are as long as they are.
+            width: The number of columns that lines are wrapped to; ``None`` wraps no line.
         """
         return rendered([statistics(self.findings), self._summary()], width)
 

@@ -20,7 +20,7 @@ from foon_asp.text.json_value import schema_name
 
 
 class Side(Value, frozen=True, kw_only=True):
-    """A tree that is compared, and the question that it is for.
+    """A tree that is compared, with its costs, and the goals and conditions that it is for.
 
     Attributes:
         name: The file, or ``a`` and ``b`` for trees in Python.
@@ -67,7 +67,7 @@ class Making(Value, frozen=True):
 
 
 class Parting(Value, frozen=True):
-    """An object node that both trees need, traced back from the goals, and achieve in different ways."""
+    """An object node that both trees need on the way to the goals, but get in different ways."""
 
     object: Node
     a: Making
