@@ -92,7 +92,7 @@ def _answer_function(question: Question) -> Callable[..., ExitCode]:
         deadline: Deadline | None = None,
         **values: Any,
     ) -> ExitCode:
-        """Ask the question, check output files before, and show or write the result and its charts."""
+        """Check the output files, call the question, and show or write the result and its charts."""
         charts = [file for files in values_with_role(question, values, Role.CHART).values() for file in files]
         if charts:
             from foon_asp.pictures.chart import check_suffix
