@@ -93,7 +93,7 @@ def command(
     refuse_inputs(results_file, files)
     opening = Opening(tuple(data.items()), data_digest(data, files))
     opened = opening(quiet=False)
-    distinct = list(each_question(lines, opened))
+    distinct_questions = list(each_question(lines, opened))
 
     def warn(message: str) -> None:
         """Print a warning to standard error."""
@@ -111,10 +111,12 @@ def command(
     with RowsFile(rows_file, ANSWERS, common) as results:
         for text in results.twice:
             warn(text)
-        answered_before = [results.done[question] for question in distinct if question in results.done]
-        open_questions = [question for question in distinct if question not in results.done]
+        answered_before = [
+            results.done[question] for question in distinct_questions if question in results.done
+        ]
+        open_questions = [question for question in distinct_questions if question not in results.done]
         with Progress() as progress:
-            progress.step("answering", len(answered_before), len(distinct))
+            progress.step("answering", len(answered_before), len(distinct_questions))
             progress.begin()
             processes = min(jobs, max(1, len(open_questions)))
             try:
@@ -126,13 +128,13 @@ def command(
                 for row in rows:
                     results.add(row)
                     answered.append(row)
-                    progress.step("answering", len(answered_before) + len(answered), len(distinct))
+                    progress.step("answering", len(answered_before) + len(answered), len(distinct_questions))
             except KeyboardInterrupt:
                 interrupted = True
         if rows_file is not results_file:
             objectives = (*Objective, *map(Objective.of_measure, measures))
             write_table(results_file, results.done.values(), objectives)
-    summary = RunSummary.of(len(distinct), answered_before, answered, time.monotonic() - began)
+    summary = RunSummary.of(len(distinct_questions), answered_before, answered, time.monotonic() - began)
     if format_ == "json":
         click.echo(summary.json_text(), nl=False)
     else:

@@ -79,7 +79,10 @@ def click_options(*options: Option) -> Callable[[Command], Command]:
 
 
 def click_option(option: Option) -> Callable[[Command], Command]:
-    """Return a decorator that adds the parameter of click for an option."""
+    """Return a decorator that adds an option of a question as a parameter of click.
+
+    A positional option becomes an argument. The help of a repeatable one says that it is.
+    """
     choices = option.choices() if callable(option.choices) else option.choices
     kinds: dict[Kind, Any] = {
         Kind.TEXT: click.Choice(choices) if choices else None,

@@ -29,7 +29,7 @@ def with_serve_option(command: Callable[..., ExitCode], question: Question) -> C
 
     @functools.wraps(command)
     def answer_or_serve(serve: bool, **values: Any) -> ExitCode:
-        """Serve the page if ``serve``, else call the command."""
+        """Serve the page if ``serve``, else call the command; no file can be written with the page."""
         if not serve:
             return command(**values)
         for name, flag in _FILE_OPTIONS.items():
@@ -56,7 +56,7 @@ def _serve(question: dict[str, Any], data: dict[str, Any], deadline: Deadline) -
     except ImportError as error:
         raise UserError(f"--serve needs more packages ({error}): pip install 'foon-asp[view]'") from None
     dataset = shared_options.read_dataset(**data)
-    first = Form(
+    form = Form(
         goals=tuple(question["goals_named"]),
         objectives=tuple(map(str, parse_objectives(question["objectives"], dataset.measures))),
         containers=question["containers"],
@@ -70,10 +70,10 @@ def _serve(question: dict[str, Any], data: dict[str, Any], deadline: Deadline) -
             "encodings": question["encodings"],
         }
     )
-    example = dataset.problem((0,), first.containers)
+    example = dataset.problem((0,), form.containers)
     # to report errors in files of rules before the page is opened
     assemble(rules, functools.partial(click.echo, err=True), problem=example)
     used_up = items_of(dataset, question["items"], question["stock"], question["stays"])
-    desk = Desk(Foon(dataset, "the data"), first, deadline.seconds, deadline.memory, rules, used_up)
+    desk = Desk(Foon(dataset, "the data"), form, deadline.seconds, deadline.memory, rules, used_up)
     serve(desk, lambda address: click.echo(f"{address}\nopen this in a browser; ctrl-C ends it"))
     return ExitCode.DONE

@@ -354,7 +354,8 @@ def _first_parting(
     """Return the first object node, from the goals backwards, that trees make in different ways.
 
     ``trees`` maps indices of trees to their units. The node comes with a mapping from the units that make it
-    to the indices of the trees with these units. ``None`` is returned if the trees part nowhere.
+    to the indices of the trees with these units. A unit that needs the node itself does not make it. ``None``
+    is returned if the trees part nowhere.
     """
     queue = list(problem.goals)
     for o in queue:  # grows during the loop

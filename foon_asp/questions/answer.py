@@ -317,13 +317,13 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
 
     @property
     def claim(self) -> str:
-        """The status, the objectives and the costs of the tree, in one line."""
-        what = "task tree" if self.items == "lasting" else "plan"
+        """A line with the status, objectives and costs of the tree; without one, why there is none."""
+        noun = "task tree" if self.items == "lasting" else "plan"
         rule = self.conditions if self.encodings is None else f"{self.conditions}, as {self.encodings} has it"
         if self.status is Status.INFEASIBLE:
-            return f"infeasible: proved that no {what} exists ({rule})"
+            return f"infeasible: proved that no {noun} exists ({rule})"
         if self.costs is None:
-            return f"unknown: stopped at {self.stopped or 'a limit'}, before any {what} was found ({rule})"
+            return f"unknown: stopped at {self.stopped or 'a limit'}, before any {noun} was found ({rule})"
         claim = "optimal" if self.status is Status.OPTIMAL else "feasible, not proved best"
         best = ", then ".join(self.objectives)
         return f"{claim} by {best} ({rule}): {costs_text(self.costs, self.objectives)}"
@@ -431,7 +431,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
     """How long motions take, as far as that was stated."""
 
     def robot_plan(self) -> "RobotPlan | None":
-        """Return the plan for a robot's program; ``None`` without a tree."""
+        """Return the plan for a robot's program, with any retry policy; ``None`` without a tree."""
         if self.ids is None:
             return None
         from foon_asp.questions.robot_plan import RobotPlan  # noqa: PLC0415

@@ -22,22 +22,25 @@ def trusted_text(user_rules: Rule, of_tree: bool) -> str:
     """
     names = [f"{file['name']} (SHA-256 {file['sha256']})" for file in user_rules["files"]]
     names += [*user_rules["library"], *user_rules["constants"]]
-    empty = [[], []] in user_rules["claims"]
-    removed = [used[0] for used, without in user_rules["claims"] if len(used) == 1 and not without]
-    wanted = sum(not used for used, _ in user_rules["claims"]) - empty
-    others = len(user_rules["claims"]) - len(removed) - wanted - empty
+    has_empty_claim = [[], []] in user_rules["claims"]
+    excluded_units = [used[0] for used, without in user_rules["claims"] if len(used) == 1 and not without]
+    required_count = sum(not used for used, _ in user_rules["claims"]) - has_empty_claim
+    breaking_count = len(user_rules["claims"]) - len(excluded_units) - required_count - has_empty_claim
     limits = []
     for amounts, bound in user_rules["limits"]:
         units = [unit for ids in amounts.values() for unit in ids]
         if bound == 0:
-            removed += units
+            excluded_units += units
         elif bound > 0:
             limits.append(_limit_text(sorted(units), bound, [*amounts] == ["1"]))
-    none = empty or any(bound < 0 for _, bound in user_rules["limits"])
-    claims = ["no tree keeps to them"] if none else []
-    claims += [f"no tree has one of the units {', '.join(map(str, removed))}"] if removed else []
-    claims += [f"every tree has a unit of {counted(wanted, 'set')}"] if wanted else []
-    claims += [f"{others} {'set breaks' if others == 1 else 'sets break'} a rule"] if others else []
+    is_unsatisfiable = has_empty_claim or any(bound < 0 for _, bound in user_rules["limits"])
+    claims = ["no tree keeps to them"] if is_unsatisfiable else []
+    if excluded_units:
+        claims.append(f"no tree has one of the units {', '.join(map(str, excluded_units))}")
+    if required_count:
+        claims.append(f"every tree has a unit of {counted(required_count, 'set')}")
+    if breaking_count:
+        claims.append(f"{breaking_count} {'set breaks' if breaking_count == 1 else 'sets break'} a rule")
     claims += limits
     claims += ["the tree keeps to them"] if of_tree or not claims else []
     return escaped(f"among the trees that keep to {', '.join(names)}: {'; '.join(claims)}")
@@ -72,8 +75,8 @@ def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", fil
         claim_text = f"the certificate {file} proves {proved}, but takes on trust what rules say,"
         return [f"proof: {by}; {claim_text}", f"  {trusted_text(user_rules, of_tree=False)}"]
     if claim == "optimal" and by != "certificate":
-        sure = ", ".join(certificate.certified)
-        return [f"proof: {by}; the certificate {file} proves the {tree} best by {sure} alone"]
+        proved = ", ".join(certificate.certified)
+        return [f"proof: {by}; the certificate {file} proves the {tree} best by {proved} alone"]
     lines = [f"proof: certificate ({file}, {proof_size(content)})"]
     if content["not_covered"] and claim == "optimal":
         lines.append(f"  it is best among all {tree}s; only the solver says that it obeys the constraints")

@@ -83,8 +83,8 @@ def certify_tree(
 ) -> tuple[Certificate | None, Ending, str]:
     """Prove that an executable tree or plan is the best, without a search, and write the certificate.
 
-    Return the certificate or ``None``, how the proof ended, and in words what is proved. Without a
-    certificate, no file is written.
+    Return the certificate or ``None``, how the proof ended, and in words what is proved. The ending is
+    ``NEGATIVE`` if a better tree is found. Without a certificate, no file is written.
     """
     objectives, certificate = levels(objectives), None
     try:
@@ -95,12 +95,13 @@ def certify_tree(
     _write_if_found(certificate, file)
     if certificate is None:
         return None, Ending.LIMIT, "no certificate was found, and nothing is written"
-    content, sure = certificate.content, certificate.certified
+    content, proved_objectives = certificate.content, certificate.certified
     if certificate.claim == "bound":
         text = f"the certificate {file} proves a bound only: {bound_text(content)}"
         return certificate, Ending.LIMIT, text
-    ending = Ending.DONE if sure == objectives else Ending.LIMIT
-    return certificate, ending, f"proved best by {', then '.join(sure)} ({file}, {proof_size(content)})"
+    ending = Ending.DONE if proved_objectives == objectives else Ending.LIMIT
+    by = ", then ".join(proved_objectives)
+    return certificate, ending, f"proved best by {by} ({file}, {proof_size(content)})"
 
 
 def _prove_best(tree: Tree, objectives: tuple[Objective, ...], settings: Settings) -> Certificate | None:

@@ -52,8 +52,8 @@ class Envelope:
         self._holds = Postconditions(problem, levels(_SUCCESS), settings)
         reached = reach(problem)
         # A unit that the goals cannot need makes no tree better, but user rules may require it.
-        plain = not settings.constraints and settings.replaced is None
-        self._units = relevant(problem, reached) if plain else reached.units
+        is_plain = not settings.constraints and settings.replaced is None
+        self._units = relevant(problem, reached) if is_plain else reached.units
         self._unit_counts = self._count_by_motion(self._units)
         self.motions = sorted(self._unit_counts)
         try:
@@ -136,9 +136,9 @@ class Envelope:
         motions = set(self.motions)
         while motions:
             others = {unit for unit in self._units if network.motions[unit] in motions}.difference(self._tree)
-            sure = dict.fromkeys(others, Fraction(1)) | dict(own_rates)
+            raised_rates = dict.fromkeys(others, Fraction(1)) | dict(own_rates)
             outcome, better = self._solve_varied(
-                replace(self._problem, own_rates=sure, as_seen=self._problem)
+                replace(self._problem, own_rates=raised_rates, as_seen=self._problem)
             )
             if not better or outcome.units is None:
                 return motions if outcome.status is Status.OPTIMAL else set()

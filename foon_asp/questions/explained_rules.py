@@ -69,7 +69,7 @@ class ExplainedRule(Value, frozen=True):
 
     @classmethod
     def of(cls, explained: ShownRule) -> "ExplainedRule":
-        """Return an analysed rule as a value."""
+        """Return an analysed rule as a value for the result."""
         rule, (file, line, *_) = explained.rule, explained.source
         reason = _remark(rule.reason, explained.reason_source)
         beyond = _remark(rule.nonlocality, explained.nonlocality_source)

@@ -72,7 +72,7 @@ class Exported(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("e
             yield "rounded costs may make a planner take a tree for the best that is not quite"
 
     def domain(self) -> str:
-        """Return the domain, as ``--format domain`` prints it."""
+        """Return the domain in PDDL, which ``--format domain`` prints."""
         return self.domain_file
 
     def write(self, file: File, format_: str | None = None) -> None:

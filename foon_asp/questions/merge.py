@@ -106,6 +106,9 @@ class Merged(Result, frozen=True, kw_only=True, tag=schema_name("merge")):
         Parameters:
             file: The path of the file.
             format_: ``foon``, or nothing.
+
+        Raises:
+            UserError: for another format, and for a network that is in a store.
         """
         if format_ not in {None, "foon"}:
             raise UserError(f"found the format {format_!r}, expected 'foon'")

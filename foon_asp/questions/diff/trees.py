@@ -168,7 +168,7 @@ _Origin = FunctionalUnit | bool
 def _origins(tree: Tree, goals: Sequence[ObjectNode]) -> dict[ObjectNode, _Origin]:
     """Return how a tree gets each node that it needs, breadth first from the goals backwards.
 
-    A unit that only hands a node on does not make it.
+    A unit that needs a node itself does not make it.
     """
     problem = tree.problem
     container_rule = problem.containers, problem.utensils, problem.network
