@@ -48,7 +48,10 @@ def command(
 
 
 def _explain(constraints: tuple[Constraint, ...], constants: tuple[str, ...], format_: str) -> ExitCode:
-    """Print what each rule does; raises :class:`UserError` where the built-in encodings were changed."""
+    """Print what each rule does, and return ``ExitCode.DONE``.
+
+    Raises :class:`UserError` where the built-in encodings were changed.
+    """
     from foon_asp.questions.explained_rules import explain_rules  # takes clingo along
 
     return _show(explain_rules(constraints, constants, Progress()), format_)

@@ -23,7 +23,7 @@ def raise_at_ctrl_c() -> None:
 
 
 def _exit_at_once(*_: object) -> None:
-    """Print that the process was interrupted, and exit without any cleaning up."""
+    """Print that the process was interrupted, and exit with code 3 without any cleaning up."""
     try:
         os.write(2, _MESSAGE)
     finally:

@@ -146,7 +146,7 @@ def find_clash(problem: Problem, settings: Settings, own_weights: Mapping[Constr
     weights = {number: constraint.weight for number, constraint in by_number.items()}
     settings = settings._replace(relaxed=relaxed)
     program = assemble(settings, caller().reporter.warning, problem=problem)
-    blame = (question_encoding("blame.lp"),)
+    hitting_set_encoding = (question_encoding("blame.lp"),)
 
     def clash_with(**fields: Any) -> Clash:
         """Return the result with all constraints and these fields."""
@@ -163,22 +163,25 @@ def find_clash(problem: Problem, settings: Settings, own_weights: Mapping[Constr
         return clash_with(tree_exists_without_constraints=False)
     dropping = "optimize(_dropping,1).\n"
     corrections: list[tuple[int, ...]] = []
-    blamed: tuple[int, ...] = ()
+    hitting_set: tuple[int, ...] = ()
     while True:
-        ended = prepared.run(dropping + write_constraints(weights, blamed), predicates=[("_dropped", 1)])
-        if ended.units is None or not ended.exhausted:
+        dropping_run = prepared.run(
+            dropping + write_constraints(weights, hitting_set), predicates=[("_dropped", 1)]
+        )
+        if dropping_run.units is None or not dropping_run.exhausted:
             break
-        corrections.append(tuple(sorted(ended.atoms["_dropped"])))
+        corrections.append(tuple(sorted(dropping_run.atoms["_dropped"])))
         if not corrections[-1]:
             break
         rules = write_constraints(weights, ()) + write_corrections(corrections)
-        hitting = run(blame, rules, CLINGO_OPTIONS, deadline, predicates=[("_blamed", 1)])
-        if hitting.units is None or not hitting.exhausted:
+        hitting_run = run(hitting_set_encoding, rules, CLINGO_OPTIONS, deadline, predicates=[("_blamed", 1)])
+        if hitting_run.units is None or not hitting_run.exhausted:
             break
-        blamed = tuple(sorted(hitting.atoms["_blamed"]))
-    clashes = ended.units is None and ended.exhausted
+        hitting_set = tuple(sorted(hitting_run.atoms["_blamed"]))
+    clashes = dropping_run.units is None and dropping_run.exhausted
     if not corrections:
-        sufficient = ended.atoms["_dropped"] if ended.atoms else ()  # to drop, but perhaps not the cheapest
+        # Without these a tree exists, but perhaps they are not the cheapest.
+        sufficient = dropping_run.atoms["_dropped"] if dropping_run.atoms else ()
         return clash_with(
             complete=clashes,
             tree_exists_without_constraints=not clashes,
@@ -190,7 +193,7 @@ def find_clash(problem: Problem, settings: Settings, own_weights: Mapping[Constr
     if outcome.status is Status.INFEASIBLE:
         raise BugError("dropping the constraints does not leave a tree")
     return clash_with(
-        smallest_clash=constraints_of(blamed) if clashes else (),
+        smallest_clash=constraints_of(hitting_set) if clashes else (),
         smallest_proved=clashes,
         cheapest_to_drop=constraints_of(dropped),
         answer=Answer.of(outcome),

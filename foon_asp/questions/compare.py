@@ -286,7 +286,8 @@ def _compare_each_goal(
 ) -> Iterator[Comparison]:
     """Return the comparison of each goal, in order.
 
-    Comparisons that the file of ``results`` has are not repeated. All others are added to it.
+    Comparisons that the file of ``results`` has are not repeated. All others are added to it. Progress is
+    reported to the caller.
     """
     goals = {str(node): goal for node, goal in zip(problem.goal_nodes, problem.goals, strict=True)}
     with contextlib.ExitStack() as stack:

@@ -110,7 +110,7 @@ def _search_cells(result: SearchResult, broken: Sequence[str]) -> Iterator[str |
 
 
 def _measure_cell(result: SearchResult, objective: Objective) -> str:
-    """Return the measure of a search and its ratio to the optimum: ``10  1.11×``; empty without a tree."""
+    """Return the measure of a search and its ratio to a proved optimum: ``10  1.11×``; empty if unknown."""
     measure = result.measures.get(objective)
     if measure is None:
         return ""

@@ -272,7 +272,7 @@ def test_a_limit_while_more_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         patched.setattr(nearby_under_rules, "NEARBY", NEARBY._replace(max_units=-1))
         again = answer_under_rules(near_stew(tmp_path, *more), UNITS, WAVE)
         assert (again.status, again.costs) == (Status.OPTIMAL, found.costs)
-        patched.setattr("foon_asp.questions.answer._answered_reading", stopped)
+        patched.setattr("foon_asp.questions.answer._answer_with_reading", stopped)
         again = answer_under_rules(near_stew(tmp_path, *more), UNITS, WAVE)
         assert (again.status, again.costs, bool(again.stopped)) == (Status.FEASIBLE, found.costs, True)
         with pytest.raises(LimitError):
