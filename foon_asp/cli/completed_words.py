@@ -13,7 +13,7 @@ from foon_asp.rules.constraint_library import library_constraints
 from foon_asp.text.node_lookup import entry_names, nodes_beginning
 
 MAX_COMPLETIONS = 200
-"""Words that complete a line, at most: a shell cannot list more in a readable way."""
+"""The greatest number of completions: a shell cannot list more in a readable way."""
 
 _TABLES = ("kitchen", "rates", "utensils", "goals", "unit_prices", "unit_amounts")
 

@@ -18,7 +18,7 @@ class ExitCode(IntEnum):
     """The exit code of a command."""
 
     DONE = 0
-    """Done, and where something was to be proved, proved."""
+    """Done; if something was to be proved, it is proved."""
     NEGATIVE = 1
     """Proved that no tree exists, or a check failed."""
     USAGE = 2

@@ -428,7 +428,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         return write_units(map(self.problem.network.unit, self.ids), comments, self.problem.amounts)
 
     durations = Unserialized[Mapping[str, Duration]]({})
-    """How long motions take, as far as that was stated."""
+    """How long motions take; motions without a stated duration are missing."""
 
     def robot_plan(self) -> "RobotPlan | None":
         """Return the plan for a robot's program, with any retry policy; ``None`` without a tree."""

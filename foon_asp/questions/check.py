@@ -138,7 +138,7 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
                 yield from rule.lines()
 
     notes = Unserialized[tuple[str, ...]](())
-    """What a certificate proves of the tree, where one was asked for."""
+    """Lines on what a certificate proves of the tree, where one was asked for."""
 
     proof_ending = Unserialized[Ending](Ending.DONE)
     """How the proof ended, where one was asked for."""

@@ -61,7 +61,7 @@ class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("c
     published: PublishedTable | UnsetType = UNSET
 
     retrieved = Unserialized[tuple[Retrieved, ...]]()
-    """What each search returned for each goal, where trees are asked for, or there is but one."""
+    """The tree of each search for each goal; empty unless trees are asked for, or there is only one."""
 
     summed_up = Unserialized[bool]()
     """Whether a summary alone is shown."""

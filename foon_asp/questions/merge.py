@@ -51,13 +51,13 @@ class Merged(Result, frozen=True, kw_only=True, tag=schema_name("merge")):
     """The network; ``None`` where it was written into a store."""
 
     amounts = Unserialized[Amounts](MappingProxyType({}))
-    """How many copies of their object nodes units take and make, where that is not one."""
+    """How many of an object node each unit takes and makes, where that is not one."""
 
     store = Unserialized[Path | None](None)
     """The store that it was written into, if it was."""
 
     warnings = Unserialized[tuple[str, ...]]()
-    """What was assumed."""
+    """Lines on what was skipped or assumed in reading."""
 
     def show(self) -> Iterator[Block]:
         """Yield the counts in one line."""
