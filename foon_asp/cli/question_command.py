@@ -124,7 +124,10 @@ def _answer_function(question: Question) -> Callable[..., ExitCode]:
 
 
 def _format_options(question: Question) -> list[Callable[[Command], Command]]:
-    """Return decorators that add ``--format``, and ``--output`` for a result that can be a file."""
+    """Return decorators that add ``--format``, and ``--output`` for a result that can be a file.
+
+    For a question with a single format, there are none.
+    """
     if len(question.formats) == 1:
         return []
     if not question.suffixes:

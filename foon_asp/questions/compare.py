@@ -79,7 +79,8 @@ class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("c
     def show(self) -> Iterator[Block]:
         """Yield the table, the trees where they are asked for, and for several goals a summary.
 
-        With ``published``, yield only the table of published figures.
+        With ``published``, there is only the table of published figures, and with ``all_makeable`` only the
+        summary.
         """
         if isinstance(self.published, PublishedTable):
             yield from published_table(self.published, self.comparisons)
