@@ -142,7 +142,7 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
             yield from (line for step in last.units or () for line in step.lines())
 
     def _cells(self) -> Iterator[tuple[str, ...]]:
-        """Yield the cells of each row; the last has the helped units added and removed since the row before."""
+        """Yield the cells of each row; the last has helped units added or removed since the row before."""
         motions = {step.id: step.motion for row in self.rows for step in row.units or ()}
         before: tuple[int, ...] = ()
         for row in self.rows:
