@@ -44,7 +44,7 @@ from foon_asp.hypergraph import NONE
 from foon_asp.network import Network, NetworkBuilder, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, Restriction, levels, reach
 from foon_asp.processes.python_process import _end_all
-from foon_asp.questions.answer import answered_under
+from foon_asp.questions.answer import answer_under_rules
 from foon_asp.rules.ready_made import ready_made
 from foon_asp.store.import_files import import_files
 from foon_asp.text.data_folder import DataFiles, find_data, read_data
@@ -338,7 +338,7 @@ def _timed(
     if store is None:
         outcome = solve(problem, objectives, settings)
     else:
-        outcome = answered_under(opened(store, problem), objectives, settings).outcome
+        outcome = answer_under_rules(opened(store, problem), objectives, settings).outcome
     return _spent() - began, outcome
 
 

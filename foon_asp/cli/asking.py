@@ -1,4 +1,4 @@
-"""Asking a question for a command: the data are read, problems are posed, and the question is called."""
+"""From a parsed command to a result: the data are read, the problem is posed, and the question is called."""
 
 import importlib
 from collections.abc import Mapping, Sequence
@@ -30,24 +30,28 @@ from foon_asp.questions.tree import read_answer
 
 
 def find_question(verb: str) -> Question:
-    """Return the question of a verb, whose module is imported only now."""
+    """Import the module of a verb, and return the question that the verb asks."""
     module = importlib.import_module(f"foon_asp.questions.{module_name(verb)}")
     return question_of(getattr(module, question_name(verb)))
 
 
-def parameters(question: Question, values: Mapping[str, Any], parts: Role) -> dict[str, Any]:
-    """Return the values, by name, of the options of a question that belong to ``parts``."""
-    names = (option.name for option in question.options if option.role & parts)
+def values_with_role(question: Question, values: Mapping[str, Any], roles: Role) -> dict[str, Any]:
+    """Return the ``values``, by name, of those options of a question whose role is one of ``roles``.
+
+    An option without a value is left out.
+    """
+    names = (option.name for option in question.options if option.role & roles)
     return {name: values[name] for name in names if name in values}
 
 
 def ask(
     question: Question, values: Mapping[str, Any], deadline: Deadline | None, form: str | None = None
 ) -> Result:
-    """Call a question with the parameters of a command, under its ``deadline``; return the result.
+    """Read the data that a command names, call its question, and return the result.
 
-    ``form`` is the chosen format of the result; ``None`` is the default. Several assumed goals give an
-    :class:`EachGoal` of results.
+    ``values`` are the values of all options by name. ``form`` is the chosen format of the result; ``None`` is
+    the default. If no goal is named and several are assumed, the question is called for each of them. The
+    result is then an :class:`EachGoal`.
     """
     option_names = {option.name for option in question.options}
     command = _Command({name: value for name, value in values.items() if name not in option_names})
@@ -59,7 +63,7 @@ def ask(
         if question.pose is not no_data or "time_limit" in option_names:
             progress.begin()  # a search follows
         with asked_by(caller._replace(read_seconds=command.read_seconds)):
-            options_ = parameters(question, values, Role.QUESTION | Role.COMMAND)
+            options_ = values_with_role(question, values, Role.QUESTION | Role.COMMAND)
             results = [question.command(*subject, **options_) for subject in subjects]
     if len(results) == 1:
         return results[0]
@@ -67,16 +71,16 @@ def ask(
 
 
 def _warn_of_measures(command: "_Command", values: Mapping[str, Any]) -> None:
-    """Print a warning for each file of measures that the objectives of the question do not use."""
+    """Print a warning for each ``--measure`` file of which no measure is an objective of the question."""
     chosen = values.get("objectives")
-    if not command.measures_named or chosen is None:
+    if not command.names_measures or chosen is None:
         return
-    named = {word.strip() for words in chosen for word in words.split(",")}
+    chosen_names = {word.strip() for words in chosen for word in words.split(",")}
     measures_of: dict[str, list[str]] = {}
     for measure in command.dataset.measures.values():
         measures_of.setdefault(measure.place, []).append(measure.name)
     for file, names in measures_of.items():
-        if named.isdisjoint(names):
+        if chosen_names.isdisjoint(names):
             listed = " or ".join(f"--objective {name}" for name in names)
             click.echo(
                 f"{file}: warning: no objective is its measure, so it has no effect; add {listed}", err=True
@@ -84,11 +88,11 @@ def _warn_of_measures(command: "_Command", values: Mapping[str, Any]) -> None:
 
 
 def _subjects(question: Question, command: "_Command", values: Mapping[str, Any]) -> list[tuple[object, ...]]:
-    """Return the subjects of a question: one problem or tree, or one for each of several assumed goals.
+    """Return the first arguments of each call of a question, such as ``(problem,)``.
 
-    Assumed goals and kitchen items are reported to the user.
+    There is one call, or one for each of several assumed goals. Assumed goals and kitchen items are printed.
     """
-    problem_options = parameters(question, values, Role.PROBLEM)
+    problem_options = values_with_role(question, values, Role.PROBLEM)
     tree = values.get("tree")
     if question.pose is not a_plan and tree is not None and tree.is_file():  # a pipe is read once
         listed = read_answer(tree)
@@ -131,7 +135,10 @@ def _refuse_one_file(question: Question, values: Mapping[str, Any]) -> None:
 
 
 class _Command:
-    """The command of a question, as :class:`foon_asp.questions.posing.Command` describes it."""
+    """The current command of click, as :class:`foon_asp.questions.posing.Command` describes commands.
+
+    ``data`` are the values of the options of :func:`foon_asp.cli.shared_options.read_dataset` by name.
+    """
 
     def __init__(self, data: dict[str, Any]) -> None:
         self._data = data
@@ -144,22 +151,20 @@ class _Command:
 
     @property
     def read_seconds(self) -> float | None:
-        """The time that reading took; ``None`` if nothing was read."""
+        """The seconds that reading took; ``None`` if nothing was read."""
         return self.dataset.read_seconds if "dataset" in self.__dict__ else None
 
     def unnamed_goals(self) -> list[ObjectNode]:
         """Return the goals of a command without ``--goal``, which are answered one by one.
 
-        If the command names data with several listed goals, these are all of them; else the assumed goals.
+        They are the listed goals if the command names data that list several. Otherwise, they are assumed.
         """
-        if self.names_data:
-            listed = self.dataset.listed
-            return self.dataset.listed_goals() if len(listed) > 1 else self.dataset.assumed_goals()
-        return self.dataset.assumed_goals()
+        has_listed_goals = self.names_data and len(self.dataset.listed) > 1
+        return self.dataset.listed_goals() if has_listed_goals else self.dataset.assumed_goals()
 
     @property
     def names_data(self) -> bool:
-        """Whether the command names a network."""
+        """Whether the command names a network, or a folder of data."""
         return any(self._data.get(option) for option in ("sources", "folder", "network"))
 
     @property
@@ -169,7 +174,7 @@ class _Command:
         return level
 
     @property
-    def measures_named(self) -> bool:
+    def names_measures(self) -> bool:
         """Whether the command names files of measures."""
         return bool(self._data.get("measures"))
 
@@ -178,11 +183,11 @@ class _Command:
         return self._context.get_parameter_source(option) is ParameterSource.COMMANDLINE
 
     def add_sources(self, sources: Sequence[Path]) -> None:
-        """Add networks that are named without an option; the data are read anew."""
+        """Add networks to those that the command names; ``dataset`` then reads the data again."""
         if sources:
             self._data["sources"] = (*self._data.get("sources", ()), *sources)
             self.__dict__.pop("dataset", None)
 
     def reading(self) -> AbstractContextManager[object]:
-        """Return a context in which reading stops at the limits of the command."""
+        """Return a context manager in which reading stops at the limits of the command."""
         return shared_options.reading()

@@ -15,7 +15,7 @@ from foon_asp.batch.question_file import each_question, named_files, read_questi
 from foon_asp.batch.run_summary import RunSummary
 from foon_asp.batch.workers import answer_all
 from foon_asp.cli import shared_options
-from foon_asp.cli.batch_data import Opening, digest, measured
+from foon_asp.cli.batch_data import Opening, data_digest, measure_names
 from foon_asp.cli.click_option import click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath, WrittenPath
@@ -84,16 +84,19 @@ def command(
     with 3 when a limit stopped some, or ctrl-C the run.
     """
     check_outputs()
-    data["folder"], data["network"] = shared_options.with_sources(sources, data["folder"], data["network"])
-    measures = measured(data)
+    data["folder"], data["network"] = shared_options.folder_and_networks(
+        sources, data["folder"], data["network"]
+    )
+    measures = measure_names(data)
     lines = read_questions(questions, time_limit, measures)
     files = named_files(lines)
     refuse_inputs(results_file, files)
-    opening = Opening(tuple(data.items()), digest(data, files))
+    opening = Opening(tuple(data.items()), data_digest(data, files))
     opened = opening(quiet=False)
-    distinct = list(each_question(lines, opened))
+    distinct_questions = list(each_question(lines, opened))
 
     def warn(message: str) -> None:
+        """Print a warning to standard error."""
         click.echo(message, err=True)
 
     settings = Settings(constraints, encodings, constants)
@@ -108,10 +111,12 @@ def command(
     with RowsFile(rows_file, ANSWERS, common) as results:
         for text in results.twice:
             warn(text)
-        answered_before = [results.done[question] for question in distinct if question in results.done]
-        open_questions = [question for question in distinct if question not in results.done]
+        answered_before = [
+            results.done[question] for question in distinct_questions if question in results.done
+        ]
+        open_questions = [question for question in distinct_questions if question not in results.done]
         with Progress() as progress:
-            progress.step("answering", len(answered_before), len(distinct))
+            progress.step("answering", len(answered_before), len(distinct_questions))
             progress.begin()
             processes = min(jobs, max(1, len(open_questions)))
             try:
@@ -123,13 +128,13 @@ def command(
                 for row in rows:
                     results.add(row)
                     answered.append(row)
-                    progress.step("answering", len(answered_before) + len(answered), len(distinct))
+                    progress.step("answering", len(answered_before) + len(answered), len(distinct_questions))
             except KeyboardInterrupt:
                 interrupted = True
         if rows_file is not results_file:
             objectives = (*Objective, *map(Objective.of_measure, measures))
             write_table(results_file, results.done.values(), objectives)
-    summary = RunSummary.of(len(distinct), answered_before, answered, time.monotonic() - began)
+    summary = RunSummary.of(len(distinct_questions), answered_before, answered, time.monotonic() - began)
     if format_ == "json":
         click.echo(summary.json_text(), nl=False)
     else:
@@ -140,6 +145,10 @@ def command(
 
 
 def _exit_code(statuses: dict[str, int], interrupted: bool) -> ExitCode:
+    """Return ``LIMIT`` if ctrl-C or a limit came first, ``NEGATIVE`` if a question failed, else ``DONE``.
+
+    ``statuses`` has the number of questions by status.
+    """
     if interrupted or statuses.keys() & {"feasible", "unknown"}:
         return ExitCode.LIMIT
     return ExitCode.NEGATIVE if "failed" in statuses else ExitCode.DONE

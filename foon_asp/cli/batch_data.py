@@ -23,8 +23,9 @@ from foon_asp.text.object_list import read_object_list
 
 @dataclass(frozen=True)
 class Opening:
-    """A function that opens the data of a batch: the options that name them, and a digest of the files.
+    """A function that opens the data of a batch, and that can be sent to other processes.
 
+    ``named``: name and value of each option for data. ``digest``: a digest of the contents of the files.
     Equal openings open the same data.
     """
 
@@ -32,19 +33,22 @@ class Opening:
     digest: str
 
     def __call__(self, quiet: bool = True) -> "BatchData":
-        """Return the data, opened; ``quiet`` suppresses the warnings, which the first process has shown."""
+        """Read the data; ``quiet`` suppresses the warnings, which the first process has shown already."""
         with contextlib.redirect_stderr(io.StringIO()) if quiet else contextlib.nullcontext():
             return BatchData(shared_options.read_dataset(**dict(self.named)))
 
 
 class BatchData:
-    """The open data of a batch, with a dataset for each kitchen that was read so far."""
+    """The data of a batch, with a dataset for each kitchen that was read so far."""
 
     def __init__(self, dataset: Dataset) -> None:
         self._datasets: dict[str | None, Dataset] = {None: dataset}
 
     def named(self, word: str, containers: ContainerRule, kitchen: str | None) -> Sequence[str]:
-        """Return the goals that ``@goals`` or ``@makeable`` stands for, in one-line notation."""
+        """Return the goals that ``@goals`` or ``@makeable`` stands for, in one-line notation.
+
+        ``@makeable`` depends on the container rule and on the kitchen, as in :meth:`_dataset_with_kitchen`.
+        """
         dataset = self._dataset_with_kitchen(kitchen)
         if word == "@makeable":
             problem = dataset.problem((0,), containers, everything=True)
@@ -56,7 +60,10 @@ class BatchData:
         return [str(names.node(goal)) for goal in goals]
 
     def items(self, question: BatchQuestion) -> str:
-        """Return ``used-up`` if the goals file has an amount for a goal of the question, else ``lasting``."""
+        """Return ``used-up`` if the goals file has an amount for a goal of the question, else ``lasting``.
+
+        Goals that cannot be understood have no amount.
+        """
         dataset = self._datasets[None]  # all kitchens have the same goals
         if not dataset.wanted:
             return ITEMS[0]
@@ -67,11 +74,14 @@ class BatchData:
 
     @property
     def example(self) -> Problem:
-        """A problem over the data, with which the rules for all questions are checked."""
+        """A problem over the data for any goal, on which the rules for all questions are checked first."""
         return self._datasets[None].problem((0,), "strict")
 
     def problem(self, question: BatchQuestion) -> Problem:
-        """Return the problem of a question; the relevant part of a large store is read when first used."""
+        """Return the problem of a question.
+
+        Of a large store, only the part that the goals can need is read, at the first use of the problem.
+        """
         dataset = self._dataset_with_kitchen(question.kitchen)
         files = question.stock, question.stays
         stock, stays = (None if file is None else NamedPath(file) for file in files)
@@ -80,7 +90,10 @@ class BatchData:
         return dataset.nearby(goals, question.containers, items)
 
     def _dataset_with_kitchen(self, kitchen: str | None) -> Dataset:
-        """Return the dataset with another kitchen: a file, or ``@starting``; ``None`` is its own kitchen."""
+        """Return the dataset with a kitchen, which is read once.
+
+        ``kitchen`` is the path of a file, or ``@starting``; ``None`` is the kitchen of the data.
+        """
         if kitchen is not None and kitchen not in self._datasets:
             dataset = self._datasets[None]
             self._datasets[kitchen] = (
@@ -91,8 +104,8 @@ class BatchData:
         return self._datasets[kitchen]
 
 
-def measured(named: dict[str, Any]) -> Collection[str]:
-    """Return the names of the measures in the files that the options name."""
+def measure_names(named: dict[str, Any]) -> Collection[str]:
+    """Return the names of the measures in the files of ``--measure``; ``named`` has options by name."""
     files = named["measures"]
     if not files:
         return ()
@@ -101,10 +114,11 @@ def measured(named: dict[str, Any]) -> Collection[str]:
     return read_measures(files)
 
 
-def digest(named: dict[str, Any], question_files: Iterable[Path]) -> str:
-    """Return a digest of the contents of all files that the options and the questions name.
+def data_digest(named: dict[str, Any], question_files: Iterable[Path]) -> str:
+    """Return 16 hexadecimal digits of a digest of all files that the options and the questions name.
 
-    Raises :class:`UserError` for a pipe, which the processes could not read again.
+    Whether stand-ins are allowed, and whether the kitchen is the starting one, change the digest, too. Raises
+    :class:`UserError` for a pipe, which the processes could not read again.
     """
     others = {"level", "lenient", "measures", "stand_ins", "stand_in_tables", "similar"}
     files = find_data(**{key: value for key, value in named.items() if key not in others})

@@ -18,44 +18,47 @@ _RULES_KEY = "foon_asp.rules"
 
 
 def _keep_rules(context: click.Context, _: click.Parameter, value: tuple[str, ...]) -> None:
-    """Store the rules of a command in its context, for :func:`_with_rules`."""
+    """Store the values of ``--rule`` in the context of the command, for :func:`_with_rules`."""
     context.meta[_RULES_KEY] = tuple(map(RuleText, value))
 
 
 def _with_rules(
     context: click.Context, _: click.Parameter, value: tuple[Constraint, ...]
 ) -> tuple[Constraint, ...]:
-    """Return the constraints of a command followed by its rules, without duplicates."""
+    """Return the values of ``--constraint``, then the rules that :func:`_keep_rules` stored, each once."""
     return tuple(dict.fromkeys((*value, *context.meta.get(_RULES_KEY, ()))))
 
 
-def _weights(_: click.Context, parameter: click.Parameter, value: tuple[str, ...]) -> dict[Constraint, int]:
-    """Return the weights of soft constraints."""
+def _parse_soft(
+    _: click.Context, parameter: click.Parameter, value: tuple[str, ...]
+) -> dict[Constraint, int]:
+    """Parse values ``FILE.lp=WEIGHT``; return the weight of each constraint."""
     if not value:
         return {}
-    from foon_asp.cli.weighted_files import weighted_files
+    from foon_asp.cli.weighted_files import parse_weights
 
-    return weighted_files(value, parameter.opts[0])
+    return parse_weights(value, parameter.opts[0])
 
 
 def _constraint(text: str) -> Constraint:
+    """Return the constraint that a value of ``--constraint`` names: a file, or a ready-made one."""
     return named_constraint(text, NamedPath)
 
 
-def _options_alone(
+def _split_sources(
     context: click.Context, parameter: click.Parameter, value: tuple[str, ...]
 ) -> tuple[str, ...]:
-    """Return the arguments for another program: those from the first option on.
+    """Return the arguments from the first option on, which are for another program.
 
-    Words before the first option become the ``sources`` of the command, which are networks.
+    The words before the first option are networks: they become the parameter ``sources`` of the command.
     """
     words = list(itertools.takewhile(lambda word: not word.startswith("-"), value))
     context.params["sources"] = tuple(map(NamedPath, words))
     return value[len(words) :]
 
 
-def _complete(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
-    """Return the completions of a name from the data."""
+def _complete_from_data(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
+    """Return the completions of an incomplete word that names something in the data."""
     from foon_asp.cli.completed_words import completed_words
 
     return completed_words(context, parameter, incomplete)
@@ -69,13 +72,17 @@ def click_options(*options: Option) -> Callable[[Command], Command]:
     """Return a decorator that adds parameters of click for several options, in this order."""
 
     def decorate(command: Command) -> Command:
+        """Add the parameters of all ``options`` to a command."""
         return functools.reduce(lambda f, option: click_option(option)(f), reversed(options), command)
 
     return decorate
 
 
 def click_option(option: Option) -> Callable[[Command], Command]:
-    """Return a decorator that adds the parameter of click for an option."""
+    """Return a decorator that adds an option of a question as a parameter of click.
+
+    A positional option becomes an argument. The help of a repeatable one says that it is.
+    """
     choices = option.choices() if callable(option.choices) else option.choices
     kinds: dict[Kind, Any] = {
         Kind.TEXT: click.Choice(choices) if choices else None,
@@ -95,7 +102,7 @@ def click_option(option: Option) -> Callable[[Command], Command]:
             nargs=-1 if option.many else 1,
             metavar=option.metavar,
             required=not (option.optional or option.many),
-            callback=_options_alone if option.kind is Kind.OPTIONS else None,
+            callback=_split_sources if option.kind is Kind.OPTIONS else None,
         )
     words = option.flags or ("--" + option.name.replace("_", "-"),)
     if option.kind is Kind.FLAG:
@@ -110,7 +117,7 @@ def click_option(option: Option) -> Callable[[Command], Command]:
         metavar=option.metavar or ("FILE" if option.kind in {Kind.FILE, Kind.WRITTEN} else None),
         expose_value=option.role is not Role.EXTRA_VALUES,
         is_eager=option.role is Role.EXTRA_VALUES,  # before the option to which it adds
-        callback=_weights if option.kind is Kind.WEIGHTS else _CALLBACKS.get(option.name),
-        shell_complete=_complete if option.name in _NAMED_IN_DATA else None,
+        callback=_parse_soft if option.kind is Kind.WEIGHTS else _CALLBACKS.get(option.name),
+        shell_complete=_complete_from_data if option.name in _NAMED_IN_DATA else None,
         help=f"{option.help[:-1]}; repeatable." if option.many else option.help,
     )

@@ -1,4 +1,4 @@
-"""Completions for shells: names of goals, objectives, constraints and their constants."""
+"""Completions for shells: the names of goals, objectives, constraints and constants of constraints."""
 
 import os
 from collections.abc import Callable, Iterable, Mapping
@@ -13,7 +13,7 @@ from foon_asp.rules.constraint_library import library_constraints
 from foon_asp.text.node_lookup import entry_names, nodes_beginning
 
 MAX_COMPLETIONS = 200
-"""Words that complete a line, at most: a shell cannot list more in a readable way."""
+"""The greatest number of completions: a shell cannot list more in a readable way."""
 
 _TABLES = ("kitchen", "rates", "utensils", "goals", "unit_prices", "unit_amounts")
 
@@ -22,12 +22,12 @@ _MOTIONS, _LABELS = "_motion", ("_object", "_intermediate", "_ingredient")
 
 
 def completed_words(context: click.Context, parameter: click.Parameter, prefix: str) -> list[str]:
-    """Return the values of an option from the data that begin with the typed word ``prefix``."""
+    """Return the values of an option that begin with the typed word ``prefix``, read from the data."""
     return [*_COMPLETED[str(parameter.name)](context, prefix)]
 
 
-def _dataset(context: click.Context) -> Dataset:
-    """Return the data that the incomplete line names."""
+def _read_dataset(context: click.Context) -> Dataset:
+    """Read the data that the incomplete command line names, without lines that are not understood."""
     values = context.params
     # an option without its value stops click before it assigns arguments to names
     sources = values.get("sources") or filter(os.path.exists, context.args)
@@ -38,59 +38,63 @@ def _dataset(context: click.Context) -> Dataset:
     return load(source, **tables, measures=measures, level=level, lenient=True).dataset
 
 
-def _goals(context: click.Context, prefix: str) -> Iterable[str]:
-    """Return the labels of the goals file, then all other nodes."""
-    dataset = _dataset(context)
+def _complete_goal(context: click.Context, prefix: str) -> Iterable[str]:
+    """Return the entries of the goals file that begin with ``prefix``, then other nodes that do."""
+    dataset = _read_dataset(context)
     names = dataset.names
-    listed = _beginning(entry_names(dataset.listed, names), prefix)
+    listed = _words_with_prefix(entry_names(dataset.listed, names), prefix)
     return chain(listed, (str(names.node(o)) for o in nodes_beginning(prefix, names, MAX_COMPLETIONS)))
 
 
-def _objectives(context: click.Context, prefix: str) -> Iterable[str]:
-    """Return completions of a list of objectives, each with one more objective at its end."""
+def _complete_objectives(context: click.Context, prefix: str) -> Iterable[str]:
+    """Return completions of the last name in a list of objectives: of ``units,s``, ``units,success``."""
     done, comma, last = prefix.rpartition(",")
-    others = [name for name in (*Objective, *_dataset(context).measures) if name not in done.split(",")]
-    return (f"{done}{comma}{objective}" for objective in _beginning(others, last))
+    others = [name for name in (*Objective, *_read_dataset(context).measures) if name not in done.split(",")]
+    return (f"{done}{comma}{objective}" for objective in _words_with_prefix(others, last))
 
 
-def _constraints(context: click.Context, prefix: str) -> Iterable[str]:
-    """Return the names of ready-made constraints, or after a name and a colon its constants."""
+def _complete_constraint(context: click.Context, prefix: str) -> Iterable[str]:
+    """Return the names of ready-made constraints; after ``NAME:``, the constants of this constraint."""
     name, colon, settings = prefix.partition(":")
     if not colon:
-        return _beginning((constraint.name for constraint in library_constraints()), prefix)
+        return _words_with_prefix((constraint.name for constraint in library_constraints()), prefix)
     done, comma, last = settings.rpartition(",")
     return (f"{name}:{done}{comma}{constant}" for constant in _constants_of(name, context, last))
 
 
-def _constants(context: click.Context, prefix: str) -> Iterable[str]:
-    """Return the constants of the constraints on the line."""
+def _complete_constant(context: click.Context, prefix: str) -> Iterable[str]:
+    """Return completions of the constants that the constraints named on the command line have."""
     constraints = context.params.get("constraints") or ()
     names = [constraint.name.partition(":")[0] for constraint in constraints]
     return chain.from_iterable(_constants_of(name, context, prefix) for name in names)
 
 
 def _constants_of(constraint: str, context: click.Context, prefix: str) -> Iterable[str]:
-    """Return the constants of a ready-made constraint; after ``NAME=``, motions or labels as its values."""
+    """Return completions of ``CONSTANT=VALUE`` for a ready-made constraint.
+
+    Up to the ``=``, they are the constants of the constraint. After it, they are motions or labels of the
+    data, as the ending of the constant's name says; for a constant with another ending, there are none.
+    """
     name, equals, value = prefix.partition("=")
     if not equals:
         parameters = {entry.name: entry.parameters for entry in library_constraints()}
         names = (f"{parameter.name}=" for parameter in parameters.get(constraint, ()))
-        return _beginning(names, prefix)
+        return _words_with_prefix(names, prefix)
     values: Iterable[str] = ()
     if name.endswith(_MOTIONS):
-        values = _beginning(_dataset(context).motions, value)
+        values = _words_with_prefix(_read_dataset(context).motions, value)
     elif name.endswith(_LABELS):
-        values = _dataset(context).names.beginning(value, MAX_COMPLETIONS)
+        values = _read_dataset(context).names.beginning(value, MAX_COMPLETIONS)
     return (f"{name}={value}" for value in values)
 
 
-def _beginning(words: Iterable[str], prefix: str) -> Iterable[str]:
+def _words_with_prefix(words: Iterable[str], prefix: str) -> Iterable[str]:
     return (word for word in words if word.startswith(prefix))
 
 
 _COMPLETED: Mapping[str, Callable[[click.Context, str], Iterable[str]]] = {
-    "goals_named": _goals,
-    "objectives": _objectives,
-    "constraints": _constraints,
-    "constants": _constants,
+    "goals_named": _complete_goal,
+    "objectives": _complete_objectives,
+    "constraints": _complete_constraint,
+    "constants": _complete_constant,
 }

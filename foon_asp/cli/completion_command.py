@@ -1,4 +1,4 @@
-"""``foon-asp completion``: scripts for shells, which ask click for the completions of a line."""
+"""``foon-asp completion``: scripts by which shells ask for the completions of a command line."""
 
 import os
 import re
@@ -24,7 +24,7 @@ _LINE_VARIABLE = "FOON_ASP_LINE"  # in the environment: the line up to the curso
 class _Shell(ShellComplete):
     """A shell that receives completions, one on each line; without any, it completes file names itself.
 
-    The scripts of click split completions at commas or blanks, which names of object nodes have.
+    This replaces the scripts of click, which split completions at the commas and blanks of names.
     """
 
     def get_completion_args(self) -> tuple[list[str], str]:
@@ -35,7 +35,10 @@ class _Shell(ShellComplete):
         return words[1:], typed[:-1]
 
     def get_completions(self, args: list[str], incomplete: str) -> list[CompletionItem[str]]:
-        """Return the completions; none where the data that the line names cannot be read."""
+        """Return the distinct completions, at most ``MAX_COMPLETIONS``.
+
+        Those of ``--option=word`` begin with ``--option=``. There are none where the data cannot be read.
+        """
         from foon_asp.cli.completed_words import MAX_COMPLETIONS
 
         option, equals, _ = incomplete.partition("=") if incomplete.startswith("-") else ("", "", "")
@@ -49,13 +52,13 @@ class _Shell(ShellComplete):
         return [CompletionItem(word) for word in [*words][:MAX_COMPLETIONS]]
 
     def format_completion(self, item: CompletionItem[str]) -> str:
-        """Return a completion as the line that is printed."""
+        """Return the line that is printed for a completion, escaped."""
         return escaped(item.value)
 
 
 @add_completion_class
 class _Bash(_Shell):
-    """Bash, which completes the text after ``:`` or ``=`` as a word of its own, unless a quote is open."""
+    """Bash, which takes the text after ``:`` or ``=`` for a word of its own, unless a quote is open."""
 
     name = "bash"
     source_template = """_foon_asp() {
@@ -71,7 +74,7 @@ complete -o default -o filenames -F _foon_asp %(prog_name)s
 """
 
     def get_completions(self, args: list[str], incomplete: str) -> list[CompletionItem[str]]:
-        """Return the completions without the text up to the last ``:`` or ``=``."""
+        """Return the completions; unless a quote is open, without the text up to the last ``:`` or ``=``."""
         is_quoted = os.environ[_LINE_VARIABLE].removesuffix(incomplete).endswith(("'", '"'))
         completed = None if is_quoted else re.match(r".*[:=]", incomplete)
         items = super().get_completions(args, incomplete)
@@ -80,7 +83,7 @@ complete -o default -o filenames -F _foon_asp %(prog_name)s
 
 @add_completion_class
 class _Zsh(_Shell):
-    """Zsh, for which the script passes the line up to the cursor."""
+    """Zsh, whose script passes the command line up to the cursor."""
 
     name = "zsh"
     source_template = """#compdef %(prog_name)s
@@ -95,7 +98,7 @@ compdef _foon_asp %(prog_name)s
 
 @add_completion_class
 class _Fish(_Shell):
-    """Fish, for which the script passes the line up to the cursor."""
+    """Fish, whose script passes the command line up to the cursor."""
 
     name = "fish"
     source_template = """function __foon_asp
@@ -106,7 +109,10 @@ complete -c %(prog_name)s -a '(__foon_asp)'
 
 
 def answer_shell(program: click.Command, request: str) -> ExitCode:
-    """Print the script of a shell (``bash_source``), or the completions of a line (``bash_complete``)."""
+    """Print the script of a shell, or the completions of a command line.
+
+    ``request`` is what click puts into the environment, such as ``bash_source`` or ``bash_complete``.
+    """
     return ExitCode(shell_complete(program, {}, "foon-asp", SHELL_REQUEST, request))
 
 

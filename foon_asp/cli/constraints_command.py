@@ -1,4 +1,4 @@
-"""``foon-asp constraints``: a list of the ready-made constraints, and explanations of any rules."""
+"""``foon-asp constraints``: a list of the ready-made constraints, and explanations of rules."""
 
 import click
 
@@ -48,14 +48,17 @@ def command(
 
 
 def _explain(constraints: tuple[Constraint, ...], constants: tuple[str, ...], format_: str) -> ExitCode:
-    """Print an explanation of rules; raises :class:`UserError` where encodings are replaced."""
+    """Print what each rule does, and return ``ExitCode.DONE``.
+
+    Raises :class:`UserError` where the built-in encodings were changed.
+    """
     from foon_asp.questions.explained_rules import explain_rules  # takes clingo along
 
     return _show(explain_rules(constraints, constants, Progress()), format_)
 
 
 def _show(document: Document, format_: str) -> ExitCode:
-    """Print a document in a format."""
+    """Print a document in a format; return ``ExitCode.DONE``."""
     if format_ == "text":
         write_parts(document.show())
     else:

@@ -102,6 +102,7 @@ def command(paths: tuple[Path, ...], target: str, output: Path | None, lenient: 
 
 
 def _make_folder(folder: Path) -> None:
+    """Create a folder and its parents, unless it exists; raises :class:`UserError` if that fails."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -109,9 +110,10 @@ def _make_folder(folder: Path) -> None:
 
 
 def _tasks(files: list[FolderFile], is_folder: bool, output: Path | None, target: Dialect) -> list[_Task]:
-    """Return the files with the paths that they are written to.
+    """Return a task for each file: where its conversion is written to.
 
-    Raises :class:`UserError` where two would be written to the same path, or several need a folder.
+    ``is_folder`` says that a folder is converted. Raises :class:`UserError` for several files without an
+    output folder, and for two that would be written to one path.
     """
     if len(files) == 1 and not is_folder:
         file = files[0].file
@@ -134,13 +136,16 @@ def _tasks(files: list[FolderFile], is_folder: bool, output: Path | None, target
 
 
 def _suffix(file: Path, target: Dialect) -> str:
-    """Return the suffix of a converted file; lists of objects, such as kitchens, may have their own."""
+    """Return the ending for the name of a converted file; lists of objects may have one of their own."""
     text, format_ = read_plain_text(file), format_with(target)
     return format_.list_suffix if format_of(text, str(file)).lists_objects(text) else format_.suffix
 
 
 def _summary(tasks: list[_Task], results: list[Converted], target: Dialect, left_out: int) -> str:
-    """Return a summary in words: the dialects, and the losses, the most frequent first."""
+    """Return a summary in words: the dialects, and the losses, the most frequent first.
+
+    ``left_out`` is the number of lines that belong to no unit.
+    """
     dialects = Counter(result.dialect for result in results)
     if len(tasks) == 1:
         first_line = f"{tasks[0].file}: {results[0].dialect} → {target}"
@@ -150,7 +155,7 @@ def _summary(tasks: list[_Task], results: list[Converted], target: Dialect, left
     losses = [(kind, lost) for result in results for kind, lost in result.lost.items()]
     rows = []
     for kind in dict.fromkeys(kind for kind, _ in losses):
-        of_kind = [lost for other, lost in losses if other is kind]
+        of_kind = [lost for lost_kind, lost in losses if lost_kind is kind]
         rows.append((sum(lost.occurrences for lost in of_kind), f"{kind}; first at {of_kind[0].first}"))
     if left_out:
         rows.append((left_out, "lines that are in no unit; see the warnings"))

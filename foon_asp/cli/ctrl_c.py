@@ -11,18 +11,19 @@ _MESSAGE = b"interrupted before there was an answer\n"
 
 
 def end_at_ctrl_c() -> None:
-    """Make ctrl-C exit the process from now on."""
+    """Make ctrl-C exit the process at once; a handler other than Python's default one stays."""
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-        signal.signal(signal.SIGINT, _end)
+        signal.signal(signal.SIGINT, _exit_at_once)
 
 
 def raise_at_ctrl_c() -> None:
     """Make ctrl-C raise ``KeyboardInterrupt`` again, after :func:`end_at_ctrl_c`."""
-    if signal.getsignal(signal.SIGINT) is _end:
+    if signal.getsignal(signal.SIGINT) is _exit_at_once:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-def _end(*_: object) -> None:
+def _exit_at_once(*_: object) -> None:
+    """Print that the process was interrupted, and exit with code 3 without any cleaning up."""
     try:
         os.write(2, _MESSAGE)
     finally:

@@ -1,4 +1,4 @@
-"""Exit codes of the command line, and which one an ended question or an error has."""
+"""Exit codes of the command line, for the ending of a question and for errors."""
 
 import os
 from enum import IntEnum
@@ -18,7 +18,7 @@ class ExitCode(IntEnum):
     """The exit code of a command."""
 
     DONE = 0
-    """Done, and where something was to be proved, proved."""
+    """Done; if something was to be proved, it is proved."""
     NEGATIVE = 1
     """Proved that no tree exists, or a check failed."""
     USAGE = 2
@@ -30,12 +30,16 @@ class ExitCode(IntEnum):
 
 
 def exit_code_of(ending: "Ending") -> ExitCode:
-    """Return the exit code of a question for its ending, which has the same name."""
+    """Return the exit code with the same name as the ending of a question."""
     return ExitCode[ending.name]
 
 
 def code_and_message(error: BaseException) -> tuple[ExitCode, str]:
-    """Return the exit code and the message of an error that is not click's."""
+    """Return the exit code and the message of an error, except for errors that click shows itself.
+
+    Limits, ctrl-C and a lack of memory have the code ``LIMIT``; wrong input and failures of the system have
+    ``USAGE``. Any other error is reported as a bug.
+    """
     match error:
         case LimitError() | click.Abort(__cause__=LimitError()):
             limit = error.__cause__ if isinstance(error, click.Abort) else error

@@ -53,8 +53,8 @@ def command(folder: Path, recipe: Path | None, rates: bool, durations: bool) -> 
     what its last unit makes. Where one of the files exists already, nothing is written. With --rates or
     --durations, these files alone are written, with the motions of the recipe.
     """
-    data, source = _data(recipe)
-    files = _files(data, source, recipe)
+    data, source = _read_recipe(recipe)
+    files = _starter_texts(data, source, recipe)
     if rates or durations:
         files = {RATES_FILE: files[RATES_FILE]} if rates else {}
         if durations:
@@ -84,8 +84,11 @@ def command(folder: Path, recipe: Path | None, rates: bool, durations: bool) -> 
     return ExitCode.DONE
 
 
-def _data(recipe: Path | None) -> tuple[Data, Path]:
-    """Return the data of a recipe and where they are from; raises :class:`UserError` without a unit."""
+def _read_recipe(recipe: Path | None) -> tuple[Data, Path]:
+    """Read a recipe, by default the bundled one; return its data and its path.
+
+    Warnings are printed. Raises :class:`UserError` for a store, and for a recipe without a unit.
+    """
     source = recipe or starter_recipe() / "FOON.txt"
     if is_store(source):
         raise UserError(f"{source}: expected a recipe, FOON text or JSON, found a store")
@@ -97,8 +100,12 @@ def _data(recipe: Path | None) -> tuple[Data, Path]:
     return data, source
 
 
-def _files(data: Data, source: Path, recipe: Path | None) -> dict[str, str]:
-    """Return the texts of the data folder's files by name."""
+def _starter_texts(data: Data, source: Path, recipe: Path | None) -> dict[str, str]:
+    """Return the texts of all files of a new data folder, by name.
+
+    ``source`` is the path of the recipe. ``recipe`` is the same path, or ``None`` for the bundled recipe,
+    which comes with success rates.
+    """
     network = data.network
     text = "" if source.is_dir() else read_plain_text(source)
     recipe_text = write_units(map(network.unit, range(len(network))), (), data.amounts.units)

@@ -9,7 +9,7 @@ import click
 from foon_asp.cli import shared_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath
-from foon_asp.cli.output import terminal, write_data, write_output, write_parts
+from foon_asp.cli.output import terminal_width_and_colour, write_data, write_output, write_parts
 from foon_asp.cli.output_file import check_outputs, refuse_inputs
 from foon_asp.cli.shown_diff import show_diff
 from foon_asp.errors import UserError
@@ -21,7 +21,7 @@ from foon_asp.linting.linted_files import LintedFiles
 from foon_asp.linting.mending import is_mendable, mended
 from foon_asp.linting.vocabulary import Vocabulary
 from foon_asp.network import counted
-from foon_asp.questions.lint import Findings, Linted, find, linted_files
+from foon_asp.questions.lint import Findings, Linted, find_findings, linted_files
 from foon_asp.questions.question import TABLES
 from foon_asp.questions.result import Ending
 from foon_asp.report.rule_page import rule_page
@@ -32,13 +32,13 @@ from foon_asp.text.plain_file import plain_text, read_content
 from foon_asp.whole_file import utf_8, write_whole
 
 
-def _codes(_: click.Context, __: click.Parameter, incomplete: str) -> list[str]:
-    """Return the completions of a rule's code."""
+def _complete_code(_: click.Context, __: click.Parameter, incomplete: str) -> list[str]:
+    """Return the codes of the linter that begin with an incomplete word."""
     return [code for code in CATALOG if code.startswith(incomplete)]
 
 
 def _explain(context: click.Context, _: click.Parameter, code: str | None) -> None:
-    """Print the explanation of a code, and exit."""
+    """Print the explanation of a code, and end the command; without a code, do nothing."""
     if code is None or context.resilient_parsing:
         return
     if code not in CATALOG:
@@ -62,12 +62,16 @@ _STDIN = "-"
 @click.option(
     "--select",
     multiple=True,
-    shell_complete=_codes,
+    shell_complete=_complete_code,
     metavar="CODE",
     help="Report only this kind; repeatable.",
 )
 @click.option(
-    "--ignore", multiple=True, shell_complete=_codes, metavar="CODE", help="Leave this kind out; repeatable."
+    "--ignore",
+    multiple=True,
+    shell_complete=_complete_code,
+    metavar="CODE",
+    help="Leave this kind out; repeatable.",
 )
 @click.option(
     "--baseline",
@@ -94,7 +98,7 @@ _STDIN = "-"
     callback=_explain,
     expose_value=False,
     is_eager=True,
-    shell_complete=_codes,
+    shell_complete=_complete_code,
     metavar="CODE",
     help="Show what a code means, with an example, and lint nothing.",
 )
@@ -179,30 +183,33 @@ def command(
     if baseline and write_baseline:
         refuse_inputs(baseline, [*linted_files(on_disk, contents), *filter(None, [vocabulary])])
         check_replaceable(baseline)
-        findings = find(on_disk, contents, select, ignore, None, vocabulary).findings
+        findings = find_findings(on_disk, contents, select, ignore, None, vocabulary).findings
         write_whole(baseline, utf_8(json_text(plain(Baseline.of(baseline, findings)))))
         click.echo(f"wrote {baseline}: {counted(len(findings), 'finding')}", err=True)
         return ExitCode.DONE
-    found = find(on_disk, contents, select, ignore, baseline, vocabulary)
+    found = find_findings(on_disk, contents, select, ignore, baseline, vocabulary)
     count = 0
     if fix or diff:
-        repaired = _repaired(found, contents, unsafe_fixes)
+        repaired = _repair(found, contents, unsafe_fixes)
         count = sum(is_mendable(finding, unsafe_fixes) for finding in found.findings)
         if diff:
-            return _show(repaired, count)
-        contents = _write(repaired, contents)
-        found = find(on_disk, contents, select, ignore, baseline, vocabulary)
+            return _show_repairs(repaired, count)
+        contents = _write_repairs(repaired, contents)
+        found = find_findings(on_disk, contents, select, ignore, baseline, vocabulary)
         for content in contents.values():  # the mended text of standard input
             write_data(content)
     linted = found.linted(mended=count)
     _report(linted, statistics, format_, err=fix and stdin)
     if baseline:
-        _report_known(linted)
+        _report_baseline(linted)
     return ExitCode.NEGATIVE if linted.ending is Ending.NEGATIVE else ExitCode.DONE
 
 
 def _write_vocabulary(files: Sequence[Path], output: Path | None) -> ExitCode:
-    """Write the vocabulary of files, which ``--vocabulary`` reads; raises for files with errors."""
+    """Write the names in files as a vocabulary, which ``--vocabulary`` reads.
+
+    Raises :class:`UserError` for files with errors.
+    """
     linted = LintedFiles(files)
     linted.reader.raise_errors()
     context = Context(linted)
@@ -213,8 +220,11 @@ def _write_vocabulary(files: Sequence[Path], output: Path | None) -> ExitCode:
 _Repaired = Mapping[Path, tuple[bytes, bytes]]  # the content of a file before and after
 
 
-def _repaired(found: Findings, contents: Mapping[Path, bytes], unsafe: bool) -> _Repaired:
-    """Return the content of every file with a fixable finding, before and after its repair."""
+def _repair(found: Findings, contents: Mapping[Path, bytes], unsafe: bool) -> _Repaired:
+    """Return the content before and after the repair, for each file with a finding that can be repaired.
+
+    ``contents`` are the contents of files that are not read from disk. Nothing is written.
+    """
     fixes: dict[str, list[Diagnostic]] = {}
     for finding in found.findings:
         if is_mendable(finding, unsafe):
@@ -228,8 +238,8 @@ def _repaired(found: Findings, contents: Mapping[Path, bytes], unsafe: bool) -> 
     return repaired
 
 
-def _write(repaired: _Repaired, contents: Mapping[Path, bytes]) -> dict[Path, bytes]:
-    """Write repaired files; return the repaired ``contents`` of standard input."""
+def _write_repairs(repaired: _Repaired, contents: Mapping[Path, bytes]) -> dict[Path, bytes]:
+    """Write the repaired files, except those in ``contents``; return ``contents``, repaired."""
     for file, (before, after) in repaired.items():
         if before != after and file not in contents:
             write_whole(file, after)
@@ -237,8 +247,8 @@ def _write(repaired: _Repaired, contents: Mapping[Path, bytes]) -> dict[Path, by
     return {file: repaired[file][1] if file in repaired else content for file, content in contents.items()}
 
 
-def _show(repaired: _Repaired, count: int) -> ExitCode:
-    """Print the diff of the repairs, and their number."""
+def _show_repairs(repaired: _Repaired, count: int) -> ExitCode:
+    """Print the diff of the repairs, and the number of findings repaired; return the exit code."""
     for file, (before, after) in repaired.items():
         show_diff(str(file), plain_text(before, file), plain_text(after, file))
     changed = sum(before != after for before, after in repaired.values())
@@ -247,17 +257,21 @@ def _show(repaired: _Repaired, count: int) -> ExitCode:
 
 
 def _report(linted: Linted, statistics: bool, format_: str, err: bool) -> None:
-    """Print the findings; workflow commands of GitHub are data, which is not escaped."""
+    """Print the findings, or with ``statistics`` their counts by code.
+
+    With ``err``, text is printed to standard error. The format ``github`` is printed without escapes, since a
+    program reads it.
+    """
     if format_ == "github":
         write_data(linted.github())
     elif format_ == "json":
         click.echo(linted.json_text(), nl=False)
     else:
-        text = linted.statistics(terminal()[0]) if statistics else getattr(linted, format_)()
+        text = linted.statistics(terminal_width_and_colour()[0]) if statistics else getattr(linted, format_)()
         click.echo(text, nl=False, err=err)
 
 
-def _report_known(linted: Linted) -> None:
+def _report_baseline(linted: Linted) -> None:
     """Print how many findings the baseline left out, and how many of its findings no longer occur."""
     text = f"{counted(linted.known, 'known finding')} left out"
     if linted.gone:

@@ -1,4 +1,4 @@
-"""``foon-asp``: the group of all verbs, and the exit code and message of every error."""
+"""``foon-asp``: the group of all verbs, and the exit code and the message of every error."""
 
 import contextlib
 import os
@@ -37,12 +37,14 @@ _REPLACEMENTS = {  # advice for names of verbs that no longer exist
 
 
 class _Verbs(click.Group):
-    """The group of verbs, which imports the module of a verb when it is called."""
+    """The group of all verbs, which imports the module of a verb only when the verb is called."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return all verbs."""
         return list(VERBS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Import and return the command of a verb, or ``None``; from now on, ctrl-C raises an exception."""
         command = verb_command(cmd_name) if cmd_name in VERBS else None
         raise_at_ctrl_c()  # after all imports
         return command
@@ -50,7 +52,7 @@ class _Verbs(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Find the command of a verb; for an unknown verb, fail with the most similar one."""
+        """Find the command of a verb; for an unknown verb, fail and name the most similar verb."""
         word = args[0]
         if word not in VERBS and not word.startswith("-") and not ctx.resilient_parsing:
             from difflib import get_close_matches
@@ -62,10 +64,11 @@ class _Verbs(click.Group):
         return super().resolve_command(ctx, args)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write only the verbs that most people need into the help."""
         write_verbs(formatter, "Verbs that most people need", FIRST_VERBS)
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> "list[CompletionItem[str]]":
-        """Return the verbs with this beginning, except those for programs, and the options of the group."""
+        """Return completions: verbs, except those for programs, and the options of ``foon-asp`` itself."""
         from click.shell_completion import CompletionItem
 
         verbs = [verb for verb, entry in VERBS.items() if entry.group != FOR_PROGRAMS]
@@ -89,11 +92,15 @@ def cli() -> None:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Run the command line and exit with the documented code."""
+    """Run a command line, and exit the process with its exit code.
+
+    ``arguments`` are the words after ``foon-asp``; ``None`` takes them from the process. Only in that case,
+    limits count from the start of the process, and its memory is not freed at exit.
+    """
     words = sys.argv[1:] if arguments is None else arguments
     with safe_streams(), resend_lost_interrupts(), warnings.catch_warnings():
         warnings.simplefilter("always", FoonWarning)
-        warnings.showwarning = _warned
+        warnings.showwarning = _show_warning
         show_remarks("--quiet" not in words[: words.index("--") if "--" in words else None])
         code = _run(words, BEGAN if arguments is None else None)
         try:
@@ -107,14 +114,16 @@ def main(arguments: list[str] | None = None) -> None:
     sys.exit(int(code))
 
 
-def _warned(message: Warning | str, *_: object, **__: object) -> None:
+def _show_warning(message: Warning | str, *_: object, **__: object) -> None:
+    """Print the message of a warning on stderr, without its place in the code."""
     click.echo(f"warning: {message}", err=True)
 
 
 def _run(words: list[str], began: float | None) -> ExitCode:
-    """Run a verb, report an error on stderr, and return the exit code.
+    """Run a verb, or answer a shell that asks for completions; return the exit code.
 
-    Limits count from the time ``began`` of the monotonic clock, or ``None`` for the current time.
+    An error is reported on stderr. ``began`` is the time of the monotonic clock from which limits count. If
+    it is ``None``, they count from now. Otherwise, ctrl-C exits the process at once after the verb.
     """
     try:
         try:
@@ -134,7 +143,10 @@ def _run(words: list[str], began: float | None) -> ExitCode:
 
 
 def _report_error(error: BaseException, debug: bool) -> ExitCode:
-    """Report an error on stderr, and return its exit code."""
+    """Report an error on stderr, also under ``--quiet``, and return its exit code.
+
+    ``debug`` prints its traceback, too. A closed pipe is no error: the code is ``DONE``.
+    """
     keep(error)  # with the frames of its traceback, whose memory would take long to free
     show_remarks(True)
     if debug and not isinstance(error, click.ClickException | click.Abort | KeyboardInterrupt):

@@ -70,7 +70,7 @@ def command(
     The counts go to stderr. Exits with 0, or with 2 when something is not understood.
     """
     check_outputs()
-    folder, named = shared_options.with_sources(sources, folder, network)
+    folder, named = shared_options.folder_and_networks(sources, folder, network)
     if folder is None and not named:
         raise UserError("name the networks to merge, or a folder of data with --data")
     if store is not None and (output is not None or report):

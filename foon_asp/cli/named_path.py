@@ -21,11 +21,12 @@ class NamedPath(_Base):
     """
 
     def __format__(self, spec: str) -> str:
+        """Return the path escaped, in the format of a text."""
         return format(escaped(str(self)), spec)
 
 
 class WrittenPath(click.Path):
-    """The type of a parameter that names an output: a file that the command writes and does not read."""
+    """The type of a parameter that names an output: a path that the command writes and does not read."""
 
     def __init__(self, allow_dash: bool = False) -> None:
         super().__init__(allow_dash=allow_dash, path_type=NamedPath)

@@ -24,7 +24,8 @@ _SIGNS = {"→": "->", "≈": "~", "×": "x", "†": "+"}
 class SafeStream:
     """A text stream that escapes characters which a terminal or a log would hide or execute.
 
-    Characters that its encoding lacks are escaped as well.
+    Characters that the encoding of the stream lacks are escaped as well.
+
     ``stream``: the stream to write to; ``None`` if it was closed from the start.
     ``remarks``: whether failed writes are ignored, since an answer is complete without remarks.
     ``styled``: whether the codes of colours are kept; names must then be escaped before.
@@ -41,24 +42,27 @@ class SafeStream:
 
     @property
     def encoding(self) -> str:
-        """The encoding of the stream, which only styled text needs."""
+        """The encoding of the stream if it is styled; else ``utf-8``, since all text is escaped."""
         return (self._styled and self.stream and self.stream.encoding) or "utf-8"
 
     def write(self, text: str) -> int:
-        """Write a text; raises :class:`UserError` where the disk is full or the output is closed."""
+        """Write a text, escaped, unless the stream is quiet; return the number of its characters.
+
+        Raises :class:`UserError` where the disk is full or the output is closed.
+        """
         if not isinstance(text, str):
             raise TypeError(f"expected text, found {type(text).__name__}")
         if self.quiet:
             return len(text)
-        with self._faults():
-            stream = self._open()
+        with self._user_errors():
+            stream = self._open_stream()
             stream.write(encodable(escaped_lines(text, self._styled), stream.encoding or "utf-8"))
         return len(text)
 
     def write_data(self, content: bytes) -> None:
-        """Write bytes unchanged."""
-        with self._faults():
-            stream = self._open()
+        """Write bytes unchanged, and flush; raises :class:`UserError` where this fails."""
+        with self._user_errors():
+            stream = self._open_stream()
             stream.flush()
             stream.buffer.write(content)
             stream.buffer.flush()
@@ -66,7 +70,7 @@ class SafeStream:
     def flush(self) -> None:
         """Flush the stream."""
         if self.stream is not None:
-            with self._faults():
+            with self._user_errors():
                 self.stream.flush()
 
     def isatty(self) -> bool:
@@ -78,16 +82,21 @@ class SafeStream:
         return True
 
     def __getattr__(self, name: str) -> Any:
+        """Return another attribute of the stream that is written to."""
         return getattr(self.stream, name)
 
-    def _open(self) -> TextIO:
+    def _open_stream(self) -> TextIO:
+        """Return the stream to write to; raises ``OSError`` if it was closed from the start."""
         if self.stream is None:
             raise OSError("it is closed")
         return self.stream
 
     @contextlib.contextmanager
-    def _faults(self) -> Iterator[None]:
-        """Raise :class:`UserError` for a failed write; for ``remarks``, ignore the failure."""
+    def _user_errors(self) -> Iterator[None]:
+        """In a ``with`` block, raise :class:`UserError` for a failed write; for ``remarks``, ignore it.
+
+        A ``BrokenPipeError`` is raised as it is: the reader of the output has ended.
+        """
         try:
             yield
         except BrokenPipeError:
@@ -99,7 +108,7 @@ class SafeStream:
 
 @contextlib.contextmanager
 def safe_streams() -> Iterator[None]:
-    """Replace standard output and error by :class:`SafeStream` in a ``with`` block."""
+    """In a ``with`` block, let standard output and standard error be objects of :class:`SafeStream`."""
     out, err = sys.stdout, sys.stderr
     sys.stdout = cast(TextIO, SafeStream(out))
     sys.stderr = cast(TextIO, SafeStream(err, remarks=True))
@@ -110,7 +119,7 @@ def safe_streams() -> Iterator[None]:
 
 
 def show_remarks(shown: bool) -> None:
-    """Show, or drop, all text that is written to standard error from now on."""
+    """Make standard error show, or else drop, all text that is written from now on."""
     cast(SafeStream, sys.stderr).quiet = not shown
 
 
@@ -125,7 +134,10 @@ def write_data(content: str | bytes) -> None:
 
 
 def write_output(output: Path | None, content: bytes) -> None:
-    """Write into a file, and report it on stderr; or to standard output for ``None`` or ``-``."""
+    """Write bytes into a file, and report that on stderr.
+
+    For ``None`` or ``-``, write them to standard output instead.
+    """
     from foon_asp.whole_file import write_whole
 
     if output is None or str(output) == "-":
@@ -136,7 +148,7 @@ def write_output(output: Path | None, content: bytes) -> None:
 
 
 def console(err: bool = False) -> "Console":
-    """Return a console of rich for tables and progress, with colours at a terminal."""
+    """Return a console of rich on standard output, or with ``err`` on standard error."""
     from rich.console import Console
 
     target = sys.stderr if err else sys.stdout
@@ -144,10 +156,10 @@ def console(err: bool = False) -> "Console":
     return Console(file=cast(TextIO, SafeStream(stream, remarks=err, styled=True)))
 
 
-def terminal() -> tuple[int | None, bool]:
-    """Return the width of the terminal, in columns, and whether it shows colours.
+def terminal_width_and_colour() -> tuple[int | None, bool]:
+    """Return the width of the terminal in columns, and whether it shows colours.
 
-    The width is ``None`` where standard output is no terminal.
+    Where standard output is no terminal, they are ``None`` and ``False``.
     """
     if not sys.stdout.isatty():
         return None, False
@@ -156,7 +168,7 @@ def terminal() -> tuple[int | None, bool]:
 
 def write_parts(parts: Iterable[Block]) -> None:
     """Write lines and tables to standard output, in the width and the colours of the terminal."""
-    width, coloured = terminal()
+    width, coloured = terminal_width_and_colour()
     text = with_plain_signs(rendered(parts, width, coloured))
     stream = sys.stdout
     if coloured and isinstance(stream, SafeStream):
@@ -182,7 +194,7 @@ def say_once(text: str) -> None:
 
 
 def with_plain_signs(text: str) -> str:
-    """Return a text with ASCII for the signs that the encoding of standard output lacks."""
+    """Return a text with ASCII in place of arrows and other signs that standard output cannot encode."""
     encoding = getattr(getattr(sys.stdout, "stream", sys.stdout), "encoding", None) or "utf-8"
     return text.translate(
         {ord(sign): ascii_ for sign, ascii_ in _SIGNS.items() if encodable(sign, encoding) != sign}
@@ -190,7 +202,10 @@ def with_plain_signs(text: str) -> str:
 
 
 def drop_output() -> None:
-    """Discard unwritten output, which Python would otherwise try to write at exit, and fail."""
+    """Flush standard output and error; where this fails, discard what was not written.
+
+    Otherwise Python would try to write it at exit, and fail.
+    """
     for stream in (sys.stdout, sys.stderr):
         if stream is None:
             continue

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from foon_asp.cli.named_path import WrittenPath
-from foon_asp.cli.shared_options import with_sources
+from foon_asp.cli.shared_options import folder_and_networks
 from foon_asp.encoding.encoding_file import included_files
 from foon_asp.errors import UserError
 from foon_asp.rules.passed_constraint import LibraryUse, find_constraint
@@ -20,10 +20,10 @@ _STDIN = Path("/dev/stdin")  # may be a file: foon-asp lint - < recipe.txt
 def check_outputs(read: Iterable[Path] = (), written: Iterable[Path] | None = None) -> None:
     """Raise :class:`UserError` if the current command would write a file that it reads, or one file twice.
 
-    ``read`` are inputs that its parameters do not name, such as the files of a folder, and ``written`` its
-    outputs, if the parameters do not name them. The check runs before a search, which may take an hour.
+    ``read`` are further inputs, which its parameters do not name. ``written`` are its outputs; by default,
+    the outputs that its parameters name. The check runs before a search, which may take an hour.
     """
-    outputs = [*(_outputs() if written is None else written)]
+    outputs = [*(_output_files() if written is None else written)]
     if not outputs:
         return
     inputs = [*read_files(), *read]
@@ -40,33 +40,37 @@ def refuse_inputs(file: Path, inputs: Iterable[Path]) -> None:
 
 
 def read_files() -> Iterator[Path]:
-    """Return the files that the current command reads: named files, and the files of folders."""
+    """Yield the files that the current command reads: named files, and the files of folders.
+
+    Standard input is always one of them, since it may be a file.
+    """
     context = click.get_current_context()
-    written = {parameter.name for parameter in _written(context)}
+    written = {parameter.name for parameter in _output_parameters(context)}
     named: list[Path] = []
     for name, value in context.params.items():
         if name not in written:
-            named += _paths(value)
+            named += _paths_in(value)
     for path in named:
-        yield from _files(path)
+        yield from _files_read_for(path)
     if "network" in context.params:
         sources = context.params.get("sources", ())
-        folder, network = with_sources(sources, context.params["folder"], context.params["network"])
+        folder, network = folder_and_networks(sources, context.params["folder"], context.params["network"])
         files = find_data(folder, network, **{name: context.params[name] for name in _DATA_OPTIONS})
         yield from files.network
         yield from filter(None, files[1:])
     yield _STDIN
 
 
-def _written(context: click.Context) -> list[click.Parameter]:
+def _output_parameters(context: click.Context) -> list[click.Parameter]:
+    """Return the parameters of the current command that name an output."""
     return [parameter for parameter in context.command.params if isinstance(parameter.type, WrittenPath)]
 
 
-def _outputs() -> Iterator[Path]:
-    """Return the output files that the parameters of the current command name."""
+def _output_files() -> Iterator[Path]:
+    """Yield the output files that the parameters of the current command name; ``-`` is none."""
     context = click.get_current_context()
-    for parameter in _written(context):
-        for path in _paths(context.params[str(parameter.name)]):
+    for parameter in _output_parameters(context):
+        for path in _paths_in(context.params[str(parameter.name)]):
             if parameter.name == "folder_written":
                 from foon_asp.questions.export import FILES
 
@@ -75,8 +79,11 @@ def _outputs() -> Iterator[Path]:
                 yield path
 
 
-def _paths(value: object) -> list[Path]:
-    """Return the paths in the value of a parameter: a path, several, or the keys of a mapping."""
+def _paths_in(value: object) -> list[Path]:
+    """Return the paths in the value of a parameter: a path, several paths, or the keys of a mapping.
+
+    A ready-made constraint counts as its file.
+    """
     values = value if isinstance(value, tuple | Mapping) else (value,)
     return [
         item.file if isinstance(item, LibraryUse) else item
@@ -85,12 +92,16 @@ def _paths(value: object) -> list[Path]:
     ]
 
 
-def _files(path: Path) -> Iterator[Path]:
-    """Yield the files read for a path: files of a folder, a file with includes, a ready-made constraint."""
+def _files_read_for(path: Path) -> Iterator[Path]:
+    """Yield the files read for a path that a parameter names.
+
+    They are the encodings and networks of a folder, a file with the files that it includes, or the file of a
+    ready-made constraint. Of a path that cannot be read, there are none.
+    """
     with contextlib.suppress(UserError, OSError):  # reported when it is read
         if path.is_dir():
             for encoding in path.glob("*.lp"):
-                yield from _files(encoding)
+                yield from _files_read_for(encoding)
             yield from network_files(path)
             return
         file = path if path.exists() else find_constraint(path)
@@ -103,10 +114,10 @@ def _files(path: Path) -> Iterator[Path]:
 
 
 def _same_file(file: Path, other: Path) -> bool:
-    """Return whether two paths are one regular file, also through links."""
+    """Return whether two paths are one regular file that exists, also through links."""
     return file.is_file() and other.is_file() and file.samefile(other)
 
 
 def _same_output(file: Path, other: Path) -> bool:
-    """Return whether two paths are one file, which need not exist."""
+    """Return whether two paths name one file, which need not exist yet."""
     return _same_file(file, other) or file.resolve() == other.resolve()

@@ -28,8 +28,9 @@ _DELAY_SECONDS = 1.0  # before anything is shown: most answers take less
 class Progress(Reporter):
     """A reporter that shows one line during a long search: incumbent and bound, or the number of steps done.
 
-    The elapsed and the remaining seconds follow: up to the ``deadline``, or estimated from the steps done, or
-    from the speed at which the gap between incumbent and bound has closed.
+    The elapsed and the remaining seconds follow. The remaining seconds are estimated from the steps done, or
+    from the speed at which the gap between incumbent and bound closes. If the ``deadline`` comes earlier, or
+    nothing can be estimated, they are the seconds up to it.
     """
 
     def __init__(self, deadline: Deadline | None = None) -> None:
@@ -49,19 +50,19 @@ class Progress(Reporter):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """End the thread that shows the line, and wait until the line is gone."""
+        """End the thread that shows the line, and wait for at most a second until the line is gone."""
         self._finished.put(None)
         if self._thread is not None:
             self._thread.ended(_DELAY_SECONDS)  # so that the line does not overwrite the answer
 
     def begin(self) -> None:
-        """Start the time of the search, and the thread that shows the line."""
+        """Start the time of the search; at a terminal, also start the thread that shows the line."""
         self._began = time.monotonic()
         if sys.stderr.isatty():
             self._thread = DaemonThread(self._show)
 
     def _show(self) -> None:
-        """Show the line until the search has finished; a short search shows no line."""
+        """Wait for a second, then show the line until the search has finished."""
         with contextlib.suppress(Empty):
             self._finished.get(timeout=_DELAY_SECONDS)
             return
@@ -69,11 +70,11 @@ class Progress(Reporter):
             self._finished.get()
 
     def warning(self, message: str) -> None:
-        """Print a warning at once, unless the command has printed it already."""
+        """Print a warning to stderr at once, unless the command has printed it already."""
         say_once(message)
 
     def statistics(self, text: str) -> None:
-        """Print statistics of a search at once."""
+        """Print statistics of a search to stderr at once."""
         click.echo(text, err=True)
 
     def tree(self, costs: Costs) -> None:
@@ -81,13 +82,13 @@ class Progress(Reporter):
         self._costs = costs
 
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
-        """Store a bound, and the time of the first bound of this objective."""
+        """Store a bound; the first of an objective is also stored as such, with its time."""
         if self._bound is None or self._bound[0] != objective:
             self._first_bound = (bound, time.monotonic())
         self._bound = (objective, bound)
 
     def step(self, word: str, done: int, total: int) -> None:
-        """Store the number of steps done, and their total."""
+        """Store the number of steps done and their total; ``word`` says what is done."""
         if self._step is None:
             self._initial_steps = done
         self._step = (word, done, total)
@@ -98,7 +99,7 @@ class Progress(Reporter):
 
         seconds = f"{now - self._began:.0f} s"
         limit = None if self._deadline is None else self._deadline.left
-        remaining = self._remaining(now)
+        remaining = self._remaining_seconds(now)
         if remaining is not None and (limit is None or remaining < limit):
             seconds += f", about {remaining:.0f} s left at this pace"
         elif limit is not None:
@@ -112,8 +113,8 @@ class Progress(Reporter):
         bound = "no bound yet" if self._bound is None else f"proved: {bound_text(*self._bound)}"
         return f"{tree}  |  {bound}  |  {seconds}  |  ctrl-C stops with the best"
 
-    def _remaining(self, now: float) -> float | None:
-        """Return the estimated remaining seconds; ``None`` without any progress to extrapolate."""
+    def _remaining_seconds(self, now: float) -> float | None:
+        """Estimate the remaining seconds; ``None`` without any progress to extrapolate."""
         if self._step is not None:
             _, done, total = self._step
             new = done - self._initial_steps
@@ -125,6 +126,7 @@ class Progress(Reporter):
         return float(gap / closed) * (now - first_time) if closed and gap else None
 
     def __rich__(self) -> "Text":
+        """Return the current line, whenever rich draws it."""
         from rich.text import Text
 
         return Text(self.line(time.monotonic()))
@@ -132,9 +134,9 @@ class Progress(Reporter):
 
 @contextlib.contextmanager
 def bytes_bar(word: str, files: Iterable[Path]) -> Iterator[None]:
-    """Show at a terminal the bytes of networks read in a ``with`` block, and the remaining time.
+    """Show at a terminal how many bytes of ``files`` a ``with`` block has read, and the remaining time.
 
-    Nothing is shown for reading that takes less than a second, and in worker processes.
+    Nothing is shown for reading that takes less than a second, and nothing in worker processes.
     """
     if not sys.stderr.isatty() or click.get_current_context(silent=True) is None:
         yield
@@ -145,6 +147,7 @@ def bytes_bar(word: str, files: Iterable[Path]) -> Iterator[None]:
     with contextlib.ExitStack() as bars:
 
         def report(read: int) -> None:
+            """Add the number of bytes read since the last call; after a second, show the bar."""
             nonlocal advance, done
             done += read
             if advance is not None:
@@ -158,11 +161,11 @@ def bytes_bar(word: str, files: Iterable[Path]) -> Iterator[None]:
 
 @contextlib.contextmanager
 def _bar(word: str, total: int, completed: int) -> Iterator[Callable[[int], None]]:
-    """Yield a function that advances a progress bar."""
+    """Show a progress bar in a ``with`` block; yield a function that advances it by a number of bytes."""
     from rich.progress import BarColumn, DownloadColumn, TextColumn, TimeRemainingColumn
     from rich.progress import Progress as Bar
 
     columns = TextColumn(word), BarColumn(), DownloadColumn(), TimeRemainingColumn()
     with Bar(*columns, console=console(err=True)) as progress:
         task = progress.add_task("", total=total, completed=completed)
-        yield lambda steps: progress.advance(task, steps)
+        yield lambda read: progress.advance(task, read)

@@ -1,4 +1,4 @@
-"""Commands of click for the questions of the catalog, made from their descriptions."""
+"""Commands of click for the questions of the catalog, made from the description of each question."""
 
 import contextlib
 import sys
@@ -11,7 +11,7 @@ import click
 
 from foon_asp.asp.reporter import Reporter
 from foon_asp.cli import shared_options
-from foon_asp.cli.asking import ask, find_question, parameters
+from foon_asp.cli.asking import ask, find_question, values_with_role
 from foon_asp.cli.click_option import Command, click_option
 from foon_asp.cli.exit_code import ExitCode, exit_code_of
 from foon_asp.cli.named_path import WrittenPath
@@ -35,9 +35,9 @@ _ESCAPED_FORMATS = frozenset(
 
 
 def question_command(verb: str) -> click.Command:
-    """Return the command of a question, whose module is imported only now."""
+    """Import the module of a verb, and return the command that asks the question of the verb."""
     question = find_question(verb)
-    command: Callable[..., ExitCode] = _answering(question)
+    command: Callable[..., ExitCode] = _answer_function(question)
     if verb == "view":
         from foon_asp.cli.serve_command import with_serve_option
 
@@ -66,6 +66,7 @@ def _without_used_up(verb: str) -> Callable[[Command], Command]:
     """Return a decorator that adds a hidden ``--items``, which refuses ``used-up`` for this verb."""
 
     def refuse(_: click.Context, __: click.Parameter, value: str) -> None:
+        """Raise an error for ``used-up``."""
         if value != "lasting":
             raise not_built(verb)
 
@@ -79,8 +80,11 @@ def _without_used_up(verb: str) -> Callable[[Command], Command]:
     )
 
 
-def _answering(question: Question) -> Callable[..., ExitCode]:
-    """Return the function of a command: it asks a question, and shows or writes the result."""
+def _answer_function(question: Question) -> Callable[..., ExitCode]:
+    """Return the function that a command calls with the values of its options.
+
+    It asks the question, shows the result or writes it into files, and returns the exit code.
+    """
 
     def answer(
         format_: str | None = None,
@@ -88,13 +92,14 @@ def _answering(question: Question) -> Callable[..., ExitCode]:
         deadline: Deadline | None = None,
         **values: Any,
     ) -> ExitCode:
-        charts = [file for files in parameters(question, values, Role.CHART).values() for file in files]
+        """Check the output files, call the question, and show or write the result and its charts."""
+        charts = [file for files in values_with_role(question, values, Role.CHART).values() for file in files]
         if charts:
             from foon_asp.pictures.chart import check_suffix
 
             for chart in charts:
                 check_suffix(chart)
-        form = _form(question, format_, output)
+        form = _chosen_format(question, format_, output)
         check_outputs()
         try:
             result = ask(question, values, deadline, form)
@@ -110,16 +115,19 @@ def _answering(question: Question) -> Callable[..., ExitCode]:
                 click.echo(f"{chart} is not written: {error}", err=True)
         with asked_by(Caller(Reporter(), deadline=deadline)):
             if output is None:
-                _show(result, form)
+                _show_result(result, form)
             else:
-                _write(result, form, output)
+                _write_result(result, form, output)
         return exit_code_of(result.ending)
 
     return answer
 
 
 def _format_options(question: Question) -> list[Callable[[Command], Command]]:
-    """Return decorators that add ``--format``, and ``--output`` for a result that can be a file."""
+    """Return decorators that add ``--format``, and ``--output`` for a result that can be a file.
+
+    For a question with a single format, there are none.
+    """
     if len(question.formats) == 1:
         return []
     if not question.suffixes:
@@ -142,8 +150,11 @@ def _format_options(question: Question) -> list[Callable[[Command], Command]]:
     ]
 
 
-def _form(question: Question, named: str | None, output: Path | None) -> str:
-    """Return the chosen format; raises :class:`UserError` for one that a terminal cannot show."""
+def _chosen_format(question: Question, named: str | None, output: Path | None) -> str:
+    """Return the format of a result: ``named``, else that of the ending of ``output``, else the default.
+
+    Raises :class:`UserError` for a picture or a page without an output at a terminal.
+    """
     form = named or (question.formats[0] if output is None else question.format_of(output))
     if form in _NOT_FOR_TERMINALS and output is None and sys.stdout.isatty():
         raise UserError(
@@ -152,8 +163,8 @@ def _form(question: Question, named: str | None, output: Path | None) -> str:
     return form
 
 
-def _show(result: Result, format_: str) -> None:
-    """Write the result to standard output, and its remark, which the format cannot hold, to stderr."""
+def _show_result(result: Result, format_: str) -> None:
+    """Write a result to standard output in a format, and to stderr a remark that the format cannot hold."""
     if format_ == "text":
         write_parts(result.show())
     elif format_ in _ESCAPED_FORMATS:
@@ -166,8 +177,11 @@ def _show(result: Result, format_: str) -> None:
         click.echo(remark, err=True)
 
 
-def _write(result: Result, format_: str, output: Path) -> None:
-    """Write the result into a file, and report it on stderr."""
+def _write_result(result: Result, format_: str, output: Path) -> None:
+    """Write a result into a file in a format; report that, and what the format cannot hold, on stderr.
+
+    If there is nothing to draw, no file is written.
+    """
     if remark := result.remark(format_):
         click.echo(remark, err=True)
     with contextlib.suppress(NothingToDrawError):

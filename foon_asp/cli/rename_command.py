@@ -1,4 +1,4 @@
-"""``foon-asp rename``: renaming of an object, a state or a motion in all files."""
+"""``foon-asp rename``: renaming of an object, a state or a motion in several files together."""
 
 import difflib
 from codecs import BOM_UTF8
@@ -55,8 +55,8 @@ def command(old: str, new: str, paths: tuple[Path, ...], kind: str | None, write
     with 0, or with 2, and nothing written, if there is no such name, if it is that of several kinds of
     things, or if a line with it is not understood.
     """
-    texts = {file: read_plain_text(file) for file in _files(paths)}
-    renaming = Renaming(Rename(_kind(old, kind, texts), old, new))
+    texts = {file: read_plain_text(file) for file in _files_to_rename_in(paths)}
+    renaming = Renaming(Rename(_kind_of_name(old, kind, texts), old, new))
     if old == new:
         raise UserError("the new name is the old one")
     if not is_name(renaming.rename.kind, new):
@@ -68,7 +68,7 @@ def command(old: str, new: str, paths: tuple[Path, ...], kind: str | None, write
         try:
             format_.canonical_text(text, str(file))
         except InputError as error:
-            errors += [each for each in error.diagnostics if old in each.excerpt]
+            errors += [diagnostic for diagnostic in error.diagnostics if old in diagnostic.excerpt]
     if errors:
         raise InputError(errors)
     changed = {}
@@ -84,8 +84,8 @@ def command(old: str, new: str, paths: tuple[Path, ...], kind: str | None, write
     return ExitCode.DONE
 
 
-def _files(paths: Sequence[Path]) -> list[Path]:
-    """Return the FOON files of paths, and the tables in their folders."""
+def _files_to_rename_in(paths: Sequence[Path]) -> list[Path]:
+    """Return the FOON files of paths, and of each path that is a folder, also the tables in it."""
     files = [file for file, _ in foon_files(paths)]
     for folder in (path for path in paths if path.is_dir()):
         files += sorted(file for name in TABLES for file in folder.rglob(name) if file.is_file())
@@ -93,12 +93,16 @@ def _files(paths: Sequence[Path]) -> list[Path]:
 
 
 def _byte_order_mark(file: Path) -> bytes:
-    """Return the byte order mark of a file, or nothing; a renaming keeps it."""
+    """Return the byte order mark of UTF-8 if a file begins with it, else no bytes; a renaming keeps it."""
     return BOM_UTF8 if read_content(file).startswith(BOM_UTF8) else b""
 
 
-def _kind(old: str, kind: str | None, texts: Mapping[Path, str]) -> str:
-    """Return the kind of the old name; raises :class:`UserError` if there is none, or more than one."""
+def _kind_of_name(old: str, kind: str | None, texts: Mapping[Path, str]) -> str:
+    """Return what an old name is in the texts, such as ``object``; ``kind`` is the kind that the user chose.
+
+    Raises :class:`UserError` if the name is nowhere, is not of the chosen kind, or is of several kinds and
+    none is chosen.
+    """
     counts: Counter[tuple[str, str]] = Counter()
     for file, text in texts.items():
         counts.update(
@@ -122,6 +126,7 @@ def _kind(old: str, kind: str | None, texts: Mapping[Path, str]) -> str:
 
 
 def _with_article(kind: str) -> str:
+    """Return the word of a kind with its article: ``an object``."""
     return _WITH_ARTICLE.get(NameKind(kind), f"a {kind}")
 
 

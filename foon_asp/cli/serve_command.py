@@ -21,11 +21,15 @@ _FILE_OPTIONS = {"output": "-o", "format_": "--format"}
 
 
 def with_serve_option(command: Callable[..., ExitCode], question: Question) -> Callable[..., ExitCode]:
-    """Return the command of ``view`` with the option ``--serve``."""
+    """Add the option ``--serve`` to the command of ``view``.
+
+    The options of the ``question`` are for the page; all others are for the data.
+    """
     option_names = {option.name for option in question.options}
 
     @functools.wraps(command)
     def answer_or_serve(serve: bool, **values: Any) -> ExitCode:
+        """Serve the page if ``serve``, else call the command; no file can be written with the page."""
         if not serve:
             return command(**values)
         for name, flag in _FILE_OPTIONS.items():
@@ -40,7 +44,11 @@ def with_serve_option(command: Callable[..., ExitCode], question: Question) -> C
 
 
 def _serve(question: dict[str, Any], data: dict[str, Any], deadline: Deadline) -> ExitCode:
-    """Serve the page until ctrl-C, with the options of a question and of data."""
+    """Serve the page until ctrl-C.
+
+    ``question`` and ``data`` are the values of options by name. The ``deadline`` says the limits of each
+    answer. Raises :class:`UserError` if a package is missing, or for wrong rules.
+    """
     try:
         from foon_asp.serve.desk import Desk
         from foon_asp.serve.form import Form
@@ -48,7 +56,7 @@ def _serve(question: dict[str, Any], data: dict[str, Any], deadline: Deadline) -
     except ImportError as error:
         raise UserError(f"--serve needs more packages ({error}): pip install 'foon-asp[view]'") from None
     dataset = shared_options.read_dataset(**data)
-    first = Form(
+    form = Form(
         goals=tuple(question["goals_named"]),
         objectives=tuple(map(str, parse_objectives(question["objectives"], dataset.measures))),
         containers=question["containers"],
@@ -62,10 +70,10 @@ def _serve(question: dict[str, Any], data: dict[str, Any], deadline: Deadline) -
             "encodings": question["encodings"],
         }
     )
-    example = dataset.problem((0,), first.containers)
+    example = dataset.problem((0,), form.containers)
     # to report errors in files of rules before the page is opened
     assemble(rules, functools.partial(click.echo, err=True), problem=example)
     used_up = items_of(dataset, question["items"], question["stock"], question["stays"])
-    desk = Desk(Foon(dataset, "the data"), first, deadline.seconds, deadline.memory, rules, used_up)
+    desk = Desk(Foon(dataset, "the data"), form, deadline.seconds, deadline.memory, rules, used_up)
     serve(desk, lambda address: click.echo(f"{address}\nopen this in a browser; ctrl-C ends it"))
     return ExitCode.DONE

@@ -1,4 +1,4 @@
-"""Options that several verbs share: of data, limits and output; and the data that they name."""
+"""Options that several verbs share, for data, limits and output, and the reading of the data."""
 
 import functools
 from collections.abc import Callable, Sequence
@@ -107,7 +107,8 @@ _QUIET_OPTION = click.option(
 )
 
 
-def _note_verbose(context: click.Context, _: click.Parameter, verbose: bool) -> None:
+def _store_verbose(context: click.Context, _: click.Parameter, verbose: bool) -> None:
+    """Store in the context whether ``-v`` was named, for :func:`is_verbose`."""
     context.meta[_VERBOSE] = verbose
 
 
@@ -116,7 +117,7 @@ _VERBOSE_OPTION = click.option(
     "--verbose",
     is_flag=True,
     expose_value=False,
-    callback=_note_verbose,
+    callback=_store_verbose,
     help="List the goals and the items that are assumed where none are given.",
 )
 _DEBUG_OPTION = click.option(
@@ -130,7 +131,7 @@ def debug_option(command: Command) -> Command:
 
 
 def format_option(*formats: str) -> Callable[[Command], Command]:
-    """Return a decorator that adds ``--format`` with these formats, of which the first is the default."""
+    """Return a decorator that adds ``--format`` with some formats, the default first."""
     return click.option(
         "--format", "format_", type=click.Choice(formats), default=formats[0], show_default=True
     )
@@ -145,7 +146,7 @@ def output_option(metavar: str, help_: str) -> Callable[[Command], Command]:
 
 
 def network_options(command: Command) -> Command:
-    """Add the options that name the data."""
+    """Add the options that name data, ``-v``, and the options of every verb."""
     added = (*_DATA_OPTIONS, _VERBOSE_OPTION, debug_option)
     return functools.reduce(lambda f, option: option(f), reversed(added), command)
 
@@ -156,20 +157,22 @@ def is_verbose() -> bool:
 
 
 def data_options(command: Command) -> Command:
-    """Add the options that name the data, the measures, the stand-ins and the level."""
+    """Add the options of :func:`network_options`, and those for measures, stand-ins and the level."""
     options = (_MEASURE_OPTION, *_STAND_IN_OPTIONS, _LEVEL_OPTION)
     return network_options(functools.reduce(lambda f, option: option(f), reversed(options), command))
 
 
 def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
-    """Add the options for limits to a command, which is then called with the ``deadline`` that they set.
+    """Add the options for limits to a command.
 
-    If a limit stops the command, a message says what to do.
+    The command is called with the ``deadline`` that they set, in place of their values. If a limit stops it,
+    a message says what to do.
     """
 
     @functools.wraps(command)
     def limited(time_limit: float | None, memory_limit: int | None, **values: object) -> ExitCode:
-        deadline = begin(time_limit, memory_limit)
+        """Call the command with its deadline; print advice if a limit stopped it."""
+        deadline = start_deadline(time_limit, memory_limit)
         try:
             code = command(deadline=deadline, **values)
         except KeyboardInterrupt as stop:
@@ -183,10 +186,11 @@ def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
     return click_options(*LIMITS)(limited)
 
 
-def begin(time_limit: float | None, memory_limit: int | None) -> Deadline:
-    """Return the deadline of the current command.
+def start_deadline(time_limit: float | None, memory_limit: int | None) -> Deadline:
+    """Return the deadline of the current command, and store it for :func:`reading`.
 
-    Time counts from the start of the process, if the process runs only this command.
+    The limits are in seconds and in bytes; ``None`` is unlimited. Time counts from the start of the process,
+    if the process runs only this command.
     """
     context = click.get_current_context()
     began = context.obj if isinstance(context.obj, float) else None
@@ -196,18 +200,19 @@ def begin(time_limit: float | None, memory_limit: int | None) -> Deadline:
 
 
 def reading() -> Watch:
-    """Return a context in which reading stops at the limits of the command, if it has any."""
+    """Return a context manager in which reading stops at the limits of the current command, if it has any."""
     context = click.get_current_context(silent=True)
     deadline: Deadline | None = context.meta.get(_DEADLINE) if context else None
     return (deadline or Deadline()).watched("reading", late=True)
 
 
-def with_sources(
+def folder_and_networks(
     sources: Sequence[Path], folder: Path | None, network: Sequence[Path]
 ) -> tuple[Path | None, tuple[Path, ...]]:
-    """Return the folder and the networks that the command names, as arguments (``sources``) or by options.
+    """Return the data folder and the networks that a command names.
 
-    A single folder as argument is a folder with all data.
+    ``sources`` are its arguments; ``folder`` and ``network`` are the values of ``--data`` and ``--network``.
+    An argument is a network. Only a folder that is named alone is the data folder.
 
     Raises :class:`UserError` for a source that does not exist.
     """
@@ -236,11 +241,12 @@ def read_dataset(
     stand_in_tables: Sequence[Path] = (),
     similar: Sequence[Path] = (),
 ) -> Dataset:
-    """Return the data that the options name; warnings go to stderr.
+    """Read the data that the options name; print each warning once.
 
-    ``sources`` are networks named as arguments, see :func:`with_sources`.
+    ``sources`` are networks named as arguments, as in :func:`folder_and_networks`. The data are closed when
+    the command ends.
     """
-    folder, network = with_sources(sources, folder, network)
+    folder, network = folder_and_networks(sources, folder, network)
     with reading():
         files = find_data(folder, network, kitchen, rates, utensils, goals, unit_prices, unit_amounts)
     with bytes_bar("reading", files.network), reading():

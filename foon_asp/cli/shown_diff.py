@@ -11,7 +11,10 @@ from foon_asp.whole_file import utf_8
 
 
 def show_diff(file: str, before: str, after: str) -> None:
-    """Print the diff of a file: escaped on a terminal, and otherwise unchanged, for programs."""
+    """Print the diff between two texts of a file.
+
+    At a terminal, its characters are escaped; a program gets them unchanged.
+    """
     text = line_diff(escaped(file), before, after)
     if sys.stdout.isatty():
         click.echo(text, nl=False)

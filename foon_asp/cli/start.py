@@ -4,7 +4,7 @@ from foon_asp.cli.ctrl_c import end_at_ctrl_c
 
 
 def main() -> None:
-    """Import the command line and run it."""
+    """Make ctrl-C exit the process at once, then import the command line and run it."""
     end_at_ctrl_c()
     from foon_asp.cli.main import main as run
 

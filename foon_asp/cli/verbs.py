@@ -1,4 +1,4 @@
-"""Index of the verbs of the command line under headings: questions of the catalog, and work with files."""
+"""The verbs of the command line, by heading of the help."""
 
 import importlib
 from collections.abc import Mapping, Sequence
@@ -35,7 +35,7 @@ FIRST_VERBS = ("solve", "view", "compare", "why-not", "check", "alternatives", "
 
 
 def verb_command(verb: str) -> click.Command:
-    """Return the command of a verb, whose module is imported only now."""
+    """Import the module of a verb, and return its command."""
     if verb in INDEX:
         from foon_asp.cli.question_command import question_command
 
@@ -46,11 +46,11 @@ def verb_command(verb: str) -> click.Command:
 
 
 def verbs_of(group: str) -> Sequence[str]:
-    """Return the verbs of a group, in the order of the help."""
+    """Return the verbs under a heading of the help, in their order there."""
     return [verb for verb, entry in VERBS.items() if entry.group == group]
 
 
 def write_verbs(formatter: click.HelpFormatter, heading: str, verbs: Sequence[str]) -> None:
-    """Write verbs with their lines of help under a heading."""
+    """Write verbs under a heading into the help, each with one line that explains it."""
     with formatter.section(heading):
         formatter.write_dl([(verb, VERBS[verb].line) for verb in verbs])

@@ -7,11 +7,11 @@ from foon_asp.errors import UserError
 from foon_asp.rules.passed_constraint import Constraint, find_constraint, given_constraint
 
 
-def weighted_files(settings: Sequence[str], option: str) -> dict[Constraint, int]:
-    """Return the constraints in ``FILE.lp=WEIGHT`` values of an option, with their weights.
+def parse_weights(settings: Sequence[str], option: str) -> dict[Constraint, int]:
+    """Parse the values ``FILE.lp=WEIGHT`` of an option; return the weight of each constraint.
 
-    A weight is a whole number from 1 to a million. Instead of a file, a value may have a rule or a ready-made
-    constraint.
+    A weight is a whole number from 1 to a million. In place of the file, there may be a rule or a ready-made
+    constraint. ``option`` is the flag, for messages.
 
     Raises :class:`UserError` for a value of another form, and for a constraint with two weights.
     """

@@ -1,4 +1,4 @@
-"""Start and end of a process that answers one command: its start time, and an exit that frees no objects."""
+"""Start and end of a process that answers one command: the start time, and a fast exit."""
 
 import atexit
 import contextlib
@@ -14,7 +14,7 @@ _kept: list[object] = []
 
 
 def keep(*objects: object) -> None:
-    """Keep objects until the next command, so that their memory is not freed after the answer.
+    """Refer to objects until the next call, so that Python does not free them before the process exits.
 
     Freeing a network of a million units would take seconds.
     """
@@ -22,7 +22,7 @@ def keep(*objects: object) -> None:
 
 
 def leave(code: int) -> NoReturn:
-    """Exit the process as at its normal end, but without freeing its objects one by one."""
+    """Run the exit handlers, flush the output, and exit the process without freeing its objects."""
     atexit._run_exitfuncs()
     for stream in (sys.stdout, sys.stderr):
         with contextlib.suppress(OSError, ValueError, AttributeError):

@@ -1,4 +1,4 @@
-"""Which nodes of a recipe a network knows, and in which words it knows the others."""
+"""The nodes of a recipe compared with those of a network: known, one edit away, or new."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -56,12 +56,12 @@ class Aligned(Result, frozen=True, kw_only=True, tag=schema_name("align")):
     """The nodes of a recipe compared with those of a network.
 
     Attributes:
-        in_network: How many nodes the network has.
-        one_edit: How many are one edit away from one that it has.
+        in_network: How many nodes of the recipe the network has.
+        one_edit: How many are one edit away from a node that it has.
         new: How many are neither.
-        labels_known: How many labels the network has, of how many.
+        labels_known: How many labels of the recipe the network has.
         labels: How many different labels the recipe has.
-        units_known: How many units the network has.
+        units_known: How many units of the recipe the network has.
         units: How many units the recipe has.
         nodes: The nodes, in the order of the recipe.
 
@@ -87,11 +87,11 @@ class Aligned(Result, frozen=True, kw_only=True, tag=schema_name("align")):
     """The units of the recipe in the words of the network."""
 
     def foon(self) -> str:
-        """Return the recipe in the words of the network, as FOON text."""
+        """Return the recipe as FOON text, in which a node of the network replaces each node one edit away."""
         return write_units(self.aligned_units, ["In the words of another network"])
 
     def show(self) -> Iterator[Block]:
-        """Return how many nodes are known, and a list of the other nodes with the edits."""
+        """Yield how many nodes are known, the nodes one edit away with their edits, and the new nodes."""
         yield (
             f"{counted(len(self.nodes), 'node')}: {self.in_network} known, {self.one_edit} one edit away, "
             f"{self.new} new"
@@ -111,8 +111,11 @@ class Aligned(Result, frozen=True, kw_only=True, tag=schema_name("align")):
             yield from ("", "new:", *(f"  {row.node}" for row in new_nodes))
 
 
-def _posed(command: Command) -> tuple[Foon]:
-    """Return the recipe that the command names."""
+def _pose_recipe(command: Command) -> tuple[Foon]:
+    """Return the recipe that a command names, as the first argument of :func:`align`.
+
+    Raises :class:`UserError` if it names none.
+    """
     if not command.names_data:
         raise UserError("align what? name a recipe: foon-asp align RECIPE --to NETWORK")
     return the_data(command)
@@ -121,7 +124,7 @@ def _posed(command: Command) -> tuple[Foon]:
 @question(
     formats=(*TABLES, "foon"),
     suffixes=Aligned.SUFFIXES,
-    pose=_posed,
+    pose=_pose_recipe,
     help_="""
     \b
     foon-asp align recipe.txt --to FOON.txt
@@ -140,7 +143,7 @@ def align(
     """Compare the nodes of a recipe with those of a network: known, one edit away, or new.
 
     Parameters:
-        data: The recipe. Its table of stand-ins is used, the usual one if it has none.
+        data: The recipe. Its table of stand-ins is used, or the usual table if it has none.
         to: The network whose words count, or its path.
 
     Returns:
@@ -161,8 +164,8 @@ def align(
     other = read.data.network
     table = data.dataset.stand_ins or StandInTable.usual()
     prices = NodePrices(other, table)
-    nearest = {node: _one_edit_away(node, other, table, prices) for node in recipe.objects}
-    nodes = tuple(_aligned(node, o, recipe, other, table) for node, o in nearest.items())
+    nearest = {node: _node_one_edit_away(node, other, table, prices) for node in recipe.objects}
+    nodes = tuple(_aligned_node(node, o, recipe, other, table) for node, o in nearest.items())
     matches = Counter(node.match for node in nodes)
     labels = set(recipe.by_label)
     aligned = Aligned(
@@ -185,18 +188,26 @@ def align(
     return aligned.knowing(aligned_units=tuple(renamed))
 
 
-def _one_edit_away(node: ObjectNode, network: Network, table: StandInTable, prices: NodePrices) -> int | None:
-    """Return the id of the cheapest node one edit away from a node; ``None`` if none is, or it is known."""
+def _node_one_edit_away(
+    node: ObjectNode, network: Network, table: StandInTable, prices: NodePrices
+) -> int | None:
+    """Return the id of the cheapest node of a network that differs from a node in one edit of the table.
+
+    It is ``None`` if there is no such node, or if the network has the node itself.
+    """
     if network.object_id(node) is not None:
         return None
     priced = sorted((price, o) for o, price in prices.of_node(node).items())
     return next((o for _, o in priced if len(table.differences(network.objects[o], node) or ()) == 1), None)
 
 
-def _aligned(
+def _aligned_node(
     node: ObjectNode, nearest: int | None, recipe: Network, other: Network, table: StandInTable
 ) -> AlignedNode:
-    """Return how a node of a recipe matches another network; ``nearest`` is the node one edit away, by id."""
+    """Return how a node of a recipe is found in the ``other`` network.
+
+    ``nearest`` is the id of the node one edit away; ``None`` if there is none, or if the node is known.
+    """
     value = named_node(recipe, node)
     if nearest is None:
         match = Match.NEW if other.object_id(node) is None else Match.IN_NETWORK

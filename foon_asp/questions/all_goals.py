@@ -12,7 +12,7 @@ from foon_asp.dataset.nearby_optimum import near_goals
 from foon_asp.deadline import Deadline
 from foon_asp.hypergraph import SolvedGoals
 from foon_asp.problem import Objective, Problem, for_each_goal
-from foon_asp.questions.answer import Answer, answered_nearby
+from foon_asp.questions.answer import Answer, answer_from_store
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, limits_of, settings_of
 from foon_asp.questions.python_arguments import asked_with, chosen_objectives, read
@@ -47,12 +47,12 @@ class Optima(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("opt
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if every answer is proved, infeasible ones included."""
+        """``DONE`` if every answer is proved, infeasible ones included; else ``LIMIT``."""
         stopped = any(answer.ending is Ending.LIMIT for answer in self.answers)
         return Ending.LIMIT if stopped else Ending.DONE
 
     def show(self) -> Iterator[Block]:
-        """Return a table with a row for each goal and distinct tree."""
+        """Yield a table and notes on its words; answers with equal goal, status and costs share a row."""
         first = self.answers[0]
         trees, tree = ("task trees", "tree") if self.items == "lasting" else ("plans", "plan")
         yield f"The best {trees} ({first.conditions})"
@@ -78,7 +78,7 @@ class Optima(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("opt
             yield "* with each item used once, it does not run: see --items used-up"
 
     def _by_goal(self) -> Iterator[tuple[str, list[list[Answer]]]]:
-        """Yield each goal with its answers, grouped by equal status and costs."""
+        """Yield the label of each goal, and its answers in groups with equal status and costs."""
         goals: dict[object, dict[object, list[Answer]]] = {}
         for answer in self.answers:
             rows = goals.setdefault(answer.goals, {})
@@ -92,7 +92,11 @@ class Optima(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("opt
 
 
 def _cells(answers: list[Answer], list_count: int, columns: Iterable[Objective]) -> Iterator[str | Cell]:
-    """Yield the cells of a row after the goal, for answers with equal status and costs."""
+    """Yield the cells of a row, without that of the goal, for answers with equal status and costs.
+
+    ``list_count`` is the number of lists of objectives. If the answers are for all lists, a cell says
+    ``all``.
+    """
     first = answers[0]
     names = [" then ".join(answer.objectives) for answer in answers]
     leading = {answer.objectives[0] for answer in answers}
@@ -107,6 +111,7 @@ def _cells(answers: list[Answer], list_count: int, columns: Iterable[Objective])
 
 
 def _measure_text(objective: Objective, measure: int | Fraction) -> str:
+    """Return a measure as text: a success rate as a decimal, such as ``0.6440`` or ``6.440e-04``."""
     if objective is not Objective.SUCCESS:
         return figure_text(objective, measure)
     return f"{float(measure):.4f}" if measure >= Fraction(1, 1000) else f"{float(measure):.3e}"
@@ -147,7 +152,7 @@ def solve_all_goals(
     outer = Deadline(within=caller().deadline)
     solved = [SolvedGoals() for _ in lists]
     outcomes_of: dict[int, list[Outcome]] = {}
-    for number, goal in _in_order(_each_goal(problem, settings), solved[0]):
+    for number, goal in _in_search_order(_problems_by_goal(problem, settings), solved[0]):
         outcomes_of[number] = []
         for chosen, others in zip(lists, solved, strict=True):
             goal_settings = settings._replace(deadline=Deadline(*each_limits, within=outer))
@@ -155,17 +160,18 @@ def solve_all_goals(
             if nearby is None:
                 outcome = find(read(goal), chosen, goal_settings, caller().reporter, solved=others)
             else:
-                outcome = answered_nearby(nearby, chosen, goal_settings).outcome
+                outcome = answer_from_store(nearby, chosen, goal_settings).outcome
             outcomes_of[number].append(outcome)
     outcomes = [outcome for number in range(len(outcomes_of)) for outcome in outcomes_of[number]]
     objectives_of_all = dict.fromkeys(objective for outcome in outcomes for objective in outcome.objectives)
     return Optima(**head_of(shown(problem), objectives_of_all), answers=tuple(map(Answer.of, outcomes)))
 
 
-def _in_order(problems: Sequence[Problem], solved: SolvedGoals) -> Iterator[tuple[int, Problem]]:
-    """Yield problems of one goal each with their index: first in order, then by ascending ``h_add``.
+def _in_search_order(problems: Sequence[Problem], solved: SolvedGoals) -> Iterator[tuple[int, Problem]]:
+    """Yield problems of one goal each, with their index, in the order in which they are to be solved.
 
-    The order changes once landmarks are shared.
+    The order is the given one until ``solved`` has landmarks to share. From then on, it is by ascending
+    ``h_add`` of the goal.
     """
     remaining = [*range(len(problems))]
     while remaining and not solved.sharing:
@@ -175,8 +181,11 @@ def _in_order(problems: Sequence[Problem], solved: SolvedGoals) -> Iterator[tupl
         yield number, problems[number]
 
 
-def _each_goal(problem: Problem, settings: Settings) -> list[Problem]:
-    """Return a problem for each goal; without rules, only what an answer needs is read of a large store."""
+def _problems_by_goal(problem: Problem, settings: Settings) -> list[Problem]:
+    """Return a problem for each goal of a problem.
+
+    Of a large store, only what an answer needs is read if there are no rules, else all data.
+    """
     if isinstance(problem, NearbyProblem) and not settings.constraints and settings.replaced is None:
         return problem.each_goal()
     return for_each_goal(asked_with(problem, settings))

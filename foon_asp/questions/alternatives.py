@@ -38,7 +38,7 @@ class Way(Value, frozen=True):
 
     Attributes:
         made_by: The units that make it.
-        trees: The places of the trees that make it so, from 0.
+        trees: The indices of the trees that make it so, from 0.
     """
 
     made_by: tuple[Mention, ...]
@@ -53,15 +53,16 @@ class Parting(Value, frozen=True):
 
 
 class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("alternatives")):
-    """Other trees, the best first; none contains all units of another.
+    """Trees for the goals of a problem, the best first; none contains all units of another.
 
     Attributes:
-        complete: Whether none that was asked for is left out. If not, a limit was reached.
+        complete: Whether every tree that was asked for is listed. If not, a limit was reached.
         unproved: How many of the last trees are not proved to be the next ones: others may come before them.
         optimal: How many are proved optimal: the first ones.
         in_every_optimal: The ids of the units that all optimal trees have.
         in_some_optimal: The ids of the units that some optimal tree has.
-        partings: Where trees part, from the goals backwards: first all of them, then each group by itself.
+        partings: The object node nearest to the goals that the trees make in different ways; then such a node
+            for each group of trees that make it in one way.
         trees: The trees, in order of their costs.
 
     Example:
@@ -97,15 +98,15 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if every requested tree is listed, ``NEGATIVE`` if no tree exists."""
+        """``LIMIT`` if a requested tree may be missing, ``NEGATIVE`` if no tree exists, else ``DONE``."""
         if not self.complete:
             return Ending.LIMIT
         return Ending.DONE if self.trees else Ending.NEGATIVE
 
     def show(self) -> Iterator[Block]:
-        """Return the number of trees, the costs of each, and its differences from the first tree."""
+        """Yield the number of trees, and for the first 20 their costs and differences from the first tree."""
         yield from self.goal_lines()
-        yield from self._claim()
+        yield from self._claim_lines()
         max_shown = 20
         for number, (tree, task_tree) in enumerate(
             zip(self.trees[:max_shown], self.task_trees, strict=False), 1
@@ -121,15 +122,18 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
             others = counted(len(self.trees) - max_shown, "more tree")
             yield f"... and {others}; --format json lists all"
 
-    def _claim(self) -> Iterator[str]:
-        """Return lines with the claim about all trees: how many, and whether proved."""
+    def _claim_lines(self) -> Iterator[str]:
+        """Yield lines that say how many trees there are, and what of that is proved.
+
+        For trees that differ most, they also say where the trees part.
+        """
         rule, number = self.conditions, len(self.trees)
         if not self.trees and self.complete:
             yield f"infeasible: proved that no task tree exists ({rule})"
         elif not self.trees:
             yield f"unknown: stopped at a limit before any task tree was found ({rule})"
         elif self.wanted is None:
-            yield from self._optimal_claim()
+            yield from self._optimal_claim_lines()
         elif number < self.wanted and self.complete:
             be = "is" if number == 1 else "are"
             yield f"there {be} {counted(number, 'tree')} and no more ({rule})"
@@ -142,7 +146,7 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
         if self.different and self.trees:
             yield from self._parting_lines()
 
-    def _optimal_claim(self) -> Iterator[str]:
+    def _optimal_claim_lines(self) -> Iterator[str]:
         """Yield lines on optimal trees: their number, whether it is proved, and the steps in all of them."""
         rule, by, number = self.conditions, ", then ".join(self.objectives), len(self.trees)
         costs = costs_text(self.trees[0].costs, self.objectives)
@@ -161,14 +165,14 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
             yield from step_lines(shown[unit] for unit in self.in_every_optimal)
 
     def _parting_lines(self) -> Iterator[str]:
-        """Return lines on each object node that trees make in different ways, with the trees of each way."""
+        """Yield lines on each object node that trees make in different ways, with the trees of each way."""
         for parting in self.partings:
             trees = sorted(index for way in parting.ways for index in way.trees)
-            subject = "they part" if len(trees) == len(self.trees) else f"{_numbered(trees)} part"
+            subject = "they part" if len(trees) == len(self.trees) else f"{_tree_numbers(trees)} part"
             yield f"{subject} at {parting.object}"
             for way in parting.ways:
                 makers = " and ".join(f"{unit.motion} [{unit.source[0]}]" for unit in way.made_by)
-                yield f"  {_numbered(way.trees)}: {makers}"
+                yield f"  {_tree_numbers(way.trees)}: {makers}"
 
     wanted = Unserialized[int | None]()
     """The number of trees asked for; ``None`` for all optimal ones."""
@@ -185,8 +189,8 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
         return page_bundle(self, (tree.drawing() for tree in self.task_trees[:4]))
 
 
-class _Listed(NamedTuple):
-    """A tree by unit ids in an order that executes, and its costs."""
+class _CostedIds(NamedTuple):
+    """A tree, by the ids of its units in an order that executes, and its costs."""
 
     units: tuple[int, ...]
     costs: Costs
@@ -195,11 +199,11 @@ class _Listed(NamedTuple):
 class _Pool(NamedTuple):
     """Trees in order of their costs.
 
-    ``complete`` says whether they are all trees. ``unproved`` is the number of last trees that are not proved
-    to be the next ones.
+    ``complete``: whether no tree is missing that was asked for.
+    ``unproved``: the number of trees at the end of the list before which other trees might come.
     """
 
-    trees: tuple[_Listed, ...]
+    trees: tuple[_CostedIds, ...]
     complete: bool
     unproved: int
 
@@ -215,7 +219,10 @@ def alternatives_or_union(
     limit: int = 100,
     **options: Unpack[CommonOptions],
 ) -> Result:
-    """List trees as ``foon-asp alternatives`` does; with ``union``, units of every or of some tree."""
+    """Return :func:`alternatives`, or with ``union`` the units of every and of some optimal tree.
+
+    Raises :class:`UserError` for ``union`` with ``best`` or ``different``.
+    """
     if not union:
         return alternatives(
             problem, objectives, best=best, different=different, within=within, limit=limit, **options
@@ -292,23 +299,23 @@ def alternatives(
         raise UserError("best and different exclude each other; give one of them")
     if within and different is None:
         raise UserError("within is only for different trees: give different, too")
-    worse = Fraction(at_least(within, 0, "within"), 100)
+    max_loss = Fraction(at_least(within, 0, "within"), 100)
     at_least(limit, 1, "limit")
     chosen, settings = chosen_objectives(problem, objectives), settings_of(options)
     problem = asked_with(problem, settings)
     if best is not None:
-        pool = _ranked(problem, chosen, settings, at_least(best, 1, "best"), None)
+        pool = _rank_trees(problem, chosen, settings, at_least(best, 1, "best"), None)
     elif different is not None:
         at_least(different, 2, "different")
-        pool = _most_different(_ranked(problem, chosen, settings, limit, worse), different, settings)
+        pool = _most_different(_rank_trees(problem, chosen, settings, limit, max_loss), different, settings)
     else:
-        pool = _ranked(problem, chosen, settings, limit, Fraction(0))
-    result = _values(problem, chosen, pool)
+        pool = _rank_trees(problem, chosen, settings, limit, Fraction(0))
+    result = _alternatives_of(problem, chosen, pool)
     return result.knowing(problem=problem, wanted=best or different, different=different is not None)
 
 
-def _values(problem: Problem, objectives: tuple[Objective, ...], pool: _Pool) -> Alternatives:
-    """Return trees as values, with the units common to all optimal trees, and the nodes where trees part."""
+def _alternatives_of(problem: Problem, objectives: tuple[Objective, ...], pool: _Pool) -> Alternatives:
+    """Return the trees of a pool as a result, with the units of all optimal trees and where trees part."""
     order, number = levels(objectives), problem.network.unit_number
     proved = pool.trees if len(pool.trees) > pool.unproved else ()
     optimal = [
@@ -327,25 +334,28 @@ def _values(problem: Problem, objectives: tuple[Objective, ...], pool: _Pool) ->
 
 
 def _partings(problem: Problem, trees: Sequence[frozenset[int]]) -> Iterator[Parting]:
-    """Yield the nodes where trees part, from the goals backwards.
+    """Yield the node nearest to the goals that the trees make in different ways, if there is one.
 
-    The nodes where all trees part come first, then those of each group of trees that agree so far.
+    Then follows such a node for each group of trees that make this node in one way, and so on.
     """
     groups = [tuple(range(len(trees)))]
     for group in groups:  # grows during the loop
-        for o, ways in _ways(problem, {index: trees[index] for index in group}):
-            mentions = [tuple(mention_of(problem.network, unit) for unit in made) for made in ways]
-            places = map(tuple, ways.values())
-            yield Parting(node_of(problem.network, o), tuple(map(Way, mentions, places)))
-            groups += [tuple(places) for places in ways.values() if len(places) > 1]
+        parting = _first_parting(problem, {index: trees[index] for index in group})
+        if parting is not None:
+            o, ways = parting
+            mentions = [tuple(mention_of(problem.network, unit) for unit in made_by) for made_by in ways]
+            yield Parting(node_of(problem.network, o), tuple(map(Way, mentions, map(tuple, ways.values()))))
+            groups += [tuple(indices) for indices in ways.values() if len(indices) > 1]
 
 
-def _ways(
+def _first_parting(
     problem: Problem, trees: Mapping[int, frozenset[int]]
-) -> Iterator[tuple[int, dict[tuple[int, ...], list[int]]]]:
-    """Yield the first object node, from the goals backwards, that trees make in different ways, if any.
+) -> tuple[int, dict[tuple[int, ...], list[int]]] | None:
+    """Return the first object node, from the goals backwards, that trees make in different ways.
 
-    The node comes with a mapping from the units that make it to the indices of the trees with these units.
+    ``trees`` maps indices of trees to their units. The node comes with a mapping from the units that make it
+    to the indices of the trees with these units. A unit that needs the node itself does not make it. ``None``
+    is returned if the trees part nowhere.
     """
     queue = list(problem.goals)
     for o in queue:  # grows during the loop
@@ -358,16 +368,17 @@ def _ways(
         for index, tree in trees.items():
             ways.setdefault(tuple(unit for unit in makers if unit in tree), []).append(index)
         if len(ways) > 1:
-            yield o, ways
-            return
-        further = dict.fromkeys(need for made in ways for unit in made for need in problem.needs[unit])
+            return o, ways
+        further = dict.fromkeys(need for made_by in ways for unit in made_by for need in problem.needs[unit])
         queue += [need for need in further if need not in queue]
+    return None
 
 
 def _most_different(pool: _Pool, count: int, settings: Settings) -> _Pool:
     """Choose ``count`` trees of a pool, such that the most similar two differ as much as possible.
 
-    This is max-min diversity.
+    This is max-min diversity, solved by clingo. A pool without more trees is returned as it is. If a limit
+    comes first, the choice is the best that was found, or else a greedy one.
     """
     if len(pool.trees) <= count:
         return pool
@@ -380,7 +391,7 @@ def _most_different(pool: _Pool, count: int, settings: Settings) -> _Pool:
     )
     if ended.exhausted and not ended.atoms:
         raise BugError("no trees could be chosen")
-    chosen = sorted(ended.atoms["_chosen"]) if ended.atoms else _far_apart(pool.trees, count)
+    chosen = sorted(ended.atoms["_chosen"]) if ended.atoms else _choose_far_apart(pool.trees, count)
     return pool._replace(
         trees=tuple(pool.trees[number] for number in chosen),
         complete=pool.complete and ended.exhausted,
@@ -388,74 +399,84 @@ def _most_different(pool: _Pool, count: int, settings: Settings) -> _Pool:
     )
 
 
-def _executions(tree: _Listed) -> frozenset[tuple[int, int]]:
-    """Return the executions of a tree or plan: pairs of a unit and the count of its executions so far."""
-    seen = Counter[int]()
+def _executions(tree: _CostedIds) -> frozenset[tuple[int, int]]:
+    """Return the executions of a tree or plan; ``(5, 2)`` is the second execution of unit 5."""
+    count_of = Counter[int]()
     executions = set[tuple[int, int]]()
     for unit in tree.units:
-        seen[unit] += 1
-        executions.add((unit, seen[unit]))
+        count_of[unit] += 1
+        executions.add((unit, count_of[unit]))
     return frozenset(executions)
 
 
-def _far_apart(trees: Sequence[_Listed], count: int) -> list[int]:
-    """Choose ``count`` trees greedily, each the most different from those before (farthest point first)."""
-    units = list(map(_executions, trees))
+def _choose_far_apart(trees: Sequence[_CostedIds], count: int) -> list[int]:
+    """Choose ``count`` trees greedily, each the most different from those before (farthest point first).
+
+    Return their indices in ascending order; the first tree is among them.
+    """
+    executions = list(map(_executions, trees))
     chosen = [0]
     while len(chosen) < count:
-        remaining = (number for number in range(len(trees)) if number not in chosen)
-        chosen.append(max(remaining, key=lambda n: min(len(units[n] ^ units[other]) for other in chosen)))
+        remaining = (index for index in range(len(trees)) if index not in chosen)
+        chosen.append(
+            max(remaining, key=lambda n: min(len(executions[n] ^ executions[before]) for before in chosen))
+        )
     return sorted(chosen)
 
 
-def _ranked(
+def _rank_trees(
     problem: Problem,
     objectives: tuple[Objective, ...],
     settings: Settings,
     max_trees: int,
-    worse: Fraction | None,
+    max_loss: Fraction | None,
 ) -> _Pool:
-    """Enumerate trees in order of costs, at most ``max_trees``, until one is worse by more than ``worse``.
+    """Enumerate trees in order of costs, at most ``max_trees``.
 
-    ``worse`` is a share of the best value of the first objective; ``None`` allows any tree, 0 only trees that
-    are optimal by all objectives.
+    ``max_loss`` is a share of the best value of the first objective: a tenth allows 11 units if 10 are best.
+    A loss of 0 allows only trees that are optimal by all objectives, and ``None`` allows all trees. After a
+    limit, the pool ends with trees that were found but are not proved to be the next ones.
     """
-    if problem.items is not None and worse == 0:
+    if problem.items is not None and max_loss == 0:
         plans, proved, complete = best_plans(problem, objectives, settings, caller().reporter, max_trees)
-        listed = tuple(_Listed(plan, costs) for plan, costs in plans)
-        return _Pool(listed, complete, 0 if proved else len(listed))
+        ranked_plans = tuple(_CostedIds(plan, costs) for plan, costs in plans)
+        return _Pool(ranked_plans, complete, 0 if proved else len(ranked_plans))
     order = levels(objectives)
     one_by_one = Ranked if problem.items is None else RankedPlans
     ranked = one_by_one(problem, objectives, settings, caller().reporter)
-    trees: list[_Listed] = []
+    trees: list[_CostedIds] = []
     complete = False
     for units, costs in ranked:
-        if trees and worse is not None and _is_worse(costs, trees[0].costs, order, worse):
+        if trees and max_loss is not None and _is_worse(costs, trees[0].costs, order, max_loss):
             complete = True
             break
         if len(trees) == max_trees:
-            complete = worse is None
+            complete = max_loss is None
             break
-        trees.append(_Listed(units, costs))
+        trees.append(_CostedIds(units, costs))
     else:
         complete = ranked.complete
-    settled = len(trees)
+    proved_count = len(trees)
     for units, costs in ranked.pending:
-        worse_than_asked = trees and worse is not None and _is_worse(costs, trees[0].costs, order, worse)
-        if not worse_than_asked and len(trees) < max_trees:
-            trees.append(_Listed(units, costs))
-    unproved = len(trees) - settled
-    if settled and worse == 0:  # a tree with the costs of an optimal tree is optimal
+        is_excluded = trees and max_loss is not None and _is_worse(costs, trees[0].costs, order, max_loss)
+        if not is_excluded and len(trees) < max_trees:
+            trees.append(_CostedIds(units, costs))
+    unproved = len(trees) - proved_count
+    if proved_count and max_loss == 0:  # a tree with the costs of an optimal tree is optimal
         unproved = 0
     return _Pool(tuple(trees), complete, unproved)
 
 
-def _is_worse(costs: Costs, best: Costs, order: tuple[Objective, ...], worse: Fraction) -> bool:
-    if not worse:
+def _is_worse(costs: Costs, best: Costs, order: tuple[Objective, ...], max_loss: Fraction) -> bool:
+    """Return whether costs are worse than the best by more than ``max_loss``, as in :func:`_rank_trees`."""
+    if not max_loss:
         return costs.key(order) > best.key(order)
     figure, best_figure = Fraction(costs.measure(order[0])), Fraction(best.measure(order[0]))
-    return figure < best_figure * (1 - worse) if multiplies(order[0]) else figure > best_figure * (1 + worse)
+    if multiplies(order[0]):
+        return figure < best_figure * (1 - max_loss)
+    return figure > best_figure * (1 + max_loss)
 
 
-def _numbered(places: Sequence[int]) -> str:
-    return f"tree{'s' * (len(places) > 1)} {', '.join(str(index + 1) for index in places)}"
+def _tree_numbers(indices: Sequence[int]) -> str:
+    """Return ``trees 1, 3`` for the indices 0 and 2."""
+    return f"tree{'s' * (len(indices) > 1)} {', '.join(str(index + 1) for index in indices)}"

@@ -39,8 +39,8 @@ if TYPE_CHECKING:  # slow to import, and not needed to print an answer
     from foon_asp.questions.tree import Tree
 
 
-def of_status(status: Status) -> Ending:
-    """Return how a question ended, from the status of its answer."""
+def ending_of_status(status: Status) -> Ending:
+    """Return ``DONE`` for optimal, ``NEGATIVE`` for infeasible, and ``LIMIT`` for all other answers."""
     return {
         Status.OPTIMAL: Ending.DONE,
         Status.INFEASIBLE: Ending.NEGATIVE,
@@ -62,7 +62,7 @@ class SoftConstraint(ListedConstraint, frozen=True):
 
 
 class Alone(Value, frozen=True):
-    """One of several goals by itself.
+    """The best tree for one of several goals by itself.
 
     Attributes:
         costs: What the best tree for it costs; null without one.
@@ -82,7 +82,7 @@ class Serving(Value, frozen=True):
 
     Attributes:
         unit: The id of the unit.
-        goals: The goals, followed back through the first achievers.
+        goals: The goals that need it, where each object node comes from the first unit that makes it.
     """
 
     unit: int
@@ -93,9 +93,9 @@ class SkippedGoal(Value, frozen=True):
     """A goal that cannot be made, and was left out.
 
     Attributes:
-        cause: missing: an object node is not in the kitchen, and no unit makes it. cycle: one can only be
-            made from itself, by way of others.
-        object: That object node, the first on the easiest way to the goal.
+        cause: missing: an object node is not in the kitchen, and no unit makes it. cycle: an object node can
+            only be made from itself, by way of others.
+        object: The object node of the cause, the first on the easiest way to the goal.
         cycle_size: How many object nodes can only be made from each other; 0 for the cause missing.
     """
 
@@ -143,16 +143,17 @@ class PolicyTree(Value, frozen=True):
 
 
 class RetryPolicy(Value, frozen=True):
-    """Trees to follow one after the other, with what is there by then, and the chance that one is completed.
+    """Trees to follow one after the other until one is completed, and the chance that one is.
 
-    An execution succeeds with the rate of its unit, whatever happened before; a failed one changes nothing.
+    Each tree begins with what the executions before it have made. An execution succeeds with the rate of its
+    unit, whatever happened before; a failed one changes nothing.
 
     Attributes:
         retries: How many executions may fail in a run that succeeds.
         chance: The chance that the goals are made, by this policy.
         bound: No policy over the units of the trees considered has a greater chance.
-        is_exact: Whether the bound is the chance of the best of these policies. If not, it is the chance that
-            the units which all of them need fail no more often than is allowed.
+        is_exact: Whether the best of these policies has the chance ``bound``. If not, ``bound`` is the chance
+            that the units which every policy needs fail ``retries`` times at most.
         considered: The number of trees considered: the best one, and the best by success.
     """
 
@@ -164,7 +165,7 @@ class RetryPolicy(Value, frozen=True):
     branches: tuple[PolicyTree, ...]
 
     def lines(self) -> Iterator[str]:
-        """Return lines with the chance and what is proved of it, and with each tree."""
+        """Yield a line with the chance and what is proved of it, and a line for each tree."""
         success = figure_text(Objective.SUCCESS, self.chance)
         trees = counted(self.considered, "tree")
         if self.chance == self.bound:
@@ -189,21 +190,23 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
             tree exists; unknown: stopped without a tree.
         stopped: The limit that stopped an unproved answer, and what was being done.
         proof: What proves an optimal or infeasible answer; null for others.
-        proof_by_objective: The same by objective, of an optimal answer.
+        proof_by_objective: Of an optimal answer, what proves each objective.
         costs: What the tree costs by every objective; null without a tree.
-        lower_bound: By objective in order, the best value that a tree can still have, as far as it is proved;
-            for success the greatest. An objective counts only among the trees best by those before it.
+        lower_bound: By objective in order, a bound on its best value, as far as it is proved: no cost is
+        less,
+            no success is greater. Only trees that are best by all objectives before it count.
         used_up: Whether the steps, each done once, run where items are used up; null without a tree, and
             where items are used up anyway.
         units: The steps of the tree, in an order that executes; null without a tree.
         seconds: The time of each phase.
-        penalty: Under soft constraints, the sum of weight times ways over them; null without a tree.
+        penalty: Under soft constraints, the sum of all weights, each times the number of ways in which its
+            constraint is broken; null without a tree.
         soft_constraints: Every constraint that may be broken; empty without a tree.
         skipped: The goals that cannot be made and were left out, if that was asked for.
-        goals_alone: Of several goals, but not of many, the best tree for each by itself.
-        sum_of_goals_alone: What these cost by the first objective, added up (success: multiplied); null
-            if one has no tree.
-        serves: Of several goals, those that each unit is needed for.
+        goals_alone: For a few goals, the best tree for each by itself.
+        sum_of_goals_alone: What these trees cost by the first objective, added up, or multiplied for success;
+            null if a goal has no tree.
+        serves: For several goals, the goals that each unit is needed for.
         cross_check: The checks by other engines, where they are requested.
         policy: With ``--retries``, the trees to follow, and their chance; null without a tree, or if a limit
             came first.
@@ -253,7 +256,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
 
         Parameters:
             outcome: The outcome.
-            bought: The number of copies of kitchen items, by id, that were bought.
+            bought: How many copies of each kitchen item were bought, by the id of its object node.
             fields: Further fields of a subclass.
         """
         problem, units, proof = outcome.problem, outcome.units, outcome.proof
@@ -309,24 +312,24 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
 
     @property
     def ids(self) -> tuple[int, ...] | None:
-        """The units of the tree by id in the network of the problem; ``None`` without a tree."""
+        """The ids of the units in the network, in an order that executes; ``None`` without a tree."""
         return self.outcome.units
 
     @property
     def claim(self) -> str:
-        """The status, the objectives and the costs of the tree, in one line."""
-        what = "task tree" if self.items == "lasting" else "plan"
+        """A line with the status, objectives and costs of the tree; without one, why there is none."""
+        noun = "task tree" if self.items == "lasting" else "plan"
         rule = self.conditions if self.encodings is None else f"{self.conditions}, as {self.encodings} has it"
         if self.status is Status.INFEASIBLE:
-            return f"infeasible: proved that no {what} exists ({rule})"
+            return f"infeasible: proved that no {noun} exists ({rule})"
         if self.costs is None:
-            return f"unknown: stopped at {self.stopped or 'a limit'}, before any {what} was found ({rule})"
+            return f"unknown: stopped at {self.stopped or 'a limit'}, before any {noun} was found ({rule})"
         claim = "optimal" if self.status is Status.OPTIMAL else "feasible, not proved best"
         best = ", then ".join(self.objectives)
         return f"{claim} by {best} ({rule}): {costs_text(self.costs, self.objectives)}"
 
     def headlines(self) -> list[str]:
-        """Return the claim, and under it a note where the tree would not run with items used up."""
+        """Return the claim, and a second line if the tree would not run with items used up."""
         note = [] if self.ids is None else used_up_note(self.problem, self.problem.tree(self.ids))
         return [self.claim, *note]
 
@@ -343,16 +346,16 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if the tree is proved optimal, and there is the policy that was asked for."""
+        """The ending for the status, but ``LIMIT`` for a tree without the policy that was asked for."""
         is_policy_missing = self.policy is None and self.units is not None
-        return Ending.LIMIT if is_policy_missing else of_status(self.status)
+        return Ending.LIMIT if is_policy_missing else ending_of_status(self.status)
 
     def show(self) -> Iterator[Block]:
-        """Return the goals, the claim, the steps, and notes; without a tree, the reasons."""
+        """Yield the goals, the claim, the steps and notes; if no tree exists, the reasons for that."""
         yield from (*self.goal_lines(), *self.findings(), *self.notes)
 
     def findings(self) -> Iterator[Block]:
-        """Yield the claim, the remarks, and the steps; without a tree, the reasons."""
+        """Yield the claim, the remarks and the steps; if no tree exists, the reasons for that."""
         yield from self.headlines()
         yield from self.remarks()
         if self.status is Status.FEASIBLE:
@@ -367,20 +370,20 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
             yield from why_infeasible(self.problem, caller().deadline)
 
     def remarks(self) -> Iterator[str]:
-        """Return lines on goals left out, on shared units, soft constraints, retries and stand-ins."""
+        """Yield lines on goals left out, on shared units, soft constraints, retries and stand-ins."""
         if isinstance(self.skipped, tuple) and self.skipped:
             be = "is" if len(self.skipped) == 1 else "are"
             yield f"{counted(len(self.skipped), 'goal')} cannot be made and {be} left out:"
             yield from (f"  {skipped}" for skipped in self.skipped)
-        yield from self._sharing()
-        yield from self._penalty()
+        yield from self._sharing_lines()
+        yield from self._penalty_lines()
         if isinstance(self.policy, RetryPolicy):
             yield from self.policy.lines()
         if isinstance(self.stand_ins, tuple) and self.units is not None:
             yield from stand_in_lines(self.stand_ins)
 
-    def _sharing(self) -> Iterator[str]:
-        """Return lines with the costs of each goal by itself, and the units that serve several goals."""
+    def _sharing_lines(self) -> Iterator[str]:
+        """Yield lines with the costs of each goal by itself, and the units that serve several goals."""
         if not isinstance(self.serves, tuple):
             return
         yield from map(str, self.goals_alone if isinstance(self.goals_alone, tuple) else ())
@@ -401,8 +404,8 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
                 labels = ", ".join(goal.label for goal in shared[step.id])
                 yield f"  {step.motion}    [{step.source[0]}] for {labels}"
 
-    def _penalty(self) -> Iterator[str]:
-        """Return lines with the penalty, and the soft constraints that the tree breaks."""
+    def _penalty_lines(self) -> Iterator[str]:
+        """Yield lines with the penalty, and the soft constraints that the tree breaks."""
         if not isinstance(self.soft_constraints, tuple) or self.penalty is None:
             return
         number = counted(len(self.soft_constraints), "soft constraint")
@@ -425,10 +428,10 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         return write_units(map(self.problem.network.unit, self.ids), comments, self.problem.amounts)
 
     durations = Unserialized[Mapping[str, Duration]]({})
-    """How long motions take, as far as that was stated."""
+    """How long motions take; motions without a stated duration are missing."""
 
     def robot_plan(self) -> "RobotPlan | None":
-        """Return the plan for a robot's program; ``None`` without a tree."""
+        """Return the plan for a robot's program, with any retry policy; ``None`` without a tree."""
         if self.ids is None:
             return None
         from foon_asp.questions.robot_plan import RobotPlan  # noqa: PLC0415
@@ -440,7 +443,10 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         return RobotPlan.of(self.problem, self.objectives, self.ids, self.durations, policy)
 
     def remark(self, format_: str) -> str:
-        """Return the claim, unless the tree is proved optimal, and the notes that the format lacks."""
+        """Return lines on what a format cannot hold: the claim, and notes.
+
+        A tree that is proved optimal without soft constraints needs no claim.
+        """
         claim, *note = self.headlines()
         note += self.remarks()
         claimed = [] if self.status is Status.OPTIMAL and self.penalty is UNSET else [claim]
@@ -478,25 +484,30 @@ class WithAnswer(Result, AboutGoals, frozen=True, kw_only=True):
         return None if self.answer is None else self.answer.drawing()
 
 
-def answered(
+def answer_problem(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, reporter: Reporter | None = None
 ) -> Answer:
-    """Solve a problem; the answer includes the seconds that reading took, if known."""
+    """Solve a problem; return the answer, with the seconds that reading took, if they are known.
+
+    ``reporter`` is by default that of the caller.
+    """
     return _answer_of(find(problem, objectives, settings, reporter or caller().reporter))
 
 
-def answered_under(
+def answer_under_rules(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, reporter: Reporter | None = None
 ) -> Answer:
     """Solve a problem under user rules, which may be about units that no goal needs.
 
-    In a store, the units nearest to the goals are read first, if :func:`near_goals` allows it. Otherwise the
-    part that the goals can need is read, if no rule looks beyond a tree. A tree with a unit outside this part
-    has a unit more than its goals need. If such a tree cannot be better, no more is read.
+    Of a large store, the units nearest to the goals are read first, if :func:`near_goals` allows it.
+    Otherwise the part that the goals can need is read, if no rule looks beyond a tree. A tree with a unit
+    outside this part has a unit more than its goals need. If such a tree cannot be better, no more is read.
+
+    If a limit stops the reading of more, the answer is what was found before.
     """
     nearby = near_goals(problem, objectives, settings)
     if nearby is not None:
-        return answered_nearby(nearby, objectives, settings)
+        return answer_from_store(nearby, objectives, settings)
     reporter = reporter or caller().reporter
     settings = settings._replace(deadline=settings.begun)
     outcome = None
@@ -507,7 +518,7 @@ def answered_under(
     if outcome is not None and (outcome.proof is not None or outcome.stopped):
         return _answer_of(outcome)
     try:
-        answer = _answered_reading(problem, objectives, settings, reporter)
+        answer = _answer_with_reading(problem, objectives, settings, reporter)
     except KeyboardInterrupt:
         if outcome is None:
             raise
@@ -518,10 +529,13 @@ def answered_under(
     return answer
 
 
-def _answered_reading(
+def _answer_with_reading(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, reporter: Reporter
 ) -> Answer:
-    """Solve over the part that the goals can need, and over all data if a better tree may be outside it."""
+    """Solve over the part that the goals can need, and over all data if a better tree may need more.
+
+    If a limit stops the reading of all data, the best tree of the part is returned as ``FEASIBLE``.
+    """
     problem = read(problem)
     is_partial = problem.network.object_numbers and problem.items is None and settings.constraints
     if is_partial and settings.replaced is None and reach_of_rules(settings) is ReachOfRules.TREE:
@@ -542,25 +556,26 @@ def _answered_reading(
                 bounds = {order[0]: unconstrained.costs.measure(order[0])}
                 partial = partial._replace(status=Status.FEASIBLE, proof=None, stopped=settings.begun.stopped)
                 return _answer_of(partial._replace(bounds=bounds))
-    return answered(asked_with(problem, settings, objectives), objectives, settings, reporter)
+    return answer_problem(asked_with(problem, settings, objectives), objectives, settings, reporter)
 
 
-def answered_nearby(nearby: "Nearby", objectives: Sequence[Objective], settings: Settings) -> Answer:
-    """Solve a problem over a large store, reading no more than the proof takes.
+def answer_from_store(nearby: "Nearby", objectives: Sequence[Objective], settings: Settings) -> Answer:
+    """Solve a problem over a large store, and read no more of it than the proof takes.
 
-    If no tree exists, all data are read, to explain why.
+    If that gives no answer, for example since no tree exists, all data are read and the problem is solved
+    again.
     """
     outcome = solve_nearby(nearby, objectives, settings, caller().reporter)
     if outcome is not None:
         return _answer_of(outcome)
     with reading():
         problem = nearby.whole()
-    return answered_under(problem, objectives, settings)
+    return answer_under_rules(problem, objectives, settings)
 
 
 def _answer_of(outcome: Outcome) -> Answer:
-    """Return the answer for an outcome; its ``seconds`` include the time of reading, if known."""
-    read = caller().read_seconds
-    if read is not None:
-        outcome.seconds["read"] = read
+    """Return the answer for an outcome; add the time of reading to its ``seconds``, if it is known."""
+    read_seconds = caller().read_seconds
+    if read_seconds is not None:
+        outcome.seconds["read"] = read_seconds
     return Answer.of(outcome)

@@ -29,12 +29,12 @@ from foon_asp.text.tables import RATES
 
 
 class AssistedTree(Value, frozen=True):
-    """The best tree of which a person does at most some units.
+    """The best tree of which a person does at most a given number of units.
 
     Attributes:
-        most: The greatest number of units that the person does.
+        most: The greatest number of units that the person may do.
         costs: What the tree costs, the person's rates included; null without a tree.
-        bound: A success that no such tree exceeds, as far as it is proved.
+        bound: The success that no such tree exceeds; null if none is proved.
         by_person: The ids of the units that the person does.
         used_up: Whether the steps, each done once, run where items are used up; null without a tree.
         units: The steps, in an order that executes, with who does each; null without a tree.
@@ -60,10 +60,10 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
     Attributes:
         person: The person's rates by motion; null for one who never fails.
         complete: Whether all rows that were asked for are there and proved.
-        greatest_success: With any help; null if there is no tree or a limit was reached.
-        more_help_changes_nothing: Whether that is the success of the last row.
+        greatest_success: The best success with any help; null if there is no tree or a limit was reached.
+        more_help_changes_nothing: Whether the last row has the greatest success.
         reach: The success to reach, if one was given.
-        smallest: The fewest units that reach it; null where no row does.
+        smallest: The fewest helped units that reach it; null where no row does.
         rows: The best tree for each number of units.
 
     Example:
@@ -90,7 +90,7 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
 
     @property
     def task_trees(self) -> tuple[Tree | None, ...]:
-        """The trees of the rows for other questions; ``None`` for a row without a tree."""
+        """The tree of each row, for other questions; ``None`` for a row without a tree."""
         return tuple(map(self._tree, self.rows))
 
     def _tree(self, row: AssistedTree) -> Tree | None:
@@ -103,16 +103,19 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if every row is proved, and the requested success is reached."""
+        """``LIMIT`` if a row is missing or not proved.
+
+        Otherwise ``NEGATIVE`` if there is no tree or the success to reach is not reached, else ``DONE``.
+        """
         if not self.complete:
             return Ending.LIMIT
         missed = self.reach is not None and self.smallest is None
         return Ending.NEGATIVE if missed or self.rows[-1].units is None else Ending.DONE
 
     def show(self) -> Iterator[Block]:
-        """Return a table with a row for each number of helped units, and the success that was reached.
+        """Yield a table with a row for each number of helped units, and what is proved of the success.
 
-        The tree of the last row follows if ``most`` was given, or if the tree reaches the wanted success.
+        The tree of the last row follows if ``most`` was given, or if it reaches the wanted success.
         """
         yield from self.goal_lines()
         rule, last = self.problem.conditions, self.rows[-1]
@@ -139,7 +142,7 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
             yield from (line for step in last.units or () for line in step.lines())
 
     def _cells(self) -> Iterator[tuple[str, ...]]:
-        """Yield the cells of each row; of units, only what was added and removed since the row before."""
+        """Yield the cells of each row; the last has helped units added or removed since the row before."""
         motions = {step.id: step.motion for row in self.rows for step in row.units or ()}
         before: tuple[int, ...] = ()
         for row in self.rows:
@@ -231,14 +234,14 @@ def assist(
     settings = settings_of(options)
     wanted = None if reach is None else success_rate(reach, "the success to reach")
     limit = None if most is None else at_least(most, 0, "most")
-    theirs = _rates(problem, person)
+    person_rates = _read_person_rates(problem, person)
     problem = asked_with(problem, settings)
-    trees = helped_trees(problem, theirs, settings, caller().reporter, limit, wanted)
-    rows = tuple(_row(problem, max_helped, row) for max_helped, row in enumerate(trees.rows))
+    trees = helped_trees(problem, person_rates, settings, caller().reporter, limit, wanted)
+    rows = tuple(_assisted_tree(problem, max_helped, row) for max_helped, row in enumerate(trees.rows))
     last = rows[-1].success
     answer = Assistance(
         **head_of(problem, [Objective.SUCCESS]),
-        person=theirs,
+        person=person_rates,
         complete=trees.complete,
         greatest_success=trees.greatest,
         more_help_changes_nothing=trees.greatest is not None and trees.greatest == last,
@@ -249,8 +252,14 @@ def assist(
     return answer.knowing(problem=problem, most=limit)
 
 
-def _rates(problem: Problem, person: File | Mapping[str, Number] | None) -> dict[str, Fraction] | None:
-    """Read the rates of a person; those of the robot must be known and above 0."""
+def _read_person_rates(
+    problem: Problem, person: File | Mapping[str, Number] | None
+) -> dict[str, Fraction] | None:
+    """Return the success rates of a person by motion; ``None`` is a person who never fails.
+
+    Warn of motions that have no rate for the robot. Raises :class:`UserError` unless the rates of the robot
+    are known and above 0.
+    """
     problem.require_known_for([Objective.SUCCESS])
     assert problem.rates is not None
     for motion, rate in problem.rates.items():
@@ -268,7 +277,7 @@ def _rates(problem: Problem, person: File | Mapping[str, Number] | None) -> dict
     return rates
 
 
-def _row(problem: Problem, max_helped: int, outcome: Outcome) -> AssistedTree:
+def _assisted_tree(problem: Problem, max_helped: int, outcome: Outcome) -> AssistedTree:
     """Return the best tree with help for up to ``max_helped`` units as a row of the result."""
     units, helped, bound = outcome.units, outcome.problem.own_rates, outcome.bounds.get(Objective.SUCCESS)
     return AssistedTree(

@@ -11,19 +11,21 @@ from foon_asp.warning import warn
 
 
 class _Warner(Reporter):
-    """Receives only warnings, and passes them on as Python does."""
+    """A reporter that turns warnings into those of Python, and drops everything else."""
 
     def warning(self, message: str) -> None:
-        """Warn at the line of the caller."""
+        """Issue a warning of Python at the line of the user who called foon_asp."""
         warn(message)
 
 
 class Caller(NamedTuple):
     """The caller of a question: Python or a command.
 
-    ``reporter`` receives warnings and progress. ``deadline`` is the deadline of the command. ``read_seconds``
-    is the time of reading in seconds; ``None`` if it is not shown. ``lenient`` says whether lines of a tree
-    that are not understood are skipped. ``form`` is the chosen format of the result, if any.
+    ``reporter``: receives warnings and progress.
+    ``deadline``: the deadline of the command, if it has limits.
+    ``read_seconds``: how long reading took; ``None`` if that is not shown.
+    ``lenient``: whether lines of a tree that are not understood are skipped.
+    ``form``: the format of the result; ``None`` for the default.
     """
 
     reporter: Reporter
@@ -48,7 +50,7 @@ def is_python() -> bool:
 
 @contextlib.contextmanager
 def asked_by(who: Caller) -> Iterator[None]:
-    """Set the caller inside a ``with`` block."""
+    """Make ``who`` the current caller inside a ``with`` block."""
     token = _CALLER.set(who)
     try:
         yield

@@ -1,4 +1,4 @@
-"""The claim of a certificate in words, and its assumptions about user rules."""
+"""Certificates in words: the claim, its bound, the size of the proof, and what is assumed of user rules."""
 
 from collections.abc import Mapping, Sequence
 from decimal import Context, Decimal
@@ -16,35 +16,41 @@ if TYPE_CHECKING:  # takes clingo along, which `verify` must not load
 
 
 def trusted_text(user_rules: Rule, of_tree: bool) -> str:
-    """Return the assumptions of a certificate about user rules, with the names of the rule files.
+    """Return in words what a certificate assumes of user rules, with the names of the rule files.
 
     ``of_tree`` says that a tree is claimed to keep to the rules.
     """
     names = [f"{file['name']} (SHA-256 {file['sha256']})" for file in user_rules["files"]]
     names += [*user_rules["library"], *user_rules["constants"]]
-    empty = [[], []] in user_rules["claims"]
-    removed = [used[0] for used, without in user_rules["claims"] if len(used) == 1 and not without]
-    wanted = sum(not used for used, _ in user_rules["claims"]) - empty
-    others = len(user_rules["claims"]) - len(removed) - wanted - empty
+    has_empty_claim = [[], []] in user_rules["claims"]
+    excluded_units = [used[0] for used, without in user_rules["claims"] if len(used) == 1 and not without]
+    required_count = sum(not used for used, _ in user_rules["claims"]) - has_empty_claim
+    breaking_count = len(user_rules["claims"]) - len(excluded_units) - required_count - has_empty_claim
     limits = []
     for amounts, bound in user_rules["limits"]:
         units = [unit for ids in amounts.values() for unit in ids]
         if bound == 0:
-            removed += units
+            excluded_units += units
         elif bound > 0:
-            limits.append(_limited(sorted(units), bound, [*amounts] == ["1"]))
-    none = empty or any(bound < 0 for _, bound in user_rules["limits"])
-    claims = ["no tree keeps to them"] if none else []
-    claims += [f"no tree has one of the units {', '.join(map(str, removed))}"] if removed else []
-    claims += [f"every tree has a unit of {counted(wanted, 'set')}"] if wanted else []
-    claims += [f"{others} {'set breaks' if others == 1 else 'sets break'} a rule"] if others else []
+            limits.append(_limit_text(sorted(units), bound, [*amounts] == ["1"]))
+    is_unsatisfiable = has_empty_claim or any(bound < 0 for _, bound in user_rules["limits"])
+    claims = ["no tree keeps to them"] if is_unsatisfiable else []
+    if excluded_units:
+        claims.append(f"no tree has one of the units {', '.join(map(str, excluded_units))}")
+    if required_count:
+        claims.append(f"every tree has a unit of {counted(required_count, 'set')}")
+    if breaking_count:
+        claims.append(f"{breaking_count} {'set breaks' if breaking_count == 1 else 'sets break'} a rule")
     claims += limits
     claims += ["the tree keeps to them"] if of_tree or not claims else []
     return escaped(f"among the trees that keep to {', '.join(names)}: {'; '.join(claims)}")
 
 
-def _limited(units: list[int], bound: int, alike: bool) -> str:
-    """Return a limit on some units in words; the units have different weights unless they are ``alike``."""
+def _limit_text(units: list[int], bound: int, alike: bool) -> str:
+    """Return in words that a tree has units of a total weight of at most ``bound``.
+
+    All weights are 1 if the units are ``alike``. More than 20 units are only counted.
+    """
     named = f"the units {', '.join(map(str, units))}" if len(units) <= 20 else f"{len(units)} units"
     if not alike:
         return f"what {named} count comes to {bound} at most"
@@ -52,7 +58,7 @@ def _limited(units: list[int], bound: int, alike: bool) -> str:
 
 
 def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", file: str) -> Sequence[str]:
-    """Return lines with the proof of an answer, and the claim of the certificate written into a file."""
+    """Return lines on the proof of an answer, and on what a certificate in ``file`` proves."""
     by = outcome.proof or "none"
     if certificate is None and outcome.proof is None:
         return ["proof: none, so there is nothing to certify"]
@@ -69,31 +75,38 @@ def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", fil
         claim_text = f"the certificate {file} proves {proved}, but takes on trust what rules say,"
         return [f"proof: {by}; {claim_text}", f"  {trusted_text(user_rules, of_tree=False)}"]
     if claim == "optimal" and by != "certificate":
-        sure = ", ".join(certificate.certified)
-        return [f"proof: {by}; the certificate {file} proves the {tree} best by {sure} alone"]
-    lines = [f"proof: certificate ({file}, {looked_at(content)})"]
+        proved = ", ".join(certificate.certified)
+        return [f"proof: {by}; the certificate {file} proves the {tree} best by {proved} alone"]
+    lines = [f"proof: certificate ({file}, {proof_size(content)})"]
     if content["not_covered"] and claim == "optimal":
         lines.append(f"  it is best among all {tree}s; only the solver says that it obeys the constraints")
     return lines
 
 
-def looked_at(content: Mapping[str, Any]) -> str:
-    """Return the number of cuts of a proof, and for a plan the number of nodes with a balance."""
+def proof_size(content: Mapping[str, Any]) -> str:
+    """Return the size of a proof in words: ``7 cuts``, for a plan also the number of nodes with a balance.
+
+    ``content`` is the JSON object of a certificate.
+    """
     cuts = counted(len(content["cuts"]), "cut")
     if "items" not in content:
         return cuts
     nodes: set[int] = set()
-    waiting = list(content["proof"])
-    for case in waiting:  # grows during the loop
+    cases = list(content["proof"])
+    for case in cases:  # grows during the loop
         nodes.update(o for o, _ in case.get("balance", ()))
-        waiting += (case[branch] for branch in ("up_to", "above") if branch in case)
+        cases += (case[branch] for branch in ("up_to", "above") if branch in case)
     return f"{cuts}, the balance of {counted(len(nodes), 'node')}"
 
 
 def bound_text(content: Mapping[str, Any]) -> str:
-    """Return the bound of a certificate by its first objective, and the gap of the tree."""
+    """Return in words the bound of a certificate on its first objective, and the gap of the tree to it."""
     objective, bound = content["objective"][0], content["bound"][0]
-    text = f"success at most {_success(bound)}" if objective == "success" else f"{objective} at least {bound}"
+    text = (
+        f"success at most {_success_text(bound)}"
+        if objective == "success"
+        else f"{objective} at least {bound}"
+    )
     if content["costs"] is not None:
         cost = content["costs"][0]
         text += f"; the {'plan' if 'items' in content else 'tree'} has {cost}"
@@ -102,8 +115,11 @@ def bound_text(content: Mapping[str, Any]) -> str:
     return text
 
 
-def _success(exponents: Mapping[str, str]) -> str:
-    """Return a product of powers of rates in a few digits; a bound above 1 is shown as 1."""
+def _success_text(exponents: Mapping[str, str]) -> str:
+    """Return a product of powers of rates in four digits; a product above 1 is shown as 1.
+
+    ``exponents`` maps rates to exponents, such as ``{"9/10": "2"}``.
+    """
     precise = Context(prec=50, traps=[])
     logarithm = Decimal(0)
     for name, e in exponents.items():

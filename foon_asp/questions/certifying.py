@@ -1,4 +1,4 @@
-"""Certificates of optimal trees, found or given: proofs that are checked without a solver."""
+"""Certificates that a tree is the best, for trees that are found here or given."""
 
 import contextlib
 from collections.abc import Sequence
@@ -19,8 +19,8 @@ from foon_asp.dataset.nearby_optimum import near_goals
 from foon_asp.dataset.paths import File
 from foon_asp.problem import Objective, Problem, levels
 from foon_asp.proof.verifier import Subject
-from foon_asp.questions.answer import Answer, answered, answered_nearby
-from foon_asp.questions.certificate_text import bound_text, certificate_lines, looked_at
+from foon_asp.questions.answer import Answer, answer_from_store, answer_problem
+from foon_asp.questions.certificate_text import bound_text, certificate_lines, proof_size
 from foon_asp.questions.python_arguments import asked_with, reading, whole
 from foon_asp.questions.result import Ending
 from foon_asp.questions.tree import Tree
@@ -28,27 +28,30 @@ from foon_asp.results.figure_text import costs_text
 from foon_asp.whole_file import write_whole
 
 
-def certified(
+def solve_with_certificate(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, file: File | None = None
 ) -> Answer:
-    """Solve a problem, and search for a certificate; at a limit or ctrl-C the answer has none.
+    """Solve a problem, and search for a certificate of its answer; at a limit or ctrl-C, there is none.
 
-    If the certificate is written into a ``file``, notes of the answer say what it proves.
+    With a ``file``, a certificate that was found is written into it, and notes of the answer say what is
+    proved.
     """
     deadline = settings.begun
     settings = settings._replace(deadline=deadline)
-    ruled = settings.constraints or settings.constants or settings.encodings
-    plain = not ruled and problem.items is None and Objective.PRICE not in objectives
-    nearby = near_goals(problem, objectives, settings) if plain else None
+    has_rules = settings.constraints or settings.constants or settings.encodings
+    is_plain = not has_rules and problem.items is None and Objective.PRICE not in objectives
+    nearby = near_goals(problem, objectives, settings) if is_plain else None
     with reading():
-        subject = nearby.subject() if nearby is not None else _subject(problem) if plain else None
+        subject = (
+            nearby.subject() if nearby is not None else _certificate_subject(problem) if is_plain else None
+        )
     if nearby is None:
-        only_best = problem.stand_ins is not None and asked_with(problem, settings, objectives) is problem
-        complete = problem if only_best or subject is not None else whole(problem)
-        answer = answered(complete, objectives, settings)
+        suffices = problem.stand_ins is not None and asked_with(problem, settings, objectives) is problem
+        complete = problem if suffices or subject is not None else whole(problem)
+        answer = answer_problem(complete, objectives, settings)
         proved = answer.problem
     else:
-        answer = answered_nearby(nearby, objectives, settings)
+        answer = answer_from_store(nearby, objectives, settings)
         proved = nearby.relaxed
     certificate = None
     with contextlib.suppress(KeyboardInterrupt), deadline.watched("looking for a certificate"):
@@ -58,12 +61,15 @@ def certified(
         answer = Answer.of(outcome._replace(problem=answer.problem))
     if file is None:
         return answer.having(certificate=certificate)
-    _write(certificate, file)
+    _write_if_found(certificate, file)
     return answer.having(certificate_lines(answer.outcome, certificate, str(file)), certificate)
 
 
-def _subject(problem: Problem) -> Subject | None:
-    """Return the subject of a certificate for a problem over a part of a store; ``None`` for others."""
+def _certificate_subject(problem: Problem) -> Subject | None:
+    """Return the data that a certificate is about, for a problem over a part of a store.
+
+    ``None`` is returned for other problems, which have all their data with them.
+    """
     data = problem.origin
     if not problem.network.object_numbers or not isinstance(data, Dataset) or problem.own_rates:
         return None
@@ -77,27 +83,32 @@ def certify_tree(
 ) -> tuple[Certificate | None, Ending, str]:
     """Prove that an executable tree or plan is the best, without a search, and write the certificate.
 
-    Returns the certificate, how the proof ended, and what it proves.
+    Return the certificate or ``None``, how the proof ended, and in words what is proved. The ending is
+    ``NEGATIVE`` if a better tree is found. Without a certificate, no file is written.
     """
     objectives, certificate = levels(objectives), None
     try:
-        certificate = _of_tree(tree, objectives, settings)
+        certificate = _prove_best(tree, objectives, settings)
     except NotBestError as better:
         by = ", then ".join(objectives)
         return None, Ending.NEGATIVE, f"not the best by {by}: there is one with {costs_text(better.costs)}"
-    _write(certificate, file)
+    _write_if_found(certificate, file)
     if certificate is None:
         return None, Ending.LIMIT, "no certificate was found, and nothing is written"
-    content, sure = certificate.content, certificate.certified
+    content, proved_objectives = certificate.content, certificate.certified
     if certificate.claim == "bound":
         text = f"the certificate {file} proves a bound only: {bound_text(content)}"
         return certificate, Ending.LIMIT, text
-    ending = Ending.DONE if sure == objectives else Ending.LIMIT
-    return certificate, ending, f"proved best by {', then '.join(sure)} ({file}, {looked_at(content)})"
+    ending = Ending.DONE if proved_objectives == objectives else Ending.LIMIT
+    by = ", then ".join(proved_objectives)
+    return certificate, ending, f"proved best by {by} ({file}, {proof_size(content)})"
 
 
-def _of_tree(tree: Tree, objectives: tuple[Objective, ...], settings: Settings) -> Certificate | None:
-    """Return a certificate that a tree is the best, or ``None``."""
+def _prove_best(tree: Tree, objectives: tuple[Objective, ...], settings: Settings) -> Certificate | None:
+    """Return a certificate that a tree is the best; ``None`` if none is found or a limit comes first.
+
+    Raises :class:`NotBestError` if a better tree is found.
+    """
     problem, deadline, covered, units = tree.problem, settings.begun, coverage(settings), tree.ids
     with contextlib.suppress(KeyboardInterrupt), deadline.watched("looking for a certificate"):
         if problem.items is not None:
@@ -108,6 +119,7 @@ def _of_tree(tree: Tree, objectives: tuple[Objective, ...], settings: Settings) 
     return None
 
 
-def _write(certificate: Certificate | None, file: File) -> None:
+def _write_if_found(certificate: Certificate | None, file: File) -> None:
+    """Write a certificate into a file; for ``None``, write nothing."""
     if certificate is not None:
         write_whole(Path(file), certificate.text().encode())

@@ -1,4 +1,4 @@
-"""Does a tree that some program wrote execute, and is it the best?"""
+"""Checks of a given tree: whether it executes, keeps to rules, and is the best."""
 
 from collections.abc import Iterable, Iterator
 from os import PathLike
@@ -37,7 +37,9 @@ if TYPE_CHECKING:  # clingo and linear programs, which only rules and certificat
 
 
 class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("check")):
-    """Whether a given tree executes, or a plan, in which items are used up and order and repeats count.
+    """Whether a given tree or plan executes, and what stops it if not.
+
+    In a plan, items are used up: the order of its units and their repeats count.
 
     Attributes:
         verdict: Whether the tree executes; a plan executes as listed or not at all.
@@ -47,7 +49,7 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
         used_up: Whether the tree, each step done once, runs where items are used up; null for a plan.
         costs: What the tree costs by every objective; null where the network does not have all of its units.
         not_in_network: The positions, from 1, of the units that are not in the network.
-        breaks: Under rules: those that the tree breaks; null if it does not execute or has units of its own.
+        breaks: The rules that the tree breaks; null if it does not execute or has units of its own.
 
     Example:
         >>> problem = foon_asp.load().problem("ice")
@@ -66,14 +68,14 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
 
     @classmethod
     def of(cls, tree: Tree, objectives: Iterable[Objective] = (), **fields: Any) -> Self:
-        """Simulate a tree, or replay a plan.
+        """Simulate a tree, or replay a plan, and return what was found.
 
         Parameters:
             tree: The tree or plan.
-            objectives: The objectives by which it is to be the best.
+            objectives: The objectives by which a certificate is to prove it the best.
             fields: Further fields of a subclass.
         """
-        problem, simulation = tree.problem, _simulated(tree)
+        problem, simulation = tree.problem, _simulate(tree)
         foreign = tuple(n for n, unit in enumerate(map(problem.network.unit_id, tree), 1) if unit is None)
         checked = cls(
             **head_of(problem, objectives),
@@ -109,19 +111,19 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if the tree executes, has units of the network only, and breaks no rule.
+        """``NEGATIVE`` if the tree does not execute, has units of its own, or breaks a rule.
 
-        Where a certificate is asked for, the tree is also to be proved the best.
+        Otherwise, it is ``DONE``, or how the proof ended where a certificate is asked for.
         """
         sound = self.executes and not self.not_in_network and not self.breaks
         return self.proof_ending if sound else Ending.NEGATIVE
 
     def show(self) -> Iterator[Block]:
-        """Return whether the tree executes, in which order, what stops it, and which rules it breaks."""
+        """Yield whether the tree executes, in which order, what stops it, and which rules it breaks."""
         yield from verdict_lines(self.tree, self.simulation)
-        yield from (*self._about_rules(), *self.notes)
+        yield from (*self._rule_lines(), *self.notes)
 
-    def _about_rules(self) -> Iterator[str]:
+    def _rule_lines(self) -> Iterator[str]:
         """Yield lines on whether the tree keeps to the rules, and on those that it breaks."""
         if self.breaks is UNSET:
             return
@@ -136,7 +138,7 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
                 yield from rule.lines()
 
     notes = Unserialized[tuple[str, ...]](())
-    """What a certificate proves of the tree, where one was asked for."""
+    """Lines on what a certificate proves of the tree, where one was asked for."""
 
     proof_ending = Unserialized[Ending](Ending.DONE)
     """How the proof ended, where one was asked for."""
@@ -145,15 +147,15 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
     """What the simulation of the tree found."""
 
     def foon(self) -> str:
-        """Return the tree as FOON text, in an order that executes if there is one."""
+        """Return the tree as FOON text, in an order that executes if there is one, else as listed."""
         return str(self.in_order or self.tree)
 
     def remark(self, format_: str) -> str:
-        """Return the notes on the certificate."""
+        """Return the notes on the certificate, which no format but text has."""
         return "\n".join(self.notes)
 
     def drawing(self) -> Drawing | None:
-        """Return the drawing of the tree; ``None`` without one."""
+        """Return the drawing of the tree, if it can be drawn."""
         return self.tree.drawing()
 
     def __repr__(self) -> str:
@@ -161,8 +163,8 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
         return f"{shown[:-1]}, but breaks {counted(len(self.breaks), 'rule')}>" if self.breaks else shown
 
 
-def _simulated(tree: Tree) -> Simulation:
-    """Simulate a tree, or replay a plan."""
+def _simulate(tree: Tree) -> Simulation:
+    """Simulate a tree, or replay a plan, for which only the listed order counts."""
     if tree.problem.items is None:
         return simulate_for(tree.problem, tree)
     shortage = replay_for(tree.problem, tree).shortage
@@ -172,8 +174,11 @@ def _simulated(tree: Tree) -> Simulation:
     return Simulation(Verdict.NEVER, (), stop, None)
 
 
-def _posed(command: Command, tree: Path, **named: Any) -> tuple[Problem, Tree]:
-    """Read a tree, and pose its problem; for ``--repair``, a tree without goals is one more network."""
+def _pose_tree(command: Command, tree: Path, **named: Any) -> tuple[Problem, Tree]:
+    """Read a tree from a file, and return its problem and the tree.
+
+    With ``--repair``, the units of a tree without goals are added to the network.
+    """
     if command.given("repair") and not read_answer(tree).goals:
         command.add_sources([tree])
     return a_plan(command, tree=tree, **named)
@@ -182,7 +187,10 @@ def _posed(command: Command, tree: Path, **named: Any) -> tuple[Problem, Tree]:
 def check_or_repair(
     problem: Problem, tree: Tree, *, repair: bool = False, certificate: File | None = None, **options: Any
 ) -> "Checked | Repaired":
-    """Check a tree as ``foon-asp check`` does, or repair it."""
+    """Check a tree, or with ``repair`` find stand-ins and further units with which it executes.
+
+    Raises :class:`UserError` for a repair with objectives.
+    """
     if not repair:
         return check(problem, tree, certificate=certificate, **options)
     if options.pop("objectives"):
@@ -212,7 +220,7 @@ def check_or_repair(
         default=False,
     ),
     formats=("text", "json", "csv", "markdown", "foon"),
-    pose=_posed,
+    pose=_pose_tree,
     command=check_or_repair,
     help_="""
     \b
@@ -305,6 +313,7 @@ def check(
 
 
 def _user_rule_check(rules: "Settings", used_up: bool) -> "UserRuleCheck":
+    """Return a check of which user rules trees break, or with ``used_up`` plans; it takes clingo along."""
     from foon_asp.asp.user_rule_check import UserRuleCheck  # noqa: PLC0415 (takes clingo along)
 
     return UserRuleCheck(rules, used_up)

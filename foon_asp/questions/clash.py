@@ -67,7 +67,10 @@ class Clash(Value, frozen=True, kw_only=True):
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if some tree keeps to all constraints, and the best one is proved."""
+        """``DONE`` if a tree keeps to all constraints and the best one is proved.
+
+        It is ``NEGATIVE`` if it is proved that no tree does, and what is cheapest to drop; else ``LIMIT``.
+        """
         if not self.tree_exists_without_constraints:
             return Ending.NEGATIVE
         if not self.complete or self.answer is None:
@@ -78,9 +81,9 @@ class Clash(Value, frozen=True, kw_only=True):
         return self.answer.ending
 
     def lines(self, rule: str) -> Iterator[str]:
-        """Return lines that say which constraints clash and which to drop.
+        """Yield lines that say which constraints clash and which to drop.
 
-        ``rule`` is the container rule that claims hold under.
+        ``rule`` names the conditions under which claims hold, such as ``strict containers``.
         """
         dropped, answer = self.cheapest_to_drop, self.answer
         if not self.tree_exists_without_constraints:
@@ -91,7 +94,7 @@ class Clash(Value, frozen=True, kw_only=True):
             yield f"unknown: stopped at a limit before it was known whether the constraints clash ({rule})"
             if dropped:
                 yield "without these there is a task tree; a cheaper set may do, or nothing has to be dropped"
-                yield from _listed(dropped)
+                yield from _constraint_lines(dropped)
             return
         number = counted(len(self.constraints), "constraint")
         if not self.constraints:
@@ -112,11 +115,11 @@ class Clash(Value, frozen=True, kw_only=True):
             yield f"1 of the {number} leaves no task tree by itself: proved ({rule})"
         else:
             yield f"{size} of the {number} cannot hold together, and no smaller set: proved ({rule})"
-        yield from _listed(self.smallest_clash)
+        yield from _constraint_lines(self.smallest_clash)
         weight = sum(constraint.weight for constraint in dropped)
         at = "" if {constraint.weight for constraint in self.constraints} == {1} else f", weight {weight}"
         yield f"cheapest to drop: {counted(len(dropped), 'constraint')}{at}"
-        yield from _listed(dropped)
+        yield from _constraint_lines(dropped)
         if answer is not None and answer.status is not Status.UNKNOWN:
             claim, *note = answer.headlines()
             yield f"without {'it' if len(dropped) == 1 else 'them'}: {claim}"
@@ -126,10 +129,11 @@ class Clash(Value, frozen=True, kw_only=True):
 def find_clash(problem: Problem, settings: Settings, own_weights: Mapping[Constraint, int]) -> Clash:
     """Find a smallest clash of the constraints in ``settings``, and the cheapest constraints to drop.
 
-    ``own_weights`` are the costs of dropping rules of a constraint, 1 by default. The smallest clash
-    (smallest MUS) is found by implicit hitting sets (Ignatiev, Previti, Liffiton and Marques-Silva,
-    Smallest MUS Extraction with Minimal Hitting Set Dualization, CP 2015): a smallest set with one rule of
-    every correction set known so far, until it is a clash itself.
+    ``own_weights`` are the costs of dropping a rule of a constraint, 1 by default. The smallest clash is a
+    smallest minimal unsatisfiable subset (MUS). It is found by implicit hitting sets (Ignatiev, Previti,
+    Liffiton and Marques-Silva, Smallest MUS Extraction with Minimal Hitting Set Dualization, CP 2015). A
+    correction set is a set of constraints without which a tree exists. Each round takes a smallest set that
+    hits all known correction sets. If no tree keeps to it, it is the clash; else a correction set is added.
     """
     deadline = settings.begun
     settings = settings._replace(deadline=deadline)
@@ -142,38 +146,43 @@ def find_clash(problem: Problem, settings: Settings, own_weights: Mapping[Constr
     weights = {number: constraint.weight for number, constraint in by_number.items()}
     settings = settings._replace(relaxed=relaxed)
     program = assemble(settings, caller().reporter.warning, problem=problem)
-    blame = (question_encoding("blame.lp"),)
+    hitting_set_encoding = (question_encoding("blame.lp"),)
 
-    def clash(**fields: Any) -> Clash:
+    def clash_with(**fields: Any) -> Clash:
+        """Return the result with all constraints and these fields."""
         return Clash(constraints=tuple(by_number.values()), **fields)
 
     def constraints_of(numbers: Iterable[int]) -> tuple[WeightedConstraint, ...]:
+        """Return the constraints with these numbers, in ascending order."""
         return tuple(by_number[number] for number in sorted(numbers))
 
     prepared = prepare(problem, _BY_UNITS, settings, program)
     if prepared.stopped:
-        return clash(complete=False)
+        return clash_with(complete=False)
     if prepared.tree is None:
-        return clash(tree_exists_without_constraints=False)
+        return clash_with(tree_exists_without_constraints=False)
     dropping = "optimize(_dropping,1).\n"
     corrections: list[tuple[int, ...]] = []
-    blamed: tuple[int, ...] = ()
+    hitting_set: tuple[int, ...] = ()
     while True:
-        ended = prepared.run(dropping + write_constraints(weights, blamed), predicates=[("_dropped", 1)])
-        if ended.units is None or not ended.exhausted:
+        dropping_run = prepared.run(
+            dropping + write_constraints(weights, hitting_set), predicates=[("_dropped", 1)]
+        )
+        if dropping_run.units is None or not dropping_run.exhausted:
             break
-        corrections.append(tuple(sorted(ended.atoms["_dropped"])))
+        corrections.append(tuple(sorted(dropping_run.atoms["_dropped"])))
         if not corrections[-1]:
             break
         rules = write_constraints(weights, ()) + write_corrections(corrections)
-        hitting = run(blame, rules, CLINGO_OPTIONS, deadline, predicates=[("_blamed", 1)])
-        if hitting.units is None or not hitting.exhausted:
+        hitting_run = run(hitting_set_encoding, rules, CLINGO_OPTIONS, deadline, predicates=[("_blamed", 1)])
+        if hitting_run.units is None or not hitting_run.exhausted:
             break
-        blamed = tuple(sorted(hitting.atoms["_blamed"]))
-    clashes = ended.units is None and ended.exhausted
+        hitting_set = tuple(sorted(hitting_run.atoms["_blamed"]))
+    clashes = dropping_run.units is None and dropping_run.exhausted
     if not corrections:
-        sufficient = ended.atoms["_dropped"] if ended.atoms else ()  # to drop, but perhaps not the cheapest
-        return clash(
+        # Without these a tree exists, but perhaps they are not the cheapest.
+        sufficient = dropping_run.atoms["_dropped"] if dropping_run.atoms else ()
+        return clash_with(
             complete=clashes,
             tree_exists_without_constraints=not clashes,
             cheapest_to_drop=constraints_of(sufficient),
@@ -183,14 +192,15 @@ def find_clash(problem: Problem, settings: Settings, own_weights: Mapping[Constr
     outcome = solve_prepared(prepared, _BY_UNITS, kept)
     if outcome.status is Status.INFEASIBLE:
         raise BugError("dropping the constraints does not leave a tree")
-    return clash(
-        smallest_clash=constraints_of(blamed) if clashes else (),
+    return clash_with(
+        smallest_clash=constraints_of(hitting_set) if clashes else (),
         smallest_proved=clashes,
         cheapest_to_drop=constraints_of(dropped),
         answer=Answer.of(outcome),
     )
 
 
-def _listed(constraints: Iterable[WeightedConstraint]) -> Iterator[str]:
+def _constraint_lines(constraints: Iterable[WeightedConstraint]) -> Iterator[str]:
+    """Yield the lines of each constraint: its place and its text."""
     for constraint in constraints:
         yield from constraint.lines()

@@ -1,4 +1,4 @@
-"""Keyword options that every question takes: rules, limits, progress and cancelling."""
+"""Keyword options that most questions take in Python: goals, rules, limits, progress and cancelling."""
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -29,7 +29,10 @@ class Limits(TypedDict, total=False):
 
 
 class Posed(Limits, total=False):
-    """Keyword options of :class:`Limits`, and the goals and container rule for a path or for data."""
+    """Keyword options of :class:`Limits`, and the goals and container rule of the problem.
+
+    A question needs these if its first argument is a path or data, and not a problem.
+    """
 
     goal: str | ObjectNode | Iterable[str | ObjectNode]
     containers: str
@@ -44,7 +47,7 @@ class CommonOptions(Posed, total=False):
 
 
 def settings_of(options: CommonOptions) -> Settings:
-    """Return the settings of a search; its time limit starts now."""
+    """Return the settings of a search from the options of a question; its time limit starts now."""
     encodings, constants = options.get("encodings"), options.get("constants") or ()
     if isinstance(constants, Mapping):
         constants = [f"{name}={value}" for name, value in constants.items()]
@@ -52,12 +55,12 @@ def settings_of(options: CommonOptions) -> Settings:
         given_constraints(options.get("constraints", ())),
         None if encodings is None else Path(encodings),
         tuple(constants),
-        deadline=begin(options),
+        deadline=start_deadline(options),
     )
 
 
-def begin(options: Limits) -> Deadline:
-    """Return a deadline that starts now and ends no later than the deadline of the calling command."""
+def start_deadline(options: Limits) -> Deadline:
+    """Return a deadline whose time starts now; it ends no later than that of the calling command."""
     outer, (time, memory) = caller().deadline, limits_of(options)
     if time is None and memory is None and outer is not None:
         return outer
@@ -65,6 +68,6 @@ def begin(options: Limits) -> Deadline:
 
 
 def limits_of(options: Limits) -> tuple[float | None, int | None]:
-    """Return the time limit in seconds and the memory limit in bytes; ``None`` is unlimited."""
+    """Return the time limit in seconds and the memory limit in bytes; ``None`` for no limit."""
     time, memory = options.get("time_limit"), options.get("memory_limit")
     return None if time is None else seconds(time), None if memory is None else memory_size(memory)

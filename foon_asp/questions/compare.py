@@ -61,7 +61,7 @@ class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("c
     published: PublishedTable | UnsetType = UNSET
 
     retrieved = Unserialized[tuple[Retrieved, ...]]()
-    """What each search returned for each goal, where trees are asked for, or there is but one."""
+    """The tree of each search for each goal; empty unless trees are asked for, or there is only one."""
 
     summed_up = Unserialized[bool]()
     """Whether a summary alone is shown."""
@@ -73,11 +73,15 @@ class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("c
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if every optimum is proved."""
+        """``DONE`` if every optimum is proved, else ``LIMIT``."""
         return Ending.DONE if self.proved else Ending.LIMIT
 
     def show(self) -> Iterator[Block]:
-        """Return the table, and for many goals a summary; trees, where they are asked for."""
+        """Yield the table, the trees where they are asked for, and for several goals a summary.
+
+        With ``published``, there is only the table of published figures, and with ``all_makeable`` only the
+        summary.
+        """
         if isinstance(self.published, PublishedTable):
             yield from published_table(self.published, self.comparisons)
             return
@@ -93,7 +97,7 @@ class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("c
         yield from summary_tables(summarize_comparisons(self.comparisons), self.proved)
 
     def table_rows(self) -> Iterator[Json]:
-        """Return a row for each goal and search: optima with their status, ratios, whether it executes."""
+        """Return a row for each goal and search: measures, optima, ratios, and whether the tree executes."""
         conditions = {"containers": self.containers, "items": self.items, "level": self.level}
         return (row | conditions for comparison in self.comparisons for row in tidy_rows(comparison))
 
@@ -108,7 +112,7 @@ class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("c
         return self.retrieved[0].foon()
 
     def write_chart(self, file: File) -> None:
-        """Draw a box for each search into a file: the units of its trees over the optimum, goal by goal.
+        """Write a chart with a box for each search: the units of its trees divided by the optimum, by goal.
 
         Parameters:
             file: The path of the file, which ends in ``.svg`` or ``.png``.
@@ -122,7 +126,7 @@ class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("c
         return f"<Compared: {', '.join(map(str, self.goals))}>"
 
 
-def _posed(
+def _pose_goals(
     command: Command,
     goals_named: Sequence[str],
     containers: str,
@@ -132,7 +136,11 @@ def _posed(
     stock: File | None,
     stays: File | None,
 ) -> tuple[Problem]:
-    """Pose the goals; raises :class:`UserError` for options that do not fit, before anything is solved."""
+    """Return the problem whose goals are compared, as the first argument of :func:`compare`.
+
+    With ``all_makeable``, it has any goal: :func:`compare` finds its goals. Raises :class:`UserError` for
+    goals that the published table does not have.
+    """
     if published:
         table = read_published(published_file())
         goals_named = goals_named or tuple(table.goals)
@@ -174,7 +182,7 @@ def _posed(
     when one was stopped at a limit.
     """,
     formats=(*TABLES, "foon"),
-    pose=_posed,
+    pose=_pose_goals,
 )
 def compare(
     problem: Problem,
@@ -196,7 +204,8 @@ def compare(
     each tree that executes, the result lists the rules that the tree breaks.
 
     Parameters:
-        searches: A search to run; by default all of them, including those of other packages.
+        searches: A search to run; by default all of them, including those of other packages. Without success
+            rates, the default leaves greedy-success out.
         trees: Show the trees of the searches too, step by step.
         all_makeable: Compare for every object that can be made, and print a summary.
         published: Show the published figures beside the measured ones. Only some goals have such figures.
@@ -235,22 +244,22 @@ def compare(
         problem = replace(problem, goals=tuple(makeable(problem)))
         if not problem.goals:
             raise UserError("there are no goals: nothing can be made that is not in the kitchen")
-    alone = len(problem.goals) == len(chosen) == 1
-    if caller().form == "foon" and not alone:
+    is_single_search = len(problem.goals) == len(chosen) == 1
+    if caller().form == "foon" and not is_single_search:
         raise UserError(_ONE_TREE)
     table = read_published(published_file()) if published else None
     if table is not None and not table.goals.keys() >= {node.label for node in problem.goal_nodes}:
         table = None
-    comparisons = list(_compared_goals(problem, chosen, settings, rules, jobs, results))
+    comparisons = list(_compare_each_goal(problem, chosen, settings, rules, jobs, results))
     search_of = {search.name: search for search in chosen}
     retrieved: list[Retrieved] = []
-    if trees or alone:
+    if trees or is_single_search:
         for goal, row in zip(problem.goals, comparisons, strict=True):
-            asked_of = replace(problem, goals=(goal,))
+            goal_problem = replace(problem, goals=(goal,))
             for result in row.searches:
                 ids = problem.network.units_of_numbers(result.units or ())
                 retrieved.append(
-                    Retrieved.of(asked_of, search_of[result.search], result.ending, ids, result.stuck_at)
+                    Retrieved.of(goal_problem, search_of[result.search], result.ending, ids, result.stuck_at)
                 )
     if trees:
         steps = iter(retrieved)
@@ -268,7 +277,7 @@ def compare(
     ).knowing(retrieved=tuple(retrieved), summed_up=all_makeable)
 
 
-def _compared_goals(
+def _compare_each_goal(
     problem: Problem,
     searches: Sequence[Search],
     settings: SearchSettings,
@@ -276,7 +285,11 @@ def _compared_goals(
     jobs: int,
     results: File | None,
 ) -> Iterator[Comparison]:
-    """Return the comparison of each goal; comparisons that the file of results has are not repeated."""
+    """Return the comparison of each goal, in order.
+
+    Comparisons that the file of ``results`` has are not repeated. All others are added to it. Progress is
+    reported to the caller.
+    """
     goals = {str(node): goal for node, goal in zip(problem.goal_nodes, problem.goals, strict=True)}
     with contextlib.ExitStack() as stack:
         done: dict[object, Comparison] = {}

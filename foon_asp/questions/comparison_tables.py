@@ -39,7 +39,7 @@ _RARE: dict[str, Callable[[SearchResult], bool]] = {
 
 
 def tidy_rows(comparison: Comparison) -> Iterator[Json]:
-    """Return a row for each search, with the optimum, its status and the ratio for each objective."""
+    """Yield a row for each search, with the optimum, its status and the ratio for each objective."""
     for result in comparison.searches:
         missing = result.stuck_at if result.obstacle is None else result.obstacle.missing
         row: Json = {
@@ -63,7 +63,7 @@ def tidy_rows(comparison: Comparison) -> Iterator[Json]:
 
 
 def comparison_table(comparisons: Sequence[Comparison], used_up_noted: bool) -> Iterator[Block]:
-    """Return a table of comparisons, and notes for the signs in it.
+    """Yield a table of comparisons, and notes on the signs in it.
 
     Parameters:
         comparisons: The comparisons, one for each goal.
@@ -81,7 +81,7 @@ def comparison_table(comparisons: Sequence[Comparison], used_up_noted: bool) -> 
         status = " ".join(dict.fromkeys(best.status for best in optima if best))
         rows += ["", comparison.goal.node]
         rows.append([Cell(text, "strong") for text in ("optimum", *figures, status, "")])
-        rows += [tuple(_cells(result, broken)) for result in comparison.searches]
+        rows += [tuple(_search_cells(result, broken)) for result in comparison.searches]
     yield Table(_HEADINGS, rows, frozenset({0, 4, 5}))
     yield ""
     yield "× how many times the proved optimum of that objective"
@@ -96,10 +96,10 @@ def comparison_table(comparisons: Sequence[Comparison], used_up_noted: bool) -> 
         yield "feasible: stopped at the time limit, so that optimum is not proved and has no ratios"
 
 
-def _cells(result: SearchResult, broken: Sequence[str]) -> Iterator[str | Cell]:
-    """Yield the cells of the row of a search."""
+def _search_cells(result: SearchResult, broken: Sequence[str]) -> Iterator[str | Cell]:
+    """Yield the cells of the row of a search; a rule that it breaks is shown by its number in ``broken``."""
     yield result.search
-    yield from (_cell(result, objective) for objective in MEASURED)
+    yield from (_measure_cell(result, objective) for objective in MEASURED)
     if result.verdict is None:
         yield f"no tree: {result.ending}" + (f" at {result.stuck_at}" if result.stuck_at else "")
     else:
@@ -109,8 +109,8 @@ def _cells(result: SearchResult, broken: Sequence[str]) -> Iterator[str | Cell]:
     yield "" if result.runs_used_up is None else "yes" if result.runs_used_up else "no"
 
 
-def _cell(result: SearchResult, objective: Objective) -> str:
-    """Return the cell of a search by an objective: the measure and its ratio to the optimum."""
+def _measure_cell(result: SearchResult, objective: Objective) -> str:
+    """Return the measure of a search and its ratio to a proved optimum: ``10  1.11×``; empty if unknown."""
     measure = result.measures.get(objective)
     if measure is None:
         return ""
@@ -122,7 +122,7 @@ def _cell(result: SearchResult, objective: Objective) -> str:
 
 
 def summary_tables(summaries: Sequence[Summary], proved: bool) -> Iterator[Block]:
-    """Return summary tables over many goals: how many trees execute, and their ratios to the optimum.
+    """Yield summary tables over many goals: how many trees execute, and their ratios to the optimum.
 
     Parameters:
         summaries: One for each search.
@@ -147,7 +147,7 @@ def summary_tables(summaries: Sequence[Summary], proved: bool) -> Iterator[Block
             summary.search,
             objective,
             f"{float(distance.share):.1%}",
-            *map(_times, (distance.mean, distance.median, distance.percentile_90, distance.worst)),
+            *map(_ratio_text, (distance.mean, distance.median, distance.percentile_90, distance.worst)),
             distance.worst_goal if distance.worst > 1 else "",
         )
         for summary in summaries
@@ -160,7 +160,7 @@ def summary_tables(summaries: Sequence[Summary], proved: bool) -> Iterator[Block
 
 
 def published_table(table: PublishedTable, comparisons: Sequence[Comparison]) -> Iterator[Block]:
-    """Return a table of published and measured numbers of units, and how many agree."""
+    """Yield a table of published and measured numbers of units, and how many agree for each search."""
     yield from ("Functional units, published → measured; = where they agree", "")
     agree = dict.fromkeys(table.columns, 0)
     rows = []
@@ -180,10 +180,12 @@ def published_table(table: PublishedTable, comparisons: Sequence[Comparison]) ->
 
 
 def _figure_text(objective: Objective, value: Figure) -> str:
+    """Return a number of units or inputs, or a success rate in a few digits."""
     if not multiplies(objective):
         return str(value)
     return f"{float(value):.4f}" if value >= Fraction(1, 1000) else f"{float(value):.2e}"
 
 
-def _times(value: Fraction) -> str:
+def _ratio_text(value: Fraction) -> str:
+    """Return a ratio in three digits, or from 1000 on in two digits with an exponent."""
     return f"{float(value):.3g}" if value < 1000 else f"{float(value):.1e}"

@@ -47,7 +47,7 @@ class ConstraintList(Document, frozen=True, kw_only=True, tag=schema_name("const
     constraints: tuple[ReadyMadeConstraint, ...]
 
     def show(self) -> Iterator[Block]:
-        """Return the name, the meaning and the usage of each constraint."""
+        """Yield the name, the meaning and the usage of each constraint."""
         for number, constraint in enumerate(self.constraints):
             call = f"--constraint {constraint.name}"
             for parameter in constraint.parameters:

@@ -14,10 +14,10 @@ from foon_asp.questions.disagreement import write_disagreement
 from foon_asp.rules.passed_constraint import Constraint
 
 
-def cross_checked(
+def cross_check_answer(
     answer: Answer, settings: Settings, weights: Mapping[Constraint, int], engines: Sequence[Engine]
 ) -> Answer:
-    """Check an answer with other engines, and return it with a note and a result for each engine.
+    """Check an answer with other engines; return it with a note and an :class:`EngineCheck` for each.
 
     Parameters:
         answer: The answer.
@@ -37,7 +37,7 @@ def cross_checked(
             str(disagreement) if is_python() else write_disagreement(request, disagreement)
         ) from None
     return answer.having(
-        [f"cross-check: {_line(answer, check)}" for check in checks],
+        [f"cross-check: {_check_line(answer, check)}" for check in checks],
         cross_check=tuple(
             EngineCheck(
                 check.engine,
@@ -53,8 +53,8 @@ def cross_checked(
     )
 
 
-def _line(answer: Answer, check: Check) -> str:
-    """Return the objectives by which an engine agrees, or its reason for not checking, in a line."""
+def _check_line(answer: Answer, check: Check) -> str:
+    """Return a line on an engine: that it agrees, that its own answer is wrong, or why it did not check."""
     engine = check.engine if check.package is None else f"{check.engine} ({check.package})"
     if check.reason is not None:
         return f"{engine}: not checked: {check.reason}"

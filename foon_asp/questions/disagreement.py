@@ -1,4 +1,4 @@
-"""A disagreement between engines in one file, with all data needed to reproduce it."""
+"""Reports on a disagreement between engines: one file with all data needed to reproduce it."""
 
 import platform
 from collections.abc import Iterable
@@ -25,7 +25,10 @@ _DISTRIBUTIONS = ("foon-asp", "clingo", "highspy")
 
 
 def write_disagreement(request: Asked, disagreement: DisagreementError) -> str:
-    """Write a disagreement report to a new file; return the message for the user."""
+    """Write a report on a disagreement into a file of its own; return the message for the user.
+
+    The message also says if the file could not be written.
+    """
     name = disagreement_name(request.outcome)
     try:
         write_whole(
@@ -37,7 +40,7 @@ def write_disagreement(request: Asked, disagreement: DisagreementError) -> str:
 
 
 def disagreement_name(outcome: Outcome) -> str:
-    """Return the name of the file, which is made of the data and the question."""
+    """Return the name of the file of a report: a digest of the network, and the ids of the goals."""
     problem = outcome.problem
     return (
         f"foon-asp-disagreement-{_digests(problem)['network'][:8]}-{'-'.join(map(str, problem.goals))}.json"
@@ -45,10 +48,10 @@ def disagreement_name(outcome: Outcome) -> str:
 
 
 def disagreement_json(request: Asked, disagreement: DisagreementError) -> Json:
-    """Return a disagreement in plain values: question, data and rules as text, and both answers.
+    """Return a disagreement as a JSON object: question, data and rules as text, and both answers.
 
-    Included files are part of the text of rules. ``bare_clingo`` has the program that clingo was given, and
-    its arguments.
+    Included files are part of the text of rules. The key ``bare_clingo`` has the program that clingo was
+    given, and its arguments.
     """
     outcome, settings = request.outcome, request.settings
     problem, answer = outcome.problem, disagreement.answer
@@ -62,14 +65,14 @@ def disagreement_json(request: Asked, disagreement: DisagreementError) -> Json:
             "items": "lasting" if problem.items is None else "used-up",
             "level": problem.network.level,
             "objectives": list(map(str, outcome.objectives)),
-            "constraints": list(_texts(settings.constraints).values()),
+            "constraints": list(_rule_texts(settings.constraints).values()),
             "soft": [
                 {"rules": text, "weight": request.soft[constraint]}
-                for constraint, text in _texts(request.soft).items()
+                for constraint, text in _rule_texts(request.soft).items()
             ],
             "constants": list(settings.constants),
         },
-        "data": _data(problem),
+        "data": _data_files(problem),
         "digests": _digests(problem),
         "answers": {
             "foon-asp": {
@@ -95,8 +98,8 @@ def disagreement_json(request: Asked, disagreement: DisagreementError) -> Json:
     }
 
 
-def _texts(constraints: Iterable[Constraint]) -> dict[Constraint, str]:
-    """Return the texts of constraints."""
+def _rule_texts(constraints: Iterable[Constraint]) -> dict[Constraint, str]:
+    """Return the rules of each constraint as text, with those of included files."""
     texts: dict[Constraint, str] = {}
     for constraint in constraints:
         named = find_constraint(constraint)
@@ -105,16 +108,19 @@ def _texts(constraints: Iterable[Constraint]) -> dict[Constraint, str]:
     return texts
 
 
-def _data(problem: Problem) -> dict[str, str]:
-    """Return the files of a data folder by name; below level 3, of the level-3 network behind it."""
+def _data_files(problem: Problem) -> dict[str, str]:
+    """Return the texts of a data folder for a problem, by file name.
+
+    Below level 3, they describe the network of level 3 that the network of the problem was made of.
+    """
     network = problem.network
-    whole = network.detailed or network
+    detailed = network.detailed or network
     kitchen = sorted(problem.kitchen)
     if network.detailed is not None:
         kitchen = sorted(detail for o in kitchen for detail in network.objects_stand_for[o])
     files = {
-        "FOON.txt": write_units(map(whole.unit, range(len(whole))), (), problem.amounts),
-        "kitchen.json": json_text([str(whole.objects[o]) for o in kitchen]),
+        "FOON.txt": write_units(map(detailed.unit, range(len(detailed))), (), problem.amounts),
+        "kitchen.json": json_text([str(detailed.objects[o]) for o in kitchen]),
         "utensils.txt": "".join(f"{label}\n" for label in sorted(problem.utensils)),
     }
     if problem.rates is not None:
@@ -125,5 +131,6 @@ def _data(problem: Problem) -> dict[str, str]:
 
 
 def _digests(problem: Problem) -> dict[str, str]:
+    """Return the digests of the data of a problem by name, as certificates have them."""
     subject = Subject(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
     return subject.digests()

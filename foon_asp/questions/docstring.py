@@ -13,7 +13,7 @@ _ENTRY = re.compile(r"^    (\w+): (.*(?:\n        .*)*)", re.MULTILINE)
 
 
 def docstring_entries(ask: Callable[..., object]) -> dict[str, str]:
-    """Return the entries of the ``Parameters`` section of a docstring, by name."""
+    """Return the descriptions in the ``Parameters`` section of a docstring by name, each in one line."""
     if ask.__doc__ is None:  # python -OO
         return {}
     section = inspect.cleandoc(ask.__doc__).partition("Parameters:\n")[2].partition("\n\n")[0]
@@ -23,11 +23,11 @@ def docstring_entries(ask: Callable[..., object]) -> dict[str, str]:
 def complete_docstring(
     ask: Callable[..., object], signature: inspect.Signature, texts: Mapping[str, str]
 ) -> str | None:
-    """Return the docstring of a function with a description of each parameter, in their order.
+    """Return the docstring of a function with a description of each parameter, in the order of its signature.
 
-    ``texts`` has descriptions by name. The docstring as written has the sections ``Parameters``, ``Returns``,
-    ``Raises`` and ``Example``. An entry of the first section replaces the text of the parameter; a missing
-    section is inserted before ``Returns``.
+    ``texts`` has descriptions by name. A description in the section ``Parameters`` of the docstring itself
+    replaces that of ``texts``. If the docstring has no such section, it is inserted before ``Returns``. A
+    function without docstring gives ``None``.
     """
     if ask.__doc__ is None:  # python -OO
         return None
@@ -44,5 +44,6 @@ def complete_docstring(
 
 
 def _entry(name: str, text: str) -> str:
+    """Return the indented and wrapped lines of a parameter in a docstring."""
     lines = textwrap.wrap(f"{name}: {text}", width=100, break_on_hyphens=False, subsequent_indent=" " * 4)
     return textwrap.indent("\n".join(lines), " " * 4) + "\n"

@@ -1,4 +1,4 @@
-"""How long motions take, as users state it."""
+"""The durations of motions as users state them."""
 
 from collections.abc import Mapping
 from os import PathLike
@@ -13,14 +13,20 @@ Durations = str | PathLike[str] | Mapping[str, Number | Duration]
 
 
 def stated_durations(stated: Durations | None) -> dict[str, Duration]:
-    """Return the stated durations by motion; raises :class:`UserError` for durations that are not above 0."""
+    """Return durations by motion, in seconds, from a table or a mapping; ``None`` states none.
+
+    Raises :class:`UserError` for a duration that is not above 0.
+    """
     if isinstance(stated, str | PathLike):
         return dict(DURATIONS.read(Path(stated)))
     return {motion: duration_of(duration, motion) for motion, duration in (stated or {}).items()}
 
 
 def duration_of(stated: Number | Duration, motion: str) -> Duration:
-    """Return the stated duration of a motion; raises :class:`UserError` if it is not above 0."""
+    """Return the duration of a motion from seconds or a :class:`Duration`.
+
+    Raises :class:`UserError` if it is not above 0.
+    """
     number, passive = stated if isinstance(stated, Duration) else (stated, False)
     seconds = exact(number, f"the duration of {motion!r}")
     if seconds <= 0:

@@ -37,10 +37,10 @@ class EachGoal(Result, frozen=True, kw_only=True, tag=schema_name("each")):
         return next(ending for ending in (Ending.LIMIT, Ending.NEGATIVE, Ending.DONE) if ending in endings)
 
     def show(self) -> Iterator[Block]:
-        """Return the answers one after the other; a tree shared by several goals is shown once."""
+        """Yield the answers one after the other; a tree shared by several goals is shown once."""
         from foon_asp.questions.answer import Answer  # noqa: PLC0415 (takes the solver along)
 
-        for number, (first, *others) in enumerate(self._same_trees()):
+        for number, (first, *others) in enumerate(self._groups_by_tree()):
             if number:
                 yield ""
             if isinstance(first, Answer):
@@ -49,8 +49,8 @@ class EachGoal(Result, frozen=True, kw_only=True, tag=schema_name("each")):
             else:
                 yield from first.show()
 
-    def _same_trees(self) -> list[list[Any]]:
-        """Return groups of answers that share a tree; other answers are groups of one."""
+    def _groups_by_tree(self) -> list[list[Any]]:
+        """Return the answers in groups whose trees have the same units; an answer without a tree is alone."""
         from foon_asp.questions.answer import Answer  # noqa: PLC0415
 
         groups: dict[object, list[Any]] = {}
@@ -60,13 +60,13 @@ class EachGoal(Result, frozen=True, kw_only=True, tag=schema_name("each")):
         return list(groups.values())
 
     def table_rows(self) -> Iterator[Json]:
-        """Return the rows of all answers; the goals of an answer are in front of each row."""
+        """Yield the rows of all answers, each with the goals of its answer as the first column."""
         for answer in self.answers:
             goals = " + ".join(map(str, answer.goals))
             yield from ({"goals": goals, **row} for row in answer.table_rows())
 
     def foon(self) -> str:
-        """Return one tree after the other."""
+        """Return the trees of all answers as FOON text, one after the other."""
         return "".join(answer.foon() for answer in self.answers)
 
     def robot_plan(self) -> NoReturn:
@@ -78,5 +78,5 @@ class EachGoal(Result, frozen=True, kw_only=True, tag=schema_name("each")):
         return "\n".join(filter(None, (answer.remark(format_) for answer in self.answers)))
 
     def write_chart(self, file: File) -> None:
-        """Raise :class:`UserError`: a chart is of one goal."""
+        """Raise :class:`NothingToDrawError`: a chart is of one goal."""
         raise NothingToDrawError("a chart is of one goal: name it with --goal")

@@ -17,19 +17,20 @@ _TINY = Fraction(1, 10**9)  # a rate at which a motion is almost forbidden
 
 
 class _Tree(NamedTuple):
-    """A tree as a function of the rate x of one motion; its success is ``factor`` * x^``power``."""
+    """A tree, and its success as a function of the rate x of one motion: ``factor`` * x^``power``."""
 
     units: tuple[int, ...]
     power: int
     factor: Fraction
 
 
-class End(NamedTuple):
+class IntervalEnd(NamedTuple):
     """One end of the interval of a rate in which the tree stays optimal, and the best tree beyond.
 
-    ``at`` is the rate at which another tree is as good, and ``beyond`` its units by id in an order that
-    executes. Both are ``None`` if no rate on that side makes another tree better. ``proved`` is false if
-    a limit came first: the end may then be nearer to the rate.
+    ``at``: the rate at which another tree is as good; ``None`` if no rate on this side makes another one
+    better.
+    ``beyond``: the ids of the units of the other tree, in an order that executes; ``None`` with ``at``.
+    ``proved``: false if a limit came first; the end may then be nearer to the rate.
     """
 
     at: Root | None
@@ -38,110 +39,114 @@ class End(NamedTuple):
 
 
 class Envelope:
-    """Finds the interval of each success rate in which the best tree stays the best.
+    """A search for the interval of each success rate in which the best tree stays the best.
 
-    As functions of one rate, the successes of all trees have an upper envelope; the interval is where the
+    The successes of all trees, as functions of one rate, have an upper envelope. The interval is where the
     best tree is on it. docs/dev/questions.md has the argument. ``motions`` are the motions that a tree for
     the goals may have.
     """
 
     def __init__(self, problem: Problem, tree: tuple[int, ...], settings: Settings) -> None:
-        """Find the motions of possible trees, and by searches the rates that may rise to 1 without effect."""
+        """Find the motions that trees may have, and by searches those whose rates may rise without effect."""
         self._problem, self._tree, self._settings = problem, tree, settings
         self._holds = Postconditions(problem, levels(_SUCCESS), settings)
         reached = reach(problem)
         # A unit that the goals cannot need makes no tree better, but user rules may require it.
-        plain = not settings.constraints and settings.replaced is None
-        self._units = relevant(problem, reached) if plain else reached.units
-        self._units_of_motion = self._counted(self._units)
-        self.motions = sorted(self._units_of_motion)
+        is_plain = not settings.constraints and settings.replaced is None
+        self._units = relevant(problem, reached) if is_plain else reached.units
+        self._unit_counts = self._count_by_motion(self._units)
+        self.motions = sorted(self._unit_counts)
         try:
-            self._settled = self._unmoved()
+            self._free_to_rise = self._motions_free_to_rise()
         except KeyboardInterrupt:
             settings.begun.interrupt()
-            self._settled = set()
+            self._free_to_rise = set()
 
     def units(self, motion: str) -> int:
-        """Return how many units of the tree have the rate of a motion."""
-        return self._counted(self._tree)[motion]
+        """Return how many units of the best tree have a motion, and no success rate of their own."""
+        return self._count_by_motion(self._tree)[motion]
 
-    def end(self, motion: str, above: bool) -> End:
-        """Find the end of the optimality interval of a rate, above or below; at a limit, unproved."""
+    def end(self, motion: str, above: bool) -> IntervalEnd:
+        """Find the end of the interval above or below a motion's rate; at a limit, it is not proved."""
         rate, units = (self._problem.rates or {})[motion], self.units(motion)
-        if above and (rate == 1 or self._units_of_motion[motion] == units or motion in self._settled):
-            return End(None, None)
+        if above and (rate == 1 or self._unit_counts[motion] == units or motion in self._free_to_rise):
+            return IntervalEnd(None, None)
         if not above and not units:
-            return End(None, None)
+            return IntervalEnd(None, None)
         try:
             if above:
                 return self._end_from(motion, 1, Fraction(1))
             tiny = _TINY if rate > _TINY else rate * _TINY
             end = self._end_from(motion, 1, tiny)
             # a tree with fewer units of the motion wins below some rate: below this one, if it has all others
-            everything = self._seen(motion, tuple(self._units))
+            everything = self._as_function(motion, tuple(self._units))
             if (
                 end.at is None
                 and end.proved
-                and everything.factor <= self._seen(motion, self._tree).factor * tiny
+                and everything.factor <= self._as_function(motion, self._tree).factor * tiny
             ):
                 end = self._end_from(motion, 0, Fraction(1, 2))
             return end
         except KeyboardInterrupt:
             self._settings.begun.interrupt()
-            return End(None, None, proved=False)
+            return IntervalEnd(None, None, proved=False)
 
-    def _end_from(self, motion: str, degree: int, of: Fraction) -> End:
-        """Return the end of the interval of a motion's rate, found from a distant rate towards the given one.
+    def _end_from(self, motion: str, degree: int, raised_rate: Fraction) -> IntervalEnd:
+        """Return the end of the interval of a motion's rate on the side of a distant rate.
 
-        The distant rate is the root of ``of`` of this degree; each better tree gives the next rate to try. At
-        degree 0 all other rates count as 1, so that the tree with the fewest units of the motion is found.
+        The distant rate to the power of ``degree`` is ``raised_rate``. A tree that is better there gives the
+        next rate to try, which is nearer to the present one, and so on. At degree 0, the motion has the rate
+        ``raised_rate`` and all others have 1, so that the tree with the fewest units of the motion is found.
         """
-        tree = self._seen(motion, self._tree)
+        tree = self._as_function(motion, self._tree)
         rate = Root(1, (self._problem.rates or {})[motion])
-        end = End(None, None)
+        end = IntervalEnd(None, None)
         while True:
-            rival, proved = self._better(motion, degree, of)
+            rival, proved = self._better_tree(motion, degree, raised_rate)
             if rival is None:
                 return end._replace(proved=proved)
             higher, lower = (rival, tree) if rival.power > tree.power else (tree, rival)
             at = Root.taken(higher.power - lower.power, lower.factor / higher.factor)
-            end = End(at, rival.units)
+            end = IntervalEnd(at, rival.units)
             if at == rate or (degree and proved and higher.power - lower.power == 1):
                 return end
-            degree, of = at.degree, at.of
+            degree, raised_rate = at.degree, at.of
 
-    def _better(self, motion: str, degree: int, of: Fraction) -> tuple[_Tree | None, bool]:
+    def _better_tree(self, motion: str, degree: int, raised_rate: Fraction) -> tuple[_Tree | None, bool]:
         """Return a tree that is better at another rate of a motion, or ``None``, and whether this is proved.
 
-        The other rate is the root of ``of`` of this degree. All rates are raised to the degree: then this
-        rate is rational, and the order of trees by success stays the same.
+        The other rate to the power of ``degree`` is ``raised_rate``. For the search, all rates are raised to
+        this power. Then the other rate is rational, and the order of trees by success stays the same.
         """
-        outcome, better = self._compared(_at_rate(self._problem, motion, degree, of))
+        outcome, better = self._solve_varied(_at_rate(self._problem, motion, degree, raised_rate))
         proved = outcome.status is Status.OPTIMAL
         if not better or outcome.units is None:
             return None, proved
-        return self._seen(motion, outcome.units), proved
+        return self._as_function(motion, outcome.units), proved
 
-    def _unmoved(self) -> set[str]:
+    def _motions_free_to_rise(self) -> set[str]:
         """Return motions whose rates may rise to 1 while the tree stays optimal; many are tested at once.
 
-        In the test, units with one of the motions, outside the tree, never fail. If the tree stays optimal,
-        it also does when the rate of one motion alone rises, since no other tree gains more by that.
-        Otherwise the motions by which the better tree gains are removed, and the test is repeated.
+        A test sets the rates of all units outside the tree that have one of the motions to 1. If the tree
+        stays optimal, it also does when the rate of one motion alone rises, since no other tree gains more by
+        that. Otherwise the motions by which the better tree gains are removed, and the test is repeated. If a
+        limit comes first, the set is empty.
         """
         network, own_rates = self._problem.network, self._problem.own_rates
         motions = set(self.motions)
         while motions:
             others = {unit for unit in self._units if network.motions[unit] in motions}.difference(self._tree)
-            sure = dict.fromkeys(others, Fraction(1)) | dict(own_rates)
-            outcome, better = self._compared(replace(self._problem, own_rates=sure, as_seen=self._problem))
+            raised_rates = dict.fromkeys(others, Fraction(1)) | dict(own_rates)
+            outcome, better = self._solve_varied(
+                replace(self._problem, own_rates=raised_rates, as_seen=self._problem)
+            )
             if not better or outcome.units is None:
                 return motions if outcome.status is Status.OPTIMAL else set()
             motions.difference_update(network.motions[unit] for unit in others.intersection(outcome.units))
         return motions
 
-    def _compared(self, varied: Problem) -> tuple[Outcome, bool]:
-        """Return the optimum at other rates, and whether it is better there than the envelope's own tree."""
+    def _solve_varied(self, varied: Problem) -> tuple[Outcome, bool]:
+        """Return the optimum at other rates, and whether it is better than the envelope's tree there."""
         outcome = solve(varied, _SUCCESS, self._settings, Reporter())
         tree_success = _success(varied.costs(self._tree))
         rival_success = Fraction(0) if outcome.costs is None else _success(outcome.costs)
@@ -151,24 +156,26 @@ class Envelope:
         )
         return outcome, rival_success > tree_success
 
-    def _counted(self, units: Iterable[int]) -> Counter[str]:
+    def _count_by_motion(self, units: Iterable[int]) -> Counter[str]:
         """Count the units by motion, without units that have a rate of their own."""
         network, own_rates = self._problem.network, self._problem.own_rates
         return Counter(network.motions[unit] for unit in units if unit not in own_rates)
 
-    def _seen(self, motion: str, units: tuple[int, ...]) -> _Tree:
+    def _as_function(self, motion: str, units: tuple[int, ...]) -> _Tree:
+        """Return the tree of these units with its success as a function of the rate of a motion."""
         network, own_rates = self._problem.network, self._problem.own_rates
         fixed = [unit for unit in units if network.motions[unit] != motion or unit in own_rates]
         factor = math.prod(map(self._problem.rate, fixed), start=Fraction(1))
         return _Tree(units, len(units) - len(fixed), factor)
 
 
-def _at_rate(problem: Problem, motion: str, degree: int, of: Fraction) -> Problem:
-    """Return a problem with all rates raised to a degree; ``of`` is the raised rate of the motion."""
+def _at_rate(problem: Problem, motion: str, degree: int, raised_rate: Fraction) -> Problem:
+    """Return a problem with all rates to the power of ``degree``; that of the motion is ``raised_rate``."""
     raised = {name: rate**degree for name, rate in (problem.rates or {}).items()}
     own_rates = {unit: rate**degree for unit, rate in problem.own_rates.items()}
-    return replace(problem, rates=raised | {motion: of}, own_rates=own_rates, as_seen=problem)
+    return replace(problem, rates=raised | {motion: raised_rate}, own_rates=own_rates, as_seen=problem)
 
 
 def _success(costs: Costs) -> Fraction:
+    """Return the success in the costs of a tree, as an exact fraction."""
     return Fraction(costs.measure(Objective.SUCCESS))

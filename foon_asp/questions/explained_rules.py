@@ -38,7 +38,7 @@ _TOGETHER = {
 
 
 class Remark(Value, frozen=True):
-    """A remark on a rule, and its place."""
+    """A remark on a rule, and the file and line that it is about."""
 
     text: str
     file: str
@@ -49,9 +49,9 @@ class ExplainedRule(Value, frozen=True):
     """A rule and its effect.
 
     Attributes:
-        constraint: How a ready-made constraint was named that has constants of its own; null for others.
+        constraint: For a ready-made constraint with constants of its own, how it was named; null for others.
         kind: What it does to trees.
-        one_of_a_set: Whether it requires no more than a unit of a set, or of each of several.
+        one_of_a_set: Whether all that it requires is a unit of a set, or a unit of each of several sets.
         reason: Why nothing more is known of it, or why it has no effect.
         local: Whether it looks at nothing beyond the tree.
         looks_beyond: What it looks at beyond the tree, if it is not local.
@@ -69,7 +69,7 @@ class ExplainedRule(Value, frozen=True):
 
     @classmethod
     def of(cls, explained: ShownRule) -> "ExplainedRule":
-        """Return an analysed rule as a value."""
+        """Return an analysed rule as a value for the result."""
         rule, (file, line, *_) = explained.rule, explained.source
         reason = _remark(rule.reason, explained.reason_source)
         beyond = _remark(rule.nonlocality, explained.nonlocality_source)
@@ -77,7 +77,7 @@ class ExplainedRule(Value, frozen=True):
         return cls(explained.text, file, line, named, rule.kind, rule.one_of, reason, rule.local, beyond)
 
     def lines(self, similar: int) -> Iterator[str]:
-        """Return lines on the place, text, effect and locality of a rule.
+        """Yield lines on the place, text, effect and locality of a rule.
 
         ``similar`` is the number of further facts like this one, which are only counted.
         """
@@ -90,21 +90,26 @@ class ExplainedRule(Value, frozen=True):
         if self.one_of_a_set:
             yield f"  {self.kind}: {_ASKS_FOR_ONE}"
         else:
-            yield f"  {self.kind}: {_KINDS[self.kind] if self.reason is None else self._located(self.reason)}"
+            effect = _KINDS[self.kind] if self.reason is None else self._remark_text(self.reason)
+            yield f"  {self.kind}: {effect}"
         if self.kind is Kind.HELPER or (self.reason is not None and self.kind is not Kind.OTHER):
             return
         if self.looks_beyond is None:
             yield "  local: it looks at nothing beyond the tree"
         else:
-            yield f"  not local: {self._located(self.looks_beyond)}"
+            yield f"  not local: {self._remark_text(self.looks_beyond)}"
 
-    def _located(self, remark: Remark) -> str:
+    def _remark_text(self, remark: Remark) -> str:
+        """Return a remark, with its file and line unless they are those of the rule."""
         in_same_place = (remark.file, remark.line) == (self.file, self.line)
         return remark.text + ("" if in_same_place else f" ({Source(remark.file, remark.line)})")
 
     @property
     def likeness(self) -> tuple[bool, str]:
-        """A key for grouping: whether the rule is a fact, and the fields that listed facts share."""
+        """A key for grouping facts: whether the rule is one, and its file and predicate.
+
+        All rules that are no facts have the key ``(False, "")``.
+        """
         is_fact = self.kind is Kind.HELPER and ":-" not in self.text
         return is_fact, f"{self.file} {self.text.partition('(')[0]}" if is_fact else ""
 
@@ -114,8 +119,8 @@ class ExplainedRules(Document, frozen=True, kw_only=True, tag=schema_name("rules
 
     Attributes:
         rules: Each rule, in order.
-        together: What stays of the reductions under all of them.
-        meaning: The same in words.
+        together: Which reductions of the problem stay valid under all of them.
+        meaning: ``together`` in words.
     """
 
     ROWS = "rules"
@@ -137,7 +142,7 @@ class ExplainedRules(Document, frozen=True, kw_only=True, tag=schema_name("rules
 def explain_rules(
     constraints: Sequence[Constraint], constants: Sequence[str], reporter: Reporter
 ) -> ExplainedRules:
-    """Return the effect of each rule, and of all rules together.
+    """Return the effect of each rule, and of all rules together; warnings go to the ``reporter``.
 
     Raises :class:`UserError` where the built-in encodings were changed, so that nothing is known of rules.
     """
@@ -145,13 +150,14 @@ def explain_rules(
     rules = assemble(settings, reporter.warning).understood
     if rules is None:
         raise UserError("the built-in encodings were changed, so nothing is known of rules beside them")
-    far = next((str(explained.source) for explained in rules.shown if not explained.rule.local), "")
+    nonlocal_rule = next((str(explained.source) for explained in rules.shown if not explained.rule.local), "")
     return ExplainedRules(
         rules=tuple(map(ExplainedRule.of, rules.shown)),
         together=rules.reductions_kept,
-        meaning=_TOGETHER[rules.reductions_kept].format(far),
+        meaning=_TOGETHER[rules.reductions_kept].format(nonlocal_rule),
     )
 
 
 def _remark(text: str, source: Source | None) -> Remark | None:
+    """Return a remark on a place; ``None`` without one."""
     return None if source is None else Remark(text, source.file, source.line)

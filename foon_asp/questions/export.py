@@ -14,7 +14,7 @@ from foon_asp.planning.pddl_writer import domain_text, items_words, problem_text
 from foon_asp.planning.planning_task import PlanningTask, planning_task
 from foon_asp.planning.unified import unified_problem
 from foon_asp.problem import Problem
-from foon_asp.questions.common_options import Posed, begin
+from foon_asp.questions.common_options import Posed, start_deadline
 from foon_asp.questions.options import AMOUNT, CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.posing import Command, one_problem
 from foon_asp.questions.python_arguments import Objectives, chosen_objectives, whole
@@ -58,7 +58,7 @@ class Exported(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("e
     """The folder that the files were written into, if they were."""
 
     def show(self) -> Iterator[Block]:
-        """Return the PDDL text, or the names of the files written."""
+        """Yield the problem in PDDL; if files were written, their names, sizes and how costs were scaled."""
         if self.written is None:
             yield from self.problem_file.splitlines()
             return
@@ -72,7 +72,7 @@ class Exported(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("e
             yield "rounded costs may make a planner take a tree for the best that is not quite"
 
     def domain(self) -> str:
-        """Return the domain, as ``--format domain`` prints it."""
+        """Return the domain in PDDL, which ``--format domain`` prints."""
         return self.domain_file
 
     def write(self, file: File, format_: str | None = None) -> None:
@@ -103,7 +103,7 @@ class Exported(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("e
 def _export_and_write(
     problem: Problem, *about: Any, folder_written: Path | None = None, **options: Any
 ) -> Exported:
-    """Export as the command does, into a folder or to be printed."""
+    """Return :func:`export`, and write its files if ``folder_written`` names a folder."""
     exported = export(problem, *about, **options)
     if folder_written is not None:
         exported.write(folder_written)
@@ -111,15 +111,19 @@ def _export_and_write(
     return exported
 
 
-def _posed(
+def _pose_export(
     command: Command, goals_named: Sequence[str], containers: str, items: str | None, **files: Any
 ) -> tuple[Problem]:
+    """Return the problem of the goals; with ``--items set``, it is one in which items are used up."""
     items = "used-up" if items == _MERGED else items or "lasting"
     return one_problem(command, goals_named, containers, items, **files)
 
 
-def _merged(problem: Problem, items: str | None) -> bool:
-    """Return whether copies are merged; raises :class:`UserError` if ``items`` contradict the problem."""
+def _has_merged_copies(problem: Problem, items: str | None) -> bool:
+    """Return whether ``items`` is ``set``: then all copies of an object node are one.
+
+    Raises :class:`UserError` if ``items`` contradict the problem.
+    """
     if items not in {None, *_ITEM_RULES}:
         raise UserError(f"found items={items!r}, expected one of {', '.join(_ITEM_RULES)}")
     if items is not None and (items == "lasting") is not (problem.items is None):
@@ -152,7 +156,7 @@ def _merged(problem: Problem, items: str | None) -> bool:
         metavar="DIR",
     ),
     command=_export_and_write,
-    pose=_posed,
+    pose=_pose_export,
     formats=("text", "json", "domain"),
     help_="""
     \b
@@ -208,8 +212,8 @@ def export(
     chosen = chosen_objectives(problem, objectives)
     if every_unit:
         problem = whole(problem)
-    with begin(options).watched("writing"):
-        task = planning_task(problem, chosen, every_unit, _merged(problem, items))
+    with start_deadline(options).watched("writing"):
+        task = planning_task(problem, chosen, every_unit, _has_merged_copies(problem, items))
         exported = Exported(
             **head_of(task.problem, task.objectives),
             domain_file=domain_text(task),
@@ -255,5 +259,5 @@ def to_unified_planning(
     """
     chosen = chosen_objectives(problem, objectives)
     problem = whole(problem) if every_unit else problem
-    with begin(options).watched("writing"):
-        return unified_problem(problem, chosen, every_unit, _merged(problem, items))
+    with start_deadline(options).watched("writing"):
+        return unified_problem(problem, chosen, every_unit, _has_merged_copies(problem, items))

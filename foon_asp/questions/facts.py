@@ -15,21 +15,21 @@ class Facts(AboutGoals, frozen=True, kw_only=True, tag=schema_name("facts")):
     """The facts and rules that the solver reads.
 
     Attributes:
-        facts: Facts of clingo, some on a line, and with soft constraints rules.
+        facts: Lines of facts in the syntax of clingo; with soft constraints, also of rules.
     """
 
     facts: tuple[str, ...]
 
     @property
     def program(self) -> str:
-        """The facts as a program."""
+        """The facts as the text of a program."""
         return "".join(f"{line}\n" for line in self.facts)
 
 
 def facts_of(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, soft: Mapping[Constraint, int]
 ) -> Facts:
-    """Return the facts and rules that the solver gets; ``soft`` maps soft constraints to weights."""
+    """Return the facts and rules that clingo gets; ``soft`` maps soft constraints to their weights."""
     program = printed_program(problem, objectives, settings, soft).text
     lines = program.rstrip("\n").split("\n")  # a name may hold what other letters end a line
     return Facts(**head_of(problem, objectives), facts=tuple(lines))

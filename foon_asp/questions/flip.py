@@ -1,4 +1,4 @@
-"""Where another tree becomes the best as one success rate changes: exact, and as decimals for people."""
+"""The rates at which another tree becomes the best, as one success rate changes: exact and as decimals."""
 
 from decimal import Context, Decimal
 from fractions import Fraction
@@ -12,8 +12,8 @@ _SHORT = Fraction(1, 10**9)  # smallest number that is written without an expone
 class Flip(NamedTuple):
     """The value ``at`` of a rate beyond which another tree is the best.
 
-    The other tree is the best at rates above this value if ``above``, else at rates below. Flips are in order
-    of the relative change of the rate.
+    ``rate`` is its present value. The other tree is the best at rates above ``at`` if ``above``, else at
+    rates below. Flips are ordered by the relative change from ``rate`` to ``at``.
     """
 
     rate: Fraction
@@ -22,7 +22,7 @@ class Flip(NamedTuple):
 
     @property
     def inwards(self) -> Fraction:
-        """The rate of the flip, rounded towards the given rate to a decimal of four digits or more."""
+        """The value ``at``, rounded towards ``rate`` to four digits; to more if it would pass ``rate``."""
         digits = 4
         if self.at.rational == self.rate:
             return self.rate
@@ -34,7 +34,7 @@ class Flip(NamedTuple):
 
     @property
     def percent(self) -> str:
-        """The relative change of the rate in percent, in three digits, rounded towards 0."""
+        """The relative change of the rate in three digits, rounded towards 0: ``+1.23 %``."""
         digits = 4
         while True:
             low, high = self.change(digits)
@@ -47,10 +47,10 @@ class Flip(NamedTuple):
             digits *= 2
 
     def change(self, digits: int) -> tuple[Fraction, Fraction]:
-        """Return two numbers that enclose the relative change of the rate.
+        """Return a lower and an upper bound on the relative change of the rate, which is not negative.
 
-        They are computed from the factor of the rate, enclosed in ``digits`` significant digits.
-        The numbers are equal if the change is rational.
+        The quotient of ``at`` and ``rate`` is enclosed in ``digits`` significant digits. If it is rational,
+        both bounds are equal to the change.
         """
         factor = self.at.over(self.rate)
         exact = factor.rational
@@ -60,24 +60,24 @@ class Flip(NamedTuple):
     def __lt__(self, other: object) -> bool:
         """Compare relative changes exactly, by as many digits as it takes.
 
-        Equal factors of the rate are compared first. After that, two changes that are not rational cannot be
-        equal. On one side, their factors would be equal; on two sides, the factors would add up to 2. But
-        positive roots none of which is a rational multiple of another are linearly independent over the
-        rational numbers (Besicovitch, 1940).
+        A factor is the quotient of ``at`` and ``rate``. Equal factors are compared first. After that, two
+        changes that are not rational cannot be equal. If both are above or both below, their factors would be
+        equal. Otherwise, the factors would add up to 2. But positive roots, none a rational multiple of
+        another, are linearly independent over the rational numbers (Besicovitch, 1940).
         """
         assert isinstance(other, Flip)
         if self.at.over(self.rate) == other.at.over(other.rate):
             return False  # on one side, or both at the rate itself
         digits = 4
         while True:
-            (low, high), (others_low, others_high) = self.change(digits), other.change(digits)
-            if high < others_low or others_high <= low:
-                return high < others_low
+            (low, high), (other_low, other_high) = self.change(digits), other.change(digits)
+            if high < other_low or other_high <= low:
+                return high < other_low
             digits *= 2
 
 
 def decimal_text(value: Fraction) -> str:
-    """Return a number as a decimal if it is finite, and else as a fraction."""
+    """Return a number as a decimal if it has finitely many digits, else as a fraction: ``0.25``, ``1/3``."""
     context = Context(prec=value.numerator.bit_length() + value.denominator.bit_length())
     decimal = context.divide(Decimal(value.numerator), Decimal(value.denominator)).normalize(context)
     if Fraction(decimal) != value:

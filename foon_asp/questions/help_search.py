@@ -32,90 +32,98 @@ class PricedHelp:
     def __init__(
         self, problem: Problem, better: Mapping[str, Fraction], settings: Settings, reporter: Reporter
     ) -> None:
-        """Take the person's rates of the motions that the person does better than the robot."""
+        """Prepare the prices; ``better`` has the person's rates of motions that the person does better."""
         self._problem, self._better, self._settings, self._reporter = problem, better, settings, reporter
         self._rates = problem.rates or {}
-        self._worth = {motion: self._rates[motion] / rate for motion, rate in better.items()}
-        self._prices = sorted({*self._worth.values(), Fraction(1)})
+        # At this price, help for a motion begins to pay.
+        self._break_even = {motion: self._rates[motion] / rate for motion, rate in better.items()}
+        self._prices = sorted({*self._break_even.values(), Fraction(1)})
         self._outcomes: dict[Fraction, Outcome] = {}
 
     def best(self, max_helped: int) -> Outcome:
-        """Return the best tree with help for at most ``max_helped`` units."""
+        """Return the best tree with help for at most ``max_helped`` units; at a limit, the best one found."""
         bounds: dict[Fraction, Fraction] = {}
         for price in self._prices:
-            outcome = self._at(price)
+            outcome = self._optimum_at(price)
             if outcome.status is Status.INFEASIBLE:
                 return outcome
             if outcome.status is not Status.OPTIMAL or outcome.units is None:
-                return self._stopped(max_helped)
-            tree = self._helped(max_helped, outcome.units)
+                return self._best_before_limit(max_helped)
+            tree = self._with_help(max_helped, outcome.units)
             bounds[price] = Fraction(outcome.bounds[Objective.SUCCESS]) / price**max_helped
-            if -_key(tree)[0] == bounds[price]:
-                return _proved(tree)
+            if -_order_key(tree)[0] == bounds[price]:
+                return _as_optimal(tree)
             if bounds[price] > min(bounds.values()):
                 break
-        return self._listed(max_helped, min(bounds, key=bounds.__getitem__))
+        return self._best_enumerated(max_helped, min(bounds, key=bounds.__getitem__))
 
-    def any_number(self) -> Outcome:
+    def best_with_any_help(self) -> Outcome:
         """Return the best tree with help for any number of its units."""
-        return self._at(Fraction(1))
+        return self._optimum_at(Fraction(1))
 
-    def helped(self, max_helped: int, units: Iterable[int]) -> list[int]:
+    def helped_units(self, max_helped: int, units: Iterable[int]) -> list[int]:
         """Return the units of a tree, at most ``max_helped``, where help raises the success rate most."""
         motions = self._problem.network.motions
-        worth = sorted((self._worth[motions[u]], u) for u in units if motions[u] in self._worth)
-        return [unit for _, unit in worth[:max_helped]]
+        by_gain = sorted((self._break_even[motions[u]], u) for u in units if motions[u] in self._break_even)
+        return [unit for _, unit in by_gain[:max_helped]]
 
-    def _listed(self, max_helped: int, price: Fraction) -> Outcome:
-        """Return the best tree for ``max_helped`` units among trees listed by success at a price.
+    def _best_enumerated(self, max_helped: int, price: Fraction) -> Outcome:
+        """Enumerate trees by success at a price; return the best one with help for ``max_helped`` units.
 
-        The list ends where no later tree can be better.
+        The enumeration ends where no later tree can be better.
         """
         best: Outcome | None = None
-        ranked = Ranked(self._at_price(price), _SUCCESS, self._settings, Reporter())
+        ranked = Ranked(self._problem_at(price), _SUCCESS, self._settings, Reporter())
         for units, costs in ranked:
-            tree = self._helped(max_helped, units)
-            best = tree if best is None else min(best, tree, key=_key)
-            if _key(best) <= (costs.key(_SUCCESS)[0] / price**max_helped, costs.units):
-                return _proved(best)
-        return self._stopped(max_helped) if best is None or not ranked.complete else _proved(best)
+            tree = self._with_help(max_helped, units)
+            best = tree if best is None else min(best, tree, key=_order_key)
+            if _order_key(best) <= (costs.key(_SUCCESS)[0] / price**max_helped, costs.units):
+                return _as_optimal(best)
+        if best is None or not ranked.complete:
+            return self._best_before_limit(max_helped)
+        return _as_optimal(best)
 
-    def _stopped(self, max_helped: int) -> Outcome:
-        """Return the best tree that was found before a limit."""
+    def _best_before_limit(self, max_helped: int) -> Outcome:
+        """Return the best of the trees found at all prices so far, with the least bound that they prove."""
         outcomes = self._outcomes.values()
-        trees = [self._helped(max_helped, outcome.units) for outcome in outcomes if outcome.units is not None]
+        trees = [
+            self._with_help(max_helped, outcome.units) for outcome in outcomes if outcome.units is not None
+        ]
         bounds = [
             Fraction(outcome.bounds[Objective.SUCCESS]) / price**max_helped
             for price, outcome in self._outcomes.items()
             if outcome.bounds
         ]
-        best = min(trees, key=_key, default=next(iter(outcomes)))
+        best = min(trees, key=_order_key, default=next(iter(outcomes)))
         return best._replace(bounds={Objective.SUCCESS: min(bounds)} if bounds else {})
 
-    def _helped(self, max_helped: int, units: tuple[int, ...]) -> Outcome:
+    def _with_help(self, max_helped: int, units: tuple[int, ...]) -> Outcome:
+        """Return a tree, not proved best, whose ``max_helped`` units with the greatest gain are helped."""
         motions = self._problem.network.motions
-        own_rates = {unit: self._better[motions[unit]] for unit in self.helped(max_helped, units)}
+        own_rates = {unit: self._better[motions[unit]] for unit in self.helped_units(max_helped, units)}
         problem = replace(self._problem, own_rates=own_rates)
         return Outcome(problem, _SUCCESS, Status.FEASIBLE, units, problem.costs(units), {}, {})
 
-    def _at(self, price: Fraction) -> Outcome:
-        """Return the best outcome where help for a unit has this price, computed once."""
+    def _optimum_at(self, price: Fraction) -> Outcome:
+        """Return the optimum where help for a unit costs this factor of success, solved once."""
         if price not in self._outcomes:
             reporter = (
                 Reporter() if self._outcomes else self._reporter
             )  # later searches have other objectives or bounds
-            self._outcomes[price] = solve(self._at_price(price), _SUCCESS, self._settings, reporter)
+            self._outcomes[price] = solve(self._problem_at(price), _SUCCESS, self._settings, reporter)
         return self._outcomes[price]
 
-    def _at_price(self, price: Fraction) -> Problem:
-        paid = {m: max(rate, self._better.get(m, 0) * price) for m, rate in self._rates.items()}
-        return replace(self._problem, rates=paid)
+    def _problem_at(self, price: Fraction) -> Problem:
+        """Return the problem with the person's rates times the price, where that exceeds the robot's rate."""
+        rates = {m: max(rate, self._better.get(m, 0) * price) for m, rate in self._rates.items()}
+        return replace(self._problem, rates=rates)
 
 
 class CountedHelp:
-    """Trees whose helped units are counted: units that the person does better are in the network twice.
+    """A search for trees with limited help, over a network with a copy of each unit for the person.
 
-    This is for rules and encodings that look at who does a unit.
+    Only units that the person does better have a copy, and the number of copies in a tree is limited. This is
+    for rules and encodings that look at who does a unit; :class:`PricedHelp` is for all others.
     """
 
     def __init__(
@@ -145,7 +153,7 @@ class CountedHelp:
         problem = replace(self._problem, own_rates=own_rates)
         return outcome._replace(problem=problem, units=units, costs=problem.costs(units))
 
-    def any_number(self) -> Outcome:
+    def best_with_any_help(self) -> Outcome:
         """Return the best tree with help for any number of its units."""
         return self.best(len(self._originals))
 
@@ -173,56 +181,57 @@ def helped_trees(
 ) -> HelpedTrees:
     """Find the best trees with help for 0, 1, 2, ... units.
 
-    The rows end with ``max_helped`` units, with the first tree that succeeds as often as ``wanted``, or where
-    more help changes nothing. Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
+    ``person`` has the person's rates by motion; ``None`` is a person who never fails. The rows end with
+    ``max_helped`` units, with the first tree whose success is at least ``wanted``, or where more help changes
+    nothing. At a limit, they end early.
+
+    Raises :class:`UserError` for wrong rules, and for rules that look beyond the tree and at who does a unit.
     """
     better = {
         motion: rate
         for motion, robot in (problem.rates or {}).items()
         if (rate := Fraction(1) if person is None else person.get(motion, Fraction(0))) > robot
     }
-    counts = settings.replaced is not None
-    if not counts and sees_who_does_it(settings.constraints):
+    must_count = settings.replaced is not None
+    if not must_count and sees_who_does_it(settings.constraints):
         require_local(settings)
-        counts = True
-    search = (CountedHelp if counts else PricedHelp)(problem, better, settings, reporter)
+        must_count = True
+    search = (CountedHelp if must_count else PricedHelp)(problem, better, settings, reporter)
     rows: list[Outcome] = []
-    any_number: Outcome | None = None
+    with_any_help: Outcome | None = None
     complete = False
     try:
         while not complete:
             row = search.best(len(rows))
             before = rows[-1] if rows else row
             if row.status not in _PROVED and before.units is not None:  # help never makes a tree worse
-                row = min(row, before._replace(status=Status.FEASIBLE, bounds=row.bounds), key=_key)
+                row = min(row, before._replace(status=Status.FEASIBLE, bounds=row.bounds), key=_order_key)
             _require_sound(len(rows), row, before, settings)
             rows.append(row)
             if row.status not in _PROVED:
                 break
-            any_number = any_number or search.any_number()
-            if any_number.status not in _PROVED:
+            with_any_help = with_any_help or search.best_with_any_help()
+            if with_any_help.status not in _PROVED:
                 break
-            reached = wanted is not None and -_key(row)[0] >= wanted
+            reached = wanted is not None and -_order_key(row)[0] >= wanted
             # a requested number is always solved, since more help may need fewer units
-            done = (
-                _key(row) == _key(any_number)
-                if max_helped is not None
-                else _key(row)[0] == _key(any_number)[0]
-            )
-            complete = reached or done or any_number.units is None or len(rows) - 1 == max_helped
+            compared_length = 1 if max_helped is None else 2
+            done = _order_key(row)[:compared_length] == _order_key(with_any_help)[:compared_length]
+            complete = reached or done or with_any_help.units is None or len(rows) - 1 == max_helped
     except KeyboardInterrupt:
         if not rows:
             raise
-    costs = any_number is not None and any_number.status in _PROVED and any_number.costs
+    costs = with_any_help is not None and with_any_help.status in _PROVED and with_any_help.costs
     return HelpedTrees(tuple(rows), costs.success if costs else None, complete)
 
 
-def _key(outcome: Outcome) -> tuple[int | Fraction, ...]:
-    """Return the success and the number of units as a key by which the best tree comes first."""
+def _order_key(outcome: Outcome) -> tuple[int | Fraction, ...]:
+    """Return a key by which the best outcome comes first: (-success, units), or (1,) without a tree."""
     return (1,) if outcome.costs is None else outcome.costs.key(_BEST)
 
 
-def _proved(tree: Outcome) -> Outcome:
+def _as_optimal(tree: Outcome) -> Outcome:
+    """Return the outcome of a tree as proved optimal, with its own measures as bounds."""
     assert tree.costs is not None
     return tree._replace(
         status=Status.OPTIMAL, bounds={objective: tree.costs.measure(objective) for objective in _BEST}
@@ -230,7 +239,10 @@ def _proved(tree: Outcome) -> Outcome:
 
 
 def _require_sound(max_helped: int, row: Outcome, before: Outcome, settings: Settings) -> None:
-    """Require that at most ``max_helped`` units are helped, costs are right, and help never hurts."""
+    """Raise an error if more than ``max_helped`` units are helped, costs are wrong, or more help is worse.
+
+    ``row`` is the outcome to check, and ``before`` the one with less help.
+    """
     if row.units is None:
         return
     holds = Postconditions(row.problem, _BEST, settings)

@@ -5,9 +5,9 @@ from typing import Final, NamedTuple
 
 
 class Entry(NamedTuple):
-    """A question: the heading it stands under, one line of help, and its names in Python, if it has any.
+    """A verb in the help: its heading, one line of help, and the names in Python of its question and result.
 
-    The module of a question is called like its verb. The first name is that of the question itself.
+    The first name is that of the question itself. Without names, the verb has no function in Python.
     """
 
     group: str
@@ -116,11 +116,11 @@ INDEX: Final[Mapping[str, Entry]] = {
 
 
 def module_name(verb: str) -> str:
-    """Return the name of a question's module."""
+    """Return the name of the module of a verb's question: ``why_not`` for ``why-not``."""
     return verb.replace("-", "_")
 
 
 def question_name(verb: str) -> str:
-    """Return the name that a question has in its module."""
+    """Return the name that a verb's question has in its module; by default, it is that of the module."""
     names = INDEX[verb].python
     return names[0] if names else module_name(verb)

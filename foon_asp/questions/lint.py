@@ -35,7 +35,7 @@ class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):
         files: How many files were linted.
         counts: How many findings there are of each severity.
         codes: How many findings there are of each code.
-        mended: How many findings --fix mended before.
+        mended: How many findings --fix mended before these were found.
         known: How many findings a baseline left out.
         gone: How many findings of a baseline were not found any more.
         findings: The findings, by file and line.
@@ -63,7 +63,7 @@ class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):
         return Ending.NEGATIVE if bad else Ending.DONE
 
     def show(self) -> Iterator[Block]:
-        """Return the findings with their lines, those of one kind in a file folded, and a line of counts."""
+        """Yield the findings with their lines, those of one kind in a file folded, and a line of counts."""
         yield from finding_lines(self.findings)
         yield self._summary()
 
@@ -71,17 +71,18 @@ class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):
         """Return a table that counts the findings of each code, and a line of counts.
 
         Parameters:
-            width: The columns of a terminal; without it, lines are as long as they are.
+            width: The number of columns that lines are wrapped to; ``None`` wraps no line.
         """
         return rendered([statistics(self.findings), self._summary()], width)
 
     def _summary(self) -> str:
+        """Return a line of counts."""
         return summary(self.findings, self.files, self.mended)
 
     def json_dict(self) -> Json:
-        """Return every finding, and the counts, as plain values; long lines are left out."""
+        """Return the findings and the counts as plain values, without the text of lines over 1000 letters."""
         short = [
-            structs.replace(finding, text=_short(finding.text), fix=_short(finding.fix))
+            structs.replace(finding, text=_unless_long(finding.text), fix=_unless_long(finding.fix))
             for finding in self.findings
         ]
         values: Json = plain(structs.replace(self, findings=tuple(short)))
@@ -102,13 +103,17 @@ class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):
         return json_text(sarif(self.findings, version("foon-asp")))
 
 
-def _short(line: str | None, max_letters: int = 1000) -> str | None:
-    """Return a line unless it is long: thousands of findings on one would repeat it thousands of times."""
+def _unless_long(line: str | None, max_letters: int = 1000) -> str | None:
+    """Return a line, or ``None`` if it is long: thousands of findings might repeat it."""
     return line if line is not None and len(line) <= max_letters else None
 
 
 class Findings(NamedTuple):
-    """Findings in files, with the fixes, and the numbers of known and of gone findings of a baseline."""
+    """Findings in files, with their fixes.
+
+    ``baselined``: how many findings a baseline left out.
+    ``gone``: how many findings of the baseline are not found any more.
+    """
 
     files: Sequence[Path]
     findings: list[Diagnostic]
@@ -116,7 +121,7 @@ class Findings(NamedTuple):
     gone: int = 0
 
     def linted(self, mended: int = 0) -> Linted:
-        """Return the result; ``mended`` is the number of findings that were repaired before."""
+        """Return the findings as a result; ``mended`` is the number of findings that were repaired before."""
         severities = Counter(finding.severity for finding in self.findings)
         codes = Counter(finding.code for finding in self.findings)
         return Linted(
@@ -165,7 +170,7 @@ def lint(
         [(4, 'outer-space')]
     """
     texts = {as_path(file): content for file, content in contents.items()}
-    return find(
+    return find_findings(
         map(as_path, paths),
         texts,
         tuple(select),
@@ -175,7 +180,7 @@ def lint(
     ).linted()
 
 
-def find(
+def find_findings(
     paths: Iterable[Path],
     contents: Mapping[Path, bytes],
     select: Sequence[str],
@@ -183,7 +188,10 @@ def find(
     baseline: Path | None,
     vocabulary: Path | None,
 ) -> Findings:
-    """Return the findings of :func:`lint`, with the fixes."""
+    """Return the findings of :func:`lint`, with their fixes and the counts of the ``baseline``.
+
+    ``select`` replaces the codes that settings select or ignore; ``ignore`` is added to them.
+    """
     for code in (*select, *ignore):
         if code not in CATALOG:
             raise UserError(unknown_code(code))
@@ -203,7 +211,10 @@ def find(
 
 
 def linted_files(paths: Iterable[Path], contents: Iterable[Path] = ()) -> Sequence[Path]:
-    """Return all files to lint for some paths: the files of folders, their tables, and missing files."""
+    """Return all files to lint, each once: ``paths``, the files and tables of folders, and ``contents``.
+
+    ``contents`` are the paths of files whose content is not read from disk.
+    """
     named = list(paths)
     on_disk = with_tables(named, (file for file, _ in foon_files(named)))
     return list(dict.fromkeys([*on_disk, *contents]))

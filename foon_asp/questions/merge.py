@@ -1,4 +1,4 @@
-"""Many FOONs in one, every functional unit once and with its origins."""
+"""Merging of FOONs into one, with every functional unit once and the places that it comes from."""
 
 from collections.abc import Iterator
 from os import PathLike
@@ -51,16 +51,16 @@ class Merged(Result, frozen=True, kw_only=True, tag=schema_name("merge")):
     """The network; ``None`` where it was written into a store."""
 
     amounts = Unserialized[Amounts](MappingProxyType({}))
-    """How many copies of their object nodes units take and make, where that is not one."""
+    """How many of an object node each unit takes and makes, where that is not one."""
 
     store = Unserialized[Path | None](None)
     """The store that it was written into, if it was."""
 
     warnings = Unserialized[tuple[str, ...]]()
-    """What was assumed."""
+    """Lines on what was skipped or assumed in reading."""
 
     def show(self) -> Iterator[Block]:
-        """Return the counts in one line."""
+        """Yield the counts in one line."""
         read = str(self.store or counted(len(self.files), "file", ","))
         parts = [f"{read}: {counted(self.units, 'unit', ',')} of {self.copies:,} read"]
         parts.append(counted(self.objects, "object node", ","))
@@ -71,19 +71,22 @@ class Merged(Result, frozen=True, kw_only=True, tag=schema_name("merge")):
         yield ", ".join(parts)
 
     def foon(self) -> str:
-        """Return the network as FOON text, with the file, line and videos of every copy above each unit.
+        """Return the network as FOON text; lines above each unit have file, line and videos of every copy.
 
         Raises:
             UserError: for a network that is in a store.
         """
         if self.network is None:
             raise UserError("the network is in a store, not in memory: merge without a store")
-        of = counted(len(self.files), "file", ",")
-        comment = f"Universal FOON: {counted(self.units, 'functional unit', ',')} from {of}"
+        files = counted(len(self.files), "file", ",")
+        comment = f"Universal FOON: {counted(self.units, 'functional unit', ',')} from {files}"
         return "".join(merged_text(self.network, comment, self.amounts))
 
     def kept_apart(self) -> Iterator[Block]:
-        """Return the pairs of units that differ in one thing alone, each with its places."""
+        """Yield the pairs of units that differ in one thing alone, with the first place of each unit.
+
+        Nothing is yielded for a network in a store.
+        """
         if self.network is None:
             return
         pairs = units_kept_apart(self.network)
@@ -103,6 +106,9 @@ class Merged(Result, frozen=True, kw_only=True, tag=schema_name("merge")):
         Parameters:
             file: The path of the file.
             format_: ``foon``, or nothing.
+
+        Raises:
+            UserError: for another format, and for a network that is in a store.
         """
         if format_ not in {None, "foon"}:
             raise UserError(f"found the format {format_!r}, expected 'foon'")
@@ -153,7 +159,10 @@ def merge(
 
 
 def merge_files(data_files: DataFiles, store: Path | None, lenient: bool) -> Merged:
-    """Merge networks in memory; with a ``store``, merge all data files into the store."""
+    """Merge networks in memory, or with ``store`` merge them into a store, with all other data files.
+
+    Raises :class:`UserError` if there is no unit, or if copies of a unit have different prices or amounts.
+    """
     network_files = tuple(dict.fromkeys(data_files.network))
     if store is not None:
         from foon_asp.store.import_files import import_files  # noqa: PLC0415 (slow to import)

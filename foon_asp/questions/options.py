@@ -67,7 +67,7 @@ PLAN_ITEMS = (
     ),
     *ITEMS[1:],
 )
-"""How a plan is read."""
+"""The options that say whether a given plan uses items up."""
 OBJECTIVES = Option(
     "objectives",
     f"What is best, the most important first: {', '.join(Objective)}.",
@@ -114,7 +114,7 @@ CONSTANTS = Option(
 )
 RULES = (CONSTRAINTS, RULE, ENCODINGS, CONSTANTS)
 TREE = (GOALS, OBJECTIVES, CONTAINERS)
-"""What the best tree is asked for by."""
+"""The options that say which tree is the best."""
 SOFT = Option(
     "soft",
     "Constraints that may be broken, each way at this price; the lowest sum comes before all objectives.",
@@ -141,7 +141,7 @@ LIMITS = (
     ),
 )
 EACH_LIMITS = tuple(limit._replace(role=Role.QUESTION) for limit in LIMITS)
-"""The limits of each of many answers, none of which holds for the whole command."""
+"""The limits for each of many answers; there is none for the whole command."""
 CHART = Option(
     "charts",
     "A file for a chart (.svg or .png).",

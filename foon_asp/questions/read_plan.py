@@ -14,7 +14,7 @@ from foon_asp.planning.planning_task import planning_task
 from foon_asp.problem import ITEMS, Problem
 from foon_asp.proof.simulation import Verdict
 from foon_asp.questions.check import Checked
-from foon_asp.questions.common_options import Posed, begin
+from foon_asp.questions.common_options import Posed, start_deadline
 from foon_asp.questions.posing import Command
 from foon_asp.questions.posing_plan import units_in
 from foon_asp.questions.python_arguments import whole
@@ -144,7 +144,7 @@ def read_plan(
         named = map_of(planning_task(problem, whole=True))
     else:
         named = read_name_map(Path(names))
-    with begin(options).watched("reading"):
+    with start_deadline(options).watched("reading"):
         if isinstance(plan, str | PathLike):
             steps = read_plan_text(read_plain_text(Path(plan)), str(plan), named)
         else:  # as unified-planning writes it

@@ -15,9 +15,9 @@ from foon_asp.network import counted
 from foon_asp.planning.strips_task import DERIVED, StripsTask
 from foon_asp.planning.task_files import read_task
 from foon_asp.problem import Costs, Objective, Problem
-from foon_asp.questions.answer import Answer, answered, of_status
+from foon_asp.questions.answer import Answer, answer_problem, ending_of_status
 from foon_asp.questions.caller import caller
-from foon_asp.questions.common_options import Limits, begin
+from foon_asp.questions.common_options import Limits, start_deadline
 from foon_asp.questions.posing import no_data
 from foon_asp.questions.question import Kind, Option, question
 from foon_asp.questions.result import Ending, Result
@@ -131,7 +131,7 @@ class Relaxed(Result, frozen=True, kw_only=True, tag=schema_name("relax")):
     @property
     def ending(self) -> Ending:
         """``DONE`` if the plan is proved to be the cheapest, or that none exists."""
-        return of_status(self.status)
+        return ending_of_status(self.status)
 
     @property
     def claim(self) -> str:
@@ -218,7 +218,7 @@ def relax(
         >>> str(relaxed.cost), str(relaxed.status)
         ('9', 'optimal')
     """
-    deadline = begin(limits)
+    deadline = start_deadline(limits)
     relaxed = solved(read_task(files(task), deadline), deadline)
     if certificate_file is None:
         return relaxed
@@ -237,7 +237,7 @@ def solved(task: StripsTask, deadline: Deadline) -> Relaxed:
     """
     proof_deadline = Deadline(within=deadline)
     reporter = _Enough(caller().reporter, task.objective, proof_deadline)
-    answer = answered(task.problem(), (task.objective,), Settings(deadline=proof_deadline), reporter)
+    answer = answer_problem(task.problem(), (task.objective,), Settings(deadline=proof_deadline), reporter)
     return Relaxed.of(task, answer)
 
 

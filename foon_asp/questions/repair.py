@@ -17,7 +17,7 @@ from foon_asp.network import FunctionalUnit, ObjectNode, StandInTable, counted
 from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.proof.rule_meaning import ALL_STEPS
 from foon_asp.proof.simulation import Verdict, simulate_for
-from foon_asp.questions.answer import of_status
+from foon_asp.questions.answer import ending_of_status
 from foon_asp.questions.caller import caller
 from foon_asp.questions.certificate_text import certificate_lines
 from foon_asp.questions.common_options import CommonOptions, settings_of
@@ -75,7 +75,7 @@ class Repaired(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("r
     @property
     def ending(self) -> Ending:
         """``DONE`` if the repair is proved to be the cheapest."""
-        return of_status(self.status)
+        return ending_of_status(self.status)
 
     tree = Unserialized[Tree | None](None)
     """The repaired tree; ``None`` without one."""

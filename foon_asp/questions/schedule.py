@@ -22,9 +22,9 @@ from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.proof.timetable import Means, ToolName, timetable_fault
 from foon_asp.proof.timetable import TimedStep as Timed
 from foon_asp.proof.used_up_run import used_up_run
-from foon_asp.questions.answer import of_status
+from foon_asp.questions.answer import ending_of_status
 from foon_asp.questions.caller import caller
-from foon_asp.questions.common_options import Posed, begin
+from foon_asp.questions.common_options import Posed, start_deadline
 from foon_asp.questions.durations import Durations, duration_of, stated_durations
 from foon_asp.questions.options import AMOUNT, CHART, CONTAINERS, GOAL_OF_PLAN, PLAN_ITEMS
 from foon_asp.questions.posing_plan import a_plan
@@ -114,7 +114,7 @@ class Schedule(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("s
     @property
     def ending(self) -> Ending:
         """``DONE`` if the schedule is proved shortest."""
-        return of_status(self.status)
+        return ending_of_status(self.status)
 
     @property
     def gantt(self) -> Gantt:
@@ -304,7 +304,7 @@ def schedule(
         >>> str(found.status), str(found.makespan)
         ('optimal', '40')
     """
-    deadline = begin(options)
+    deadline = start_deadline(options)
     at_least(agents, 1, "agents")
     problem = read_as(problem, items)
     tree = _in_order(posed_tree(problem, plan))

@@ -10,7 +10,7 @@ from foon_asp.comparison.comparison import simulated
 from foon_asp.pictures.drawing import Drawing
 from foon_asp.problem import Costs, Problem
 from foon_asp.proof.simulation import Simulation, Verdict
-from foon_asp.questions.common_options import Posed, begin
+from foon_asp.questions.common_options import Posed, start_deadline
 from foon_asp.questions.question import question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.search_options import COUNT, DEPTH, TIES, search_settings, searched
@@ -196,7 +196,7 @@ def search(
         <Retrieved: bfs, executes in another order>
     """
     (wanted,) = searched([search])
-    deadline = begin(options)
+    deadline = start_deadline(options)
     settings = search_settings(ties, count, depth_limit, published, deadline.left, deadline.memory)
     outcome = wanted.run(replace(problem, items=None), settings)
     stuck_at = None if outcome.stuck_at is None else node_of(problem.network, outcome.stuck_at)

@@ -12,7 +12,7 @@ from foon_asp.problem import Objective, Problem, success_rate
 from foon_asp.questions.answer import Answer, WithAnswer
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
-from foon_asp.questions.envelope import End, Envelope
+from foon_asp.questions.envelope import Envelope, IntervalEnd
 from foon_asp.questions.flip import Flip, decimal_text
 from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.python_arguments import asked_with
@@ -270,7 +270,7 @@ def sensitivity(problem: Problem, **options: Unpack[CommonOptions]) -> Sensitivi
     )
 
 
-def _end(best: Answer, end: End, flip: Flip | None) -> RateEnd:
+def _end(best: Answer, end: IntervalEnd, flip: Flip | None) -> RateEnd:
     """Return an end of an interval as a value, with the best tree beyond it."""
     if flip is None or end.beyond is None:
         return RateEnd(end.proved, None, None)

@@ -8,7 +8,7 @@ from foon_asp.asp import Outcome, Reporter, Settings, solve
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.dataset.nearby import NearbyProblem
 from foon_asp.problem import Objective, Problem, for_each_goal, levels, multiplies
-from foon_asp.questions.answer import Alone, Answer, Serving, answered_under
+from foon_asp.questions.answer import Alone, Answer, Serving, answer_under_rules
 from foon_asp.results.values_of import node_of, nodes_of
 
 
@@ -51,7 +51,8 @@ def _solved_apart(answer: Answer, settings: Settings, posed: Problem) -> list[Ou
     if isinstance(posed, NearbyProblem):
         single = posed.each_goal()
         apart = [
-            answered_under(goal_problem, objectives, settings, Reporter()).outcome for goal_problem in single
+            answer_under_rules(goal_problem, objectives, settings, Reporter()).outcome
+            for goal_problem in single
         ]
     else:
         single = for_each_goal(problem)

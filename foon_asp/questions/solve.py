@@ -9,7 +9,7 @@ from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.hypergraph import Reduction, parse_reductions
 from foon_asp.problem import Problem
-from foon_asp.questions.answer import Answer, SkippedGoal, answered_under
+from foon_asp.questions.answer import Answer, SkippedGoal, answer_under_rules
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.durations import Durations, stated_durations
 from foon_asp.questions.options import AMOUNT, ITEMS, SOFT, TREE
@@ -193,7 +193,7 @@ def solve(
         raise UserError("soft constraints have no certificates; leave one of them out")
     if cross_check:  # what only some answers need is imported for these
         from foon_asp.engines import find_engines  # noqa: PLC0415
-        from foon_asp.questions.cross_check import cross_checked  # noqa: PLC0415
+        from foon_asp.questions.cross_check import cross_check_answer  # noqa: PLC0415
 
         problem, engines = whole(problem), find_engines()
     skipped: tuple[SkippedGoal, ...] = ()
@@ -208,18 +208,18 @@ def solve(
 
         answer = softly_answered(read(problem), chosen, settings, weights)
     elif certificate is not None:
-        from foon_asp.questions.certifying import certified  # noqa: PLC0415
+        from foon_asp.questions.certifying import solve_with_certificate  # noqa: PLC0415
 
-        answer = certified(problem, chosen, settings, certificate)
+        answer = solve_with_certificate(problem, chosen, settings, certificate)
     else:
-        answer = answered_under(problem, chosen, settings, reporter)
+        answer = answer_under_rules(problem, chosen, settings, reporter)
     if has_several_goals:
         from foon_asp.questions.several_goals import with_goals_apart  # noqa: PLC0415
 
         answer = with_goals_apart(answer, settings, problem)
     if skip_unreachable:
         answer = answer.having(skipped=skipped)
-    answer = cross_checked(answer, settings, weights, engines) if cross_check else answer
+    answer = cross_check_answer(answer, settings, weights, engines) if cross_check else answer
     if retries is not None:
         from foon_asp.questions.retry_policy import with_policy  # noqa: PLC0415
 

@@ -15,7 +15,7 @@ from foon_asp.foon import Foon, load
 from foon_asp.network import Network, counted, starting_kitchen
 from foon_asp.network.statistics import MANY, Statistics, most_connected_labels, most_connected_objects
 from foon_asp.problem import DEFAULT_RULE, ContainerRule, UsedUp, container_rule, needed_inputs
-from foon_asp.questions.common_options import Limits, begin
+from foon_asp.questions.common_options import Limits, start_deadline
 from foon_asp.questions.options import CONTAINERS, ITEMS
 from foon_asp.questions.posing import the_data
 from foon_asp.questions.question import TABLES, Kind, Option, Role, question
@@ -302,7 +302,7 @@ def stats(
         ['       faucet; off  (used up)', '     → faucet; on']
     """
     explains = explain_items or stays is not None
-    with begin(limits).watched("counting"):
+    with start_deadline(limits).watched("counting"):
         dataset = (foon if isinstance(foon, Foon) else load(foon)).dataset
         if units or unit or explains:
             return _listed(dataset, tuple(dict.fromkeys(unit)), container_rule(containers), explains, stays)

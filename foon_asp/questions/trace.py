@@ -14,8 +14,8 @@ from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, ObjectNode
 from foon_asp.problem import Problem
 from foon_asp.proof.replay import Replay, replay_for, replayable
-from foon_asp.questions.answer import Answer, answered
-from foon_asp.questions.common_options import Posed, begin
+from foon_asp.questions.answer import Answer, answer_problem
+from foon_asp.questions.common_options import Posed, start_deadline
 from foon_asp.questions.options import AMOUNT, CONTAINERS, GOAL_OF_PLAN, OBJECTIVES, PLAN_ITEMS
 from foon_asp.questions.posing_plan import a_plan_or_state
 from foon_asp.questions.python_arguments import Objectives, chosen_objectives, read_as
@@ -316,8 +316,8 @@ def trace(
         if not 1 <= failed <= len(replay.steps):
             last = len(replay.steps)
             raise UserError(f"found the step {failed}, expected one up to which the plan runs: 1 to {last}")
-        limits = Settings(deadline=begin(options))
-        answer = answered(_from_here(problem, states[failed - 1]), chosen, limits)
+        limits = Settings(deadline=start_deadline(options))
+        answer = answer_problem(_from_here(problem, states[failed - 1]), chosen, limits)
     executed = []
     for number, step in enumerate(replay.steps, 1):
         gone, stayed, came = (

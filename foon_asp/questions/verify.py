@@ -19,8 +19,8 @@ from foon_asp.proof import proved_checker
 from foon_asp.proof import verifier as proof
 from foon_asp.proof.rule_meaning import ALL_STEPS, OWN, Rule
 from foon_asp.proof.verify_plan import is_of_plan, verify_any
-from foon_asp.questions.certificate_text import bound_text, looked_at, trusted_text
-from foon_asp.questions.common_options import Limits, begin
+from foon_asp.questions.certificate_text import bound_text, proof_size, trusted_text
+from foon_asp.questions.common_options import Limits, start_deadline
 from foon_asp.questions.posing import DATA, Command, the_data
 from foon_asp.questions.question import Kind, Option, Role, question
 from foon_asp.questions.result import Ending, Result
@@ -148,7 +148,7 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
             checked=tuple(claims) if with_clingo else (),
             not_covered=verified.not_covered,
             tree=verified.tree,
-            proved_by=looked_at(content),
+            proved_by=proof_size(content),
             used_up=None if items is None else tuple(_items_lines(items, network)),
             proved_checker=by_proved_checker,
         )
@@ -238,7 +238,7 @@ def _posed(command: Command, data_paths: Sequence[Path]) -> tuple[Foon | Problem
     from foon_asp.planning.task_files import read_task  # noqa: PLC0415 (it loads clingo)
 
     with command.reading():
-        return (read_task(data_paths, begin({})).problem(),)
+        return (read_task(data_paths, start_deadline({})).problem(),)
 
 
 def _is_task(file: Path) -> bool:
@@ -360,7 +360,7 @@ def verify(
         raise UserError(
             f"found a certificate of type {type(certificate).__name__}, expected a path or that of an answer"
         )
-    with begin(limits).watched("checking the certificate"):
+    with start_deadline(limits).watched("checking the certificate"):
         foon = data if isinstance(data, Foon) else Foon.of(data)
         return _verified(foon, content, with_clingo, full or proved, proved)
 

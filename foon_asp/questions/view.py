@@ -28,10 +28,10 @@ from foon_asp.pictures.tree_drawing import network_drawing, tree_drawing
 from foon_asp.pictures.whole_network import WholeNetwork
 from foon_asp.problem import DEFAULT_RULE, ContainerRule, Objective, Problem, container_rule, levels
 from foon_asp.questions.alternatives import Alternatives, alternatives
-from foon_asp.questions.answer import Answer, answered, answered_under
+from foon_asp.questions.answer import Answer, answer_problem, answer_under_rules
 from foon_asp.questions.caller import caller
-from foon_asp.questions.certifying import certified
-from foon_asp.questions.common_options import CommonOptions, Limits, begin, settings_of
+from foon_asp.questions.certifying import solve_with_certificate
+from foon_asp.questions.common_options import CommonOptions, Limits, settings_of, start_deadline
 from foon_asp.questions.options import AMOUNT, CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.page_data import PageData, UnitRate
 from foon_asp.questions.pareto import Front, pareto
@@ -366,7 +366,7 @@ def view(
             raise UserError(f"found beside={name!r}, expected one of {', '.join(PagePart)}")
         chosen, settings = chosen_objectives(about, objectives), settings_of(options)
         if not wanted or caller().form in _PICTURES:
-            return View(answered_under(about, chosen, settings))
+            return View(answer_under_rules(about, chosen, settings))
         *_, grown = pages(about, chosen, settings, wanted, rules)
         return grown
     if any(rules.values()):
@@ -434,8 +434,10 @@ def pages(
     settings = settings._replace(deadline=deadline)
     ruled = bool(settings.constraints) or settings.encodings is not None
     plans, endless = problem.items is not None, replace(problem, items=None)
-    proof = certified(problem, chosen, settings) if PagePart.PROOF in wanted and not plans else None
-    answer = answered(asked_with(problem, settings), chosen, settings) if proof is None else proof
+    proof = (
+        solve_with_certificate(problem, chosen, settings) if PagePart.PROOF in wanted and not plans else None
+    )
+    answer = answer_problem(asked_with(problem, settings), chosen, settings) if proof is None else proof
     page = View(answer, certified=proof, network=whole(problem) if PagePart.NETWORK in wanted else None)
     yield page
 
@@ -444,8 +446,10 @@ def pages(
 
     if plans and not ruled:
         below = Objective.KITCHEN not in chosen  # a plan need not take from the kitchen items that it makes
-        proof = certified(endless, chosen, settings) if PagePart.PROOF in wanted and below else None
-        lasting = answered(endless, chosen, settings) if proof is None else proof
+        proof = (
+            solve_with_certificate(endless, chosen, settings) if PagePart.PROOF in wanted and below else None
+        )
+        lasting = answer_problem(endless, chosen, settings) if proof is None else proof
         if below:
             Postconditions(endless, levels(tuple(chosen)), settings).no_better(
                 answer.outcome, lasting.outcome, "where items last"
@@ -456,7 +460,10 @@ def pages(
         yield page
     if ruled:
         page = structs.replace(
-            page, without_rules=answered(problem, chosen, Settings(deadline=begin(remaining_limits())))
+            page,
+            without_rules=answer_problem(
+                problem, chosen, Settings(deadline=start_deadline(remaining_limits()))
+            ),
         )
         yield page
     if answer.ending is Ending.NEGATIVE:

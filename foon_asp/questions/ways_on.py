@@ -10,9 +10,9 @@ from foon_asp.dataset.paths import as_path
 from foon_asp.network import ObjectNode, counted
 from foon_asp.problem import Problem
 from foon_asp.problem.relevance import reach, relevant
-from foon_asp.questions.answer import Answer, WithAnswer, answered
+from foon_asp.questions.answer import Answer, WithAnswer, answer_problem
 from foon_asp.questions.caller import asked_by, caller
-from foon_asp.questions.common_options import Posed, begin
+from foon_asp.questions.common_options import Posed, start_deadline
 from foon_asp.questions.python_arguments import Objectives, chosen_objectives, whole
 from foon_asp.questions.question import asked_in_python, not_built
 from foon_asp.questions.result import Ending
@@ -123,8 +123,8 @@ def ways_on(
         raise not_built("trace --state")
     named: Any = as_path(state) if isinstance(state, str | PathLike) else tuple(state)
     problem = whole(problem.vary(kitchen=named))
-    chosen, limits = chosen_objectives(problem, objectives), Settings(deadline=begin(options))
-    answer: Answer | None = answered(problem, chosen, limits)
+    chosen, limits = chosen_objectives(problem, objectives), Settings(deadline=start_deadline(options))
+    answer: Answer | None = answer_problem(problem, chosen, limits)
     lacks: tuple[Node, ...] | None = ()
     if answer is not None and answer.status is Status.INFEASIBLE:
         with asked_by(caller()._replace(deadline=limits.begun)):

@@ -20,7 +20,7 @@ import foon_asp
 from foon_asp.asp import Outcome, Reporter, Settings, Status, optimum, solve
 from foon_asp.cli.main import cli as commands
 from foon_asp.cli.main import main
-from foon_asp.cli.shared_options import begin
+from foon_asp.cli.shared_options import start_deadline
 from foon_asp.deadline import Deadline, LimitError, resend_lost_interrupts, uninterrupted
 from foon_asp.encoding import worker_process
 from foon_asp.problem import Costs, Objective, Problem
@@ -170,7 +170,7 @@ def test_limits_count_from_the_beginning_of_a_process_that_is_there_for_one_comm
     long_ago = time.monotonic() - 100
     for obj, passed in ((long_ago, True), (None, False), ("a session", False)):
         with commands.make_context("foon-asp", ["stats"], obj=obj):
-            assert begin(50, None).passed is passed
+            assert start_deadline(50, None).passed is passed
 
 
 def test_a_process_ends_as_usual_though_at_once() -> None:

@@ -244,7 +244,7 @@ def test_a_tree_for_less_than_its_parts_is_a_bug(monkeypatch: pytest.MonkeyPatch
 def test_help_that_is_not_given_is_a_bug(monkeypatch: pytest.MonkeyPatch) -> None:
     problem = two_ways(["0.5", "0.5"], ["0.2"])
     assert assist(problem).complete
-    monkeypatch.setattr(PricedHelp, "helped", lambda _self, _most, units: frozenset(units))
+    monkeypatch.setattr(PricedHelp, "helped_units", lambda _self, _most, units: frozenset(units))
     with pytest.raises(BugError, match="with help for"):
         assist(two_ways(["0.5", "0.5"], ["0.2", "0.1"]), most=1)
 

@@ -28,8 +28,8 @@ from foon_asp.deadline import Deadline, LimitError
 from foon_asp.foon import Foon
 from foon_asp.problem import ContainerRule, Objective, Problem, levels, reach
 from foon_asp.proof import verifier
-from foon_asp.questions.answer import answered_nearby, answered_under
-from foon_asp.questions.certifying import certified
+from foon_asp.questions.answer import answer_from_store, answer_under_rules
+from foon_asp.questions.certifying import solve_with_certificate
 from foon_asp.questions.result import Ending
 from foon_asp.rules.passed_constraint import RuleText
 from foon_asp.store.import_files import import_files
@@ -97,7 +97,7 @@ def test_what_is_taken_to_be_at_hand_is_in_no_answer(tmp_path: Path) -> None:
     assert len(free.units) == 1
     assert near.lacking(free.units) != []
     assert solve(near.problem).status is Status.INFEASIBLE
-    found = answered_nearby(near, [Objective.UNITS], Settings())
+    found = answer_from_store(near, [Objective.UNITS], Settings())
     assert found.status is Status.OPTIMAL
     assert found.tree is not None
     assert [unit.motion for unit in found.tree.units] == ["boil", "plate", "serve"]
@@ -113,7 +113,7 @@ def test_a_limit_gives_no_tree_that_may_not_be_one(tmp_path: Path, monkeypatch: 
     monkeypatch.setattr(nearby_optimum, "solve", stopped)
     dataset = two_ways(tmp_path)
     near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
-    found = answered_nearby(near, [Objective.UNITS], Settings(deadline=Deadline(1)))
+    found = answer_from_store(near, [Objective.UNITS], Settings(deadline=Deadline(1)))
     assert (found.status, found.units, found.costs) == (Status.UNKNOWN, None, None)
     assert found.outcome.bounds[Objective.UNITS] == 1
 
@@ -128,13 +128,13 @@ def test_a_limit_gives_a_tree_of_what_was_read_and_the_bound(
     near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=5))
     monkeypatch.setattr(Nearby, "grow", stopped)
     monkeypatch.setattr(Deadline, "watched", lambda *given, **late: nullcontext())
-    found = answered_nearby(near, [Objective.UNITS], Settings())
+    found = answer_from_store(near, [Objective.UNITS], Settings())
     assert found.costs is not None
     assert (found.status, found.proof, found.costs.units) == (Status.FEASIBLE, None, 3)
     assert found.outcome.bounds[Objective.UNITS] == 2  # the last two units of the longer way
     assert found.stopped is not None
     near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
-    found = answered_nearby(near, [Objective.UNITS], Settings())
+    found = answer_from_store(near, [Objective.UNITS], Settings())
     assert (found.status, found.proof, found.units) == (Status.UNKNOWN, None, None)
     assert found.outcome.bounds[Objective.UNITS] == 1
 
@@ -159,7 +159,7 @@ def test_at_a_limit_the_tree_of_the_fewest_units_is_one_that_keeps_to_the_rules(
     dataset = two_ways(tmp_path)
     near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
     how = Settings((Path("before"),), constants=("earlier_motion=serve", "later_motion=plate"))
-    found = answered_nearby(near, [Objective.INPUTS], how)
+    found = answer_from_store(near, [Objective.INPUTS], how)
     assert (found.stopped, found.proof) == ("a limit", None)
     if at_limit == 2:  # before the fewest units were asked about
         assert (found.status, found.units) == (Status.UNKNOWN, None)
@@ -192,7 +192,7 @@ def test_a_limit_keeps_the_bound_of_what_was_asked_before(
     monkeypatch.setattr(nearby_optimum, "solve", stopped)
     dataset = two_ways(tmp_path)
     near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
-    found = answered_nearby(near, [Objective.UNITS], Settings(rules))
+    found = answer_from_store(near, [Objective.UNITS], Settings(rules))
     assert looks >= 4
     assert found.stopped == "a limit"
     assert found.outcome.bounds == {Objective.UNITS: 2}  # of the last two units of either way
@@ -208,7 +208,7 @@ def test_a_limit_while_all_is_read_gives_the_tree_in_hand(
     dataset, order = two_ways(tmp_path), (Objective.UNITS,)
     how = Settings((RuleText(':- not 1 <= #count { U : use(U), motion(U,"cook 3") }.'),))
     problem = dataset.problem(dataset.goals(["stew"]), "strict")
-    found = answered_under(problem, order, how)
+    found = answer_under_rules(problem, order, how)
     assert found.costs is not None
     assert (found.status, found.proof, found.costs.units) == (Status.FEASIBLE, None, 7)
     assert found.outcome.bounds == {Objective.UNITS: 3}  # without the rule
@@ -229,7 +229,7 @@ def test_where_rules_leave_no_tree_that_is_said_even_at_a_limit(
     forbidden = Settings(
         tuple(RuleText(f':- use(U), motion(U,"{each}").') for each in (SHORT[-1][0], LONG[-1][0]))
     )
-    found = answered_nearby(near, [Objective.UNITS], forbidden)
+    found = answer_from_store(near, [Objective.UNITS], forbidden)
     assert (found.status, found.units) == (Status.INFEASIBLE, None)
     assert len(found.problem.network) < len(SHORT + LONG)
 
@@ -277,7 +277,7 @@ def test_random_problems(
                 if near is None:
                     continue
                 before = len(near.problem.network)
-                found = answered_nearby(near, objectives, Settings())
+                found = answer_from_store(near, objectives, Settings())
                 expected = solve(replace(problem, goals=goals), objectives)
                 assert_same(found.outcome, expected, objectives, seed, goals)
                 compared += 1
@@ -326,7 +326,7 @@ def test_other_questions_read_all_that_the_goal_needs(
 ) -> None:
     two_ways(tmp_path).close()
     monkeypatch.setattr(Dataset.nearby, "__defaults__", (None, 1))
-    monkeypatch.setattr("foon_asp.questions.answer.answered_nearby", None)
+    monkeypatch.setattr("foon_asp.questions.answer.answer_from_store", None)
     said = cli("solve", "--network", tmp_path / "stew.foon", "--goal", "stew", *words)
     assert said.code == 0, said.err
     assert "3 units" in said.out or "3 executions" in said.out
@@ -348,7 +348,7 @@ def test_random_problems_under_rules(rule: ContainerRule, part: int, tmp_path: P
         if near is None:
             continue
         objectives = rng.choice(LISTS)
-        found = answered_nearby(near, objectives, how)
+        found = answer_from_store(near, objectives, how)
         whole = near.whole()
         expected, free = solve(whole, objectives, how), solve(whole, objectives)
         assert_same(found.outcome, expected, objectives, seed, drawn)
@@ -394,7 +394,7 @@ def test_random_problems_under_rules_that_see_the_kitchen(part: int, tmp_path: P
         assert (near is not None) is isinstance(posed, NearbyProblem)
         if near is None:
             continue
-        found = answered_nearby(near, objectives, how)
+        found = answer_from_store(near, objectives, how)
         expected = solve(whole, objectives, how)
         assert_same(found.outcome, expected, objectives, seed, how)
         compared += 1
@@ -433,7 +433,7 @@ def test_rules_see_the_kitchen_as_it_is(
     dataset = two_ways(tmp_path)
     problem = dataset.nearby(dataset.goals(["stew"]), "strict", first=1)
     monkeypatch.setattr(Nearby, "whole", None)
-    found = answered_under(problem, [Objective.UNITS], Settings((rule,), constants=constants))
+    found = answer_under_rules(problem, [Objective.UNITS], Settings((rule,), constants=constants))
     assert found.status is Status.OPTIMAL
     assert found.units is not None
     assert len(found.units) == best
@@ -469,7 +469,7 @@ def test_a_certificate_of_a_store_is_one_of_the_text(rule: ContainerRule, part: 
         objectives = rng.choice((*LISTS, (Objective.KITCHEN,)))
         goals = (rng.randrange(len(problem.network.objects)),) if seed % 2 else problem.goals
         first = rng.choice((1, 1, 1000))
-        found = certified(dataset.nearby(goals, rule.value, None, first), objectives, Settings())
+        found = solve_with_certificate(dataset.nearby(goals, rule.value, None, first), objectives, Settings())
         expected = solve(replace(problem, goals=goals), objectives)
         assert found.status is expected.status, seed
         assert found.certificate is not None, seed

@@ -18,7 +18,7 @@ from foon_asp.dataset.nearby_under_rules import NEARBY, solve_nearby_under
 from foon_asp.dataset.reading_store import read_stored
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, levels
-from foon_asp.questions.answer import Answer, answered_under
+from foon_asp.questions.answer import Answer, answer_under_rules
 from foon_asp.rules.passed_constraint import RuleText
 from foon_asp.store.import_files import import_files
 from foon_asp.store.unit_distances import UnitDistances
@@ -78,7 +78,7 @@ def test_a_unit_more_near_the_goals_is_proved_with_the_rest_unread(tmp_path: Pat
         def tree(self, costs: Costs) -> None:
             heard.append(costs)
 
-    found = answered_under(problem, UNITS, WAVE, Heard())
+    found = answer_under_rules(problem, UNITS, WAVE, Heard())
     assert found.costs is not None
     assert (found.status, found.costs.units) == (Status.OPTIMAL, 3)
     assert "wave" in {unit.motion for unit in found.tree.units} if found.tree else False
@@ -94,7 +94,7 @@ SLOW = (("soak", "water", "soaked"), ("fold", "soaked", "folded"), ("wave", "fol
 
 def test_a_unit_from_elsewhere_is_better_than_two_near_the_goals(tmp_path: Path) -> None:
     problem = near_stew(tmp_path, *SLOW, ("wave", "boiled", "waved"))
-    found = answered_under(problem, UNITS, WAVE)
+    found = answer_under_rules(problem, UNITS, WAVE)
     assert found.costs is not None
     assert (found.status, found.costs.units, found.proof) == (Status.OPTIMAL, 4, Proof.CUTS)
     assert read_little(problem)
@@ -105,7 +105,7 @@ def test_a_unit_that_the_kitchen_is_enough_for_is_found_wherever_it_is(
     asked: Settings, tmp_path: Path
 ) -> None:
     problem = near_stew(tmp_path, *SLOW, ("wave", "bones+water", "waved"))
-    found = answered_under(problem, UNITS, asked)
+    found = answer_under_rules(problem, UNITS, asked)
     assert found.costs is not None
     assert (found.status, found.costs.units, read_little(problem)) == (Status.OPTIMAL, 4, True)
 
@@ -117,7 +117,7 @@ BY_SUCCESS = (Objective.SUCCESS,)
 @pytest.mark.parametrize("asked", [WAVE, LABEL, EITHER, WAVED_BY_NONE, OF_ANOTHER])
 def test_by_success_a_unit_with_what_is_asked_for_is_proved_the_best(asked: Settings, tmp_path: Path) -> None:
     problem = near_stew(tmp_path, ("wave", "bones", "waved"), rates=RATES)
-    found = answered_under(problem, BY_SUCCESS, asked)
+    found = answer_under_rules(problem, BY_SUCCESS, asked)
     assert found.costs is not None
     whole = solve(replace(problem.whole, origin=None), BY_SUCCESS, asked)
     assert (found.status, found.costs) == (Status.OPTIMAL, whole.costs)
@@ -132,7 +132,7 @@ def test_by_success_a_tree_that_was_not_read_to_its_end_may_be_better(tmp_path: 
     rates = RATES.replace("cook 10\t1", "cook 10\t0.51")
     more = ("wave", "bones", "waved")
     problem = near_stew(tmp_path, more, first=6, long=long, rates=rates)
-    found = answered_under(problem, BY_SUCCESS, WAVE)
+    found = answer_under_rules(problem, BY_SUCCESS, WAVE)
     assert found.costs is not None
     assert (found.status, found.costs.success) == (Status.OPTIMAL, Fraction("0.4692"))
 
@@ -150,14 +150,14 @@ def test_what_units_that_were_not_read_make_may_lead_to_a_better_tree(tmp_path: 
     problem = near_stew(tmp_path, *WIDE, ("wave", "water", "boiled"), first=8)
     near = asked(problem)
     assert len(solve(near.problem, UNITS, WAVE).units or ()) == 4
-    found = answered_under(near_stew(tmp_path, *WIDE, ("wave", "water", "boiled"), first=8), UNITS, WAVE)
+    found = answer_under_rules(near_stew(tmp_path, *WIDE, ("wave", "water", "boiled"), first=8), UNITS, WAVE)
     assert found.costs is not None
     assert (found.status, found.costs.units) == (Status.OPTIMAL, 3)
 
 
 def test_what_rules_ask_for_may_be_far(tmp_path: Path) -> None:
     problem = near_stew(tmp_path, ("wave", "plated", "waved"), first=1)
-    found = answered_under(problem, UNITS, WAVE)
+    found = answer_under_rules(problem, UNITS, WAVE)
     assert found.costs is not None
     assert (found.status, found.costs.units, read_little(problem)) == (Status.OPTIMAL, 4, True)
 
@@ -178,7 +178,7 @@ def test_a_unit_near_the_goals_may_be_cheaper_by_a_way_that_leads_to_none(tmp_pa
     more += [(f"cut {n}", "water", f"cut {n}") for n in range(5)]
     more += [("wave", "+".join(f"cut {n}" for n in range(5)), "waved")]
     problem = near_stew(tmp_path, *more)
-    found = answered_under(problem, UNITS, WAVE)
+    found = answer_under_rules(problem, UNITS, WAVE)
     assert found.costs is not None
     assert (found.status, found.costs.units, read_little(problem)) == (Status.OPTIMAL, 8, True)
 
@@ -195,7 +195,10 @@ def test_what_no_unit_has_that_can_execute_is_known_at_once(
     unit: tuple[str, str, str], asked: Settings, tmp_path: Path
 ) -> None:
     problem = near_stew(tmp_path, unit, first=1)
-    assert (answered_under(problem, UNITS, asked).status, read_little(problem)) == (Status.INFEASIBLE, True)
+    assert (answer_under_rules(problem, UNITS, asked).status, read_little(problem)) == (
+        Status.INFEASIBLE,
+        True,
+    )
 
 
 @pytest.mark.parametrize("how", ["when", "or"])
@@ -204,7 +207,7 @@ def test_what_rules_ask_for_in_some_networks_may_be_missing(how: str, tmp_path: 
         "when": ':- goal(O), label(O,"soup"), not use(U) : motion(U,"wave").',
         "or": ':- not goal(O) : label(O,"stew"); not use(U) : motion(U,"wave").',
     }[how]
-    found = answered_under(near_stew(tmp_path, first=1), UNITS, Settings((RuleText(text),)))
+    found = answer_under_rules(near_stew(tmp_path, first=1), UNITS, Settings((RuleText(text),)))
     assert found.costs is not None
     assert (found.status, found.costs.units) == (Status.OPTIMAL, 3)
 
@@ -244,7 +247,7 @@ def test_a_limit_gives_the_tree_and_the_bound(
 ) -> None:
     problem = near_stew(tmp_path, *SLOW, ("wave", "boiled", "waved"))
     stopped_at(times, monkeypatch)
-    found = answered_under(problem, UNITS, WAVE)
+    found = answer_under_rules(problem, UNITS, WAVE)
     assert (found.status, found.stopped, found.proof) == (status, "a limit", None)
     assert (found.costs and found.costs.units, found.outcome.bounds) == (units, {Objective.UNITS: 3})
     assert read_little(problem)
@@ -257,7 +260,7 @@ def test_a_limit_while_more_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     more = *SLOW, ("wave", "boiled", "waved")
     with monkeypatch.context() as patched:
         patched.setattr(UnitDistances, "relevant", stopped)
-        found = answered_under(near_stew(tmp_path, *more), UNITS, WAVE)
+        found = answer_under_rules(near_stew(tmp_path, *more), UNITS, WAVE)
         assert found.costs is not None
         assert (found.status, found.costs.units, found.outcome.bounds) == (
             Status.FEASIBLE,
@@ -267,13 +270,13 @@ def test_a_limit_while_more_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         assert found.stopped
     with monkeypatch.context() as patched:  # where what is elsewhere cannot be told, the rest is read
         patched.setattr(nearby_under_rules, "NEARBY", NEARBY._replace(max_units=-1))
-        again = answered_under(near_stew(tmp_path, *more), UNITS, WAVE)
+        again = answer_under_rules(near_stew(tmp_path, *more), UNITS, WAVE)
         assert (again.status, again.costs) == (Status.OPTIMAL, found.costs)
-        patched.setattr("foon_asp.questions.answer._answered_reading", stopped)
-        again = answered_under(near_stew(tmp_path, *more), UNITS, WAVE)
+        patched.setattr("foon_asp.questions.answer._answer_with_reading", stopped)
+        again = answer_under_rules(near_stew(tmp_path, *more), UNITS, WAVE)
         assert (again.status, again.costs, bool(again.stopped)) == (Status.FEASIBLE, found.costs, True)
         with pytest.raises(LimitError):
-            answered_under(near_stew(tmp_path, *more), UNITS, OF_ANOTHER)
+            answer_under_rules(near_stew(tmp_path, *more), UNITS, OF_ANOTHER)
 
 
 def test_ctrl_c_keeps_the_tree_and_the_bound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -281,7 +284,7 @@ def test_ctrl_c_keeps_the_tree_and_the_bound(tmp_path: Path, monkeypatch: pytest
         raise KeyboardInterrupt
 
     monkeypatch.setattr(UnitDistances, "relevant", interrupted)
-    found = answered_under(near_stew(tmp_path, *SLOW, ("wave", "boiled", "waved")), UNITS, WAVE)
+    found = answer_under_rules(near_stew(tmp_path, *SLOW, ("wave", "boiled", "waved")), UNITS, WAVE)
     assert found.costs is not None
     assert (found.status, found.costs.units, found.outcome.bounds) == (
         Status.FEASIBLE,
@@ -295,7 +298,7 @@ def test_a_goal_that_few_units_lead_to_reads_no_others(tmp_path: Path) -> None:
     others = [("turn", f"other {n}", f"other {n + 1}") for n in range(40)]
     more = ("wave", "water", "waved"), ("start", "bones", "other 0"), *others
     problem = near_stew(tmp_path, *more, first=100)
-    found = answered_under(problem, UNITS, WAVE)
+    found = answer_under_rules(problem, UNITS, WAVE)
     assert found.costs is not None
     assert (found.status, found.costs.units, read_little(problem)) == (Status.OPTIMAL, 4, True)
     assert len(found.problem.network) < 10
@@ -310,7 +313,7 @@ def test_a_limit_before_the_best_tree_without_rules_gives_its_bound(
 
     problem = near_stew(tmp_path, *SLOW, first=9)
     monkeypatch.setattr("foon_asp.dataset.nearby_optimum.solve", stopped)
-    found = answered_under(problem, UNITS, WAVE)
+    found = answer_under_rules(problem, UNITS, WAVE)
     assert (found.status, found.units, found.costs, found.stopped) == (Status.UNKNOWN, None, None, "a limit")
     assert found.outcome.bounds == {Objective.UNITS: 3}
 
@@ -387,7 +390,7 @@ def test_random_problems_under_rules(part: int, tmp_path: Path, monkeypatch: pyt
         tuning = NEARBY._replace(widths=widths, max_units=rng.choice((0, 2, 30_000, 30_000)))
         monkeypatch.setattr(nearby_under_rules, "NEARBY", tuning)
         near = solve_nearby_under(posed, objectives, how, Reporter())
-        found: Answer = answered_under(posed, objectives, how)
+        found: Answer = answer_under_rules(posed, objectives, how)
         expected = solve(dataset.problem(problem.goals, rule.value, everything=True), objectives, how)
         assert_same(found.outcome, expected, objectives, seed)
         compared += 1

@@ -14,7 +14,7 @@ from foon_asp.foon import Foon, load
 from foon_asp.network import LEVELS, Amounts, Network, NetworkBuilder, ObjectNode
 from foon_asp.problem import DEFAULT_RULE, Problem
 from foon_asp.questions.answer import Answer
-from foon_asp.questions.common_options import Posed, begin
+from foon_asp.questions.common_options import Posed, start_deadline
 from foon_asp.questions.diff.networks import NetworkDifference as NetworkDifference
 from foon_asp.questions.diff.networks import compare_networks
 from foon_asp.questions.diff.trees import TreeDifference as TreeDifference
@@ -30,7 +30,10 @@ from foon_asp.text.plain_file import is_store
 
 
 class Named(NamedTuple):
-    """A task tree or a network, the file that it was read from, and the amounts of a network."""
+    """A task tree or a network, its name, and the amounts of a network.
+
+    The name is the file that it was read from, or ``a`` or ``b``.
+    """
 
     name: str
     read: Tree | Network
@@ -40,23 +43,32 @@ class Named(NamedTuple):
 _Comparable = Answer | Tree | Foon | File | Named
 
 
-def _posed(
+def _pose_files(
     command: Command, a: Path, b: Path, goals_named: Sequence[str], containers: str
 ) -> tuple[Named, Named, int]:
-    """Read two files; networks and kitchens are read only if the files are task trees."""
+    """Read two files; return them and the level, as the arguments of :func:`diff`.
+
+    The data that the command names are read only if the files are task trees.
+    """
     chosen = containers if command.given("containers") else None
     with command.reading():
-        return (*_of_files((a, b), goals_named, chosen, partial(settle_data, command)), command.level)
+        return (*_read_pair((a, b), goals_named, chosen, partial(settle_data, command)), command.level)
 
 
-def _of_files(
+def _read_pair(
     files: tuple[Path, Path],
     goals: Sequence[str | ObjectNode],
     containers: str | None,
     data: Callable[[Mapping[Path, ListedTree]], Dataset],
 ) -> tuple[Named, Named]:
-    """Read two files as trees, with the data that these are about, or as networks."""
-    read: dict[Path, ListedTree | Tree | Foon] = {file: _read(file) for file in dict.fromkeys(files)}
+    """Read two files as trees of ``goals``, or as networks.
+
+    They are trees if goals are named, or if one of the files says that it is a tree. Then ``data`` is called
+    for the data that the trees are about.
+    """
+    read: dict[Path, ListedTree | Tree | Foon] = {
+        file: _read_units_or_data(file) for file in dict.fromkeys(files)
+    }
     listed = {file: content for file, content in read.items() if isinstance(content, ListedTree)}
     if goals or any(tree.is_tree for tree in listed.values()):
         dataset = data(listed)
@@ -69,23 +81,24 @@ def _of_files(
     return a, b
 
 
-def _data_of(level: int, files: Mapping[Path, ListedTree]) -> Dataset:
-    """Return the data of trees in files, where Python names no data.
+def _data_for_trees(level: int, files: Mapping[Path, ListedTree]) -> Dataset:
+    """Return the data that trees in files are about, where Python names no data.
 
-    They are the files of :func:`own_networks`; without any, the bundled kitchen.
+    They are read from the files that :func:`own_networks` finds; if it finds none, the bundled kitchen is
+    used.
     """
     kitchen = load(level=level)
     network_files = own_networks(kitchen.network, files)
     return load(network_files, level=level).dataset if network_files else kitchen.dataset
 
 
-def _read(file: Path) -> ListedTree | Foon:
-    """Read a file as a list of units in order, and a folder or a store as data."""
+def _read_units_or_data(file: Path) -> ListedTree | Foon:
+    """Read a file as a list of units in order; read a folder or a store as data."""
     return load(file) if file.is_dir() or is_store(file) else read_answer(file)
 
 
 def _named_network(name: str, read: ListedTree | Tree | Foon) -> Named:
-    """Return data, or a list of units, as a network with its name; a tree is not converted."""
+    """Return data or a list of units as a network with its name; return a tree as it is, with its name."""
     if isinstance(read, Tree):
         return Named(name, read)
     if isinstance(read, Foon):
@@ -96,11 +109,19 @@ def _named_network(name: str, read: ListedTree | Tree | Foon) -> Named:
     return Named(name, builder.build(), read.amounts)
 
 
-def _named(name: str, compared: _Comparable, problem: Problem | None) -> Named:
-    """Return a compared value with its name; a file is read as a tree of ``problem`` or a network."""
+def _with_name(name: str, compared: _Comparable, problem: Problem | None) -> Named:
+    """Return an argument of :func:`diff` as a tree or a network, with its name.
+
+    A file is read as a tree of ``problem``; as a network if this is ``None``. Raises :class:`NoTreeError` for
+    an answer without a tree.
+    """
     if isinstance(compared, str | PathLike):
         name, file = str(compared), Path(compared)
-        return Named(name, Tree.read(problem, file)) if problem else _named_network(name, _read(file))
+        return (
+            Named(name, Tree.read(problem, file))
+            if problem
+            else _named_network(name, _read_units_or_data(file))
+        )
     if isinstance(compared, Foon):
         return _named_network(name, compared)
     if isinstance(compared, Answer):
@@ -124,7 +145,7 @@ def _named(name: str, compared: _Comparable, problem: Problem | None) -> Named:
     CONTAINERS,
     formats=("text", "json", "html", *TABLES[2:]),
     suffixes=ENDINGS,
-    pose=_posed,
+    pose=_pose_files,
     help_="""
     \b
     foon-asp diff mine.txt answer.json --goal macaroni      two trees
@@ -184,17 +205,18 @@ def diff(
     """
     if level not in LEVELS:
         raise UserError(f"found level={level}, expected 1, 2 or 3")
-    with begin(limits).watched("comparing"):
+    with start_deadline(limits).watched("comparing"):
         if isinstance(a, str | PathLike) and isinstance(b, str | PathLike):
             goal = limits.get("goal", ())
             goals = [goal] if isinstance(goal, str | ObjectNode) else [*goal]
-            data = partial(_data_of, level)
-            a, b = _of_files((Path(a), Path(b)), goals, limits.get("containers"), data)
+            data = partial(_data_for_trees, level)
+            a, b = _read_pair((Path(a), Path(b)), goals, limits.get("containers"), data)
         problem = next((value.problem for value in (a, b) if isinstance(value, Answer | Tree)), None)
-        one, other = _named("a", a, problem), _named("b", b, problem)
-        names = one.name, other.name
-        if isinstance(one.read, Tree) and isinstance(other.read, Tree):
-            return compare_trees(names, (one.read, other.read))
-        if isinstance(one.read, Network) and isinstance(other.read, Network):
-            return compare_networks(names, (one.read, other.read), (one.amounts, other.amounts), level)
+        named_a, named_b = _with_name("a", a, problem), _with_name("b", b, problem)
+        names = named_a.name, named_b.name
+        if isinstance(named_a.read, Tree) and isinstance(named_b.read, Tree):
+            return compare_trees(names, (named_a.read, named_b.read))
+        if isinstance(named_a.read, Network) and isinstance(named_b.read, Network):
+            networks, amounts = (named_a.read, named_b.read), (named_a.amounts, named_b.amounts)
+            return compare_networks(names, networks, amounts, level)
         raise UserError(f"{' and '.join(names)}: found a task tree and a network, expected two of a kind")

@@ -15,7 +15,7 @@ from foon_asp.text.json_value import Json
 
 
 class NearUnits(Value, frozen=True):
-    """Two units that are nearly the same, and in what they differ."""
+    """A unit of each of the two, which are nearly the same, and in what they differ."""
 
     a: Unit
     b: Unit
@@ -40,11 +40,11 @@ class Difference(Result, frozen=True, kw_only=True):
     in_both: tuple[Unit, ...]
 
     def figures(self) -> Sequence[Sequence[str]]:
-        """Return the rows of a table that compares the two, the headings first."""
+        """Return the rows of a table of figures that compares the two, the headings first."""
         raise NotImplementedError
 
     def unit_lines(self) -> Iterator[str]:
-        """Return the number of common units, and a line for each other unit."""
+        """Yield the number of common units, then lines on pairs that nearly agree and on all other units."""
         yield f"in both: {counted(len(self.in_both), 'unit', ',')}"
         if self.nearly_the_same:
             yield from ("", f"nearly the same: {counted(len(self.nearly_the_same), 'unit', ',')} in each")
@@ -57,14 +57,14 @@ class Difference(Result, frozen=True, kw_only=True):
             yield from (line for unit in units for line in unit.lines())
 
     def table_rows(self) -> Iterator[Json]:
-        """Return a row for each unit, which says in which of the two it is."""
+        """Return a row for each unit; its column ``in`` says in which of the two the unit is."""
         lists = [("a", self.only_in_a), ("b", self.only_in_b), ("both", self.in_both)]
         for pair in self.nearly_the_same:
             lists += [("a, nearly b", (pair.a,)), ("b, nearly a", (pair.b,))]
-        return (flat_row({"in": where, **plain(unit)}) for where, units in lists for unit in units)
+        return (flat_row({"in": membership, **plain(unit)}) for membership, units in lists for unit in units)
 
     def html(self) -> str:
-        """Return a page with a column for each of the two."""
+        """Return a page in HTML with a column for each of the two."""
         return two_columns(
             f"{self.a} and {self.b}",
             [str(self.a), str(self.b)],
@@ -88,8 +88,8 @@ def difference_fields(a: Mapping[FunctionalUnit, Unit], b: Mapping[FunctionalUni
     pairs = nearest_units([unit for unit in a if unit not in b], [unit for unit in b if unit not in a])
     paired = {unit for unit_a, unit_b, _ in pairs for unit in (unit_a, unit_b)}
     only_in_a, only_in_b = (
-        tuple(value for unit, value in ours.items() if unit not in theirs and unit not in paired)
-        for ours, theirs in ((a, b), (b, a))
+        tuple(value for unit, value in own.items() if unit not in other and unit not in paired)
+        for own, other in ((a, b), (b, a))
     )
     return {
         "only_in_a": only_in_a,

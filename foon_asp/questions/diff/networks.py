@@ -22,8 +22,8 @@ class Agreement(Value, frozen=True):
         a: The size of the first set.
         b: The size of the other set.
         both: The size of their intersection.
-        jaccard: The size of the intersection by that of the union; 1 where the sets are equal.
-        f1: Twice the size of the intersection, by the sum of the two sizes.
+        jaccard: The size of the intersection divided by that of the union; 1 where the sets are equal.
+        f1: Twice the size of the intersection, divided by the sum of the two sizes.
     """
 
     a: int
@@ -34,7 +34,7 @@ class Agreement(Value, frozen=True):
 
     @classmethod
     def of(cls, sides: Sequence[Sequence[object]]) -> Self:
-        """Return the agreement of two lists, each without repeats."""
+        """Return the agreement of the two ``sides``, lists without repeats."""
         a, b = map(len, sides)
         both = len(set(sides[0]).intersection(sides[1]))
         jaccard, f1 = (Fraction(both, a + b - both), Fraction(2 * both, a + b)) if a + b else (1, 1)
@@ -50,7 +50,7 @@ class LevelAgreement(Value, frozen=True):
 
 
 class AmountDifference(Value, frozen=True):
-    """An object node of which a unit takes or makes another number in the two networks.
+    """An object node of which a unit takes or makes different numbers in the two networks.
 
     Attributes:
         side: Whether the unit takes it (inputs) or makes it (outputs).
@@ -92,7 +92,7 @@ class NetworkDifference(Difference, frozen=True, kw_only=True, tag=schema_name("
     other_amounts: tuple[AmountDifference, ...]
 
     def figures(self) -> Sequence[Sequence[str]]:
-        """Return how much the networks agree at each level."""
+        """Return a table of how much the units and the nodes agree at each level, the headings first."""
         return [
             ("agreement", "A", "B", "both", "Jaccard", "F1"),
             *(
@@ -108,7 +108,7 @@ class NetworkDifference(Difference, frozen=True, kw_only=True, tag=schema_name("
         ]
 
     def show(self) -> Iterator[Block]:
-        """Return the figures of all levels, and the units in which the networks differ."""
+        """Yield the figures of all levels, the units in which the networks differ, and other amounts."""
         yield from (f"compared as networks, at level {self.level}", f"A: {self.a}", f"B: {self.b}", "")
         headings, *rows = self.figures()
         yield from (Table(headings, rows), "")
@@ -122,7 +122,7 @@ class NetworkDifference(Difference, frozen=True, kw_only=True, tag=schema_name("
 def compare_networks(
     names: Sequence[str], networks: Sequence[Network], amounts: tuple[Amounts, Amounts], level: int
 ) -> NetworkDifference:
-    """Compare two networks of level 3 with their amounts, and list the units at a level."""
+    """Compare two networks, given at level 3: figures at each level, units and amounts at ``level``."""
     at_level = {detail: [network_at_level(network, detail) for network in networks] for detail in LEVELS}
     a, b = ({n.unit(u): unit_of(n, u) for u in range(len(n))} for n in at_level[level])
     agreement = tuple(
@@ -134,12 +134,12 @@ def compare_networks(
         b=names[1],
         level=level,
         agreement=agreement,
-        other_amounts=tuple(_other_amounts(networks, amounts)) if level == max(LEVELS) else (),
+        other_amounts=tuple(_amount_differences(networks, amounts)) if level == max(LEVELS) else (),
         **difference_fields(a, b),
     )
 
 
-def _other_amounts(
+def _amount_differences(
     networks: Sequence[Network], amounts: tuple[Amounts, Amounts]
 ) -> Iterator[AmountDifference]:
     """Yield the amounts in which units of both networks differ, in the order of the first one."""

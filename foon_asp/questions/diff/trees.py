@@ -20,7 +20,7 @@ from foon_asp.text.json_value import schema_name
 
 
 class Side(Value, frozen=True, kw_only=True):
-    """A tree that is compared, and the question that it is for.
+    """A tree that is compared, with its costs, and the goals and conditions that it is for.
 
     Attributes:
         name: The file, or ``a`` and ``b`` for trees in Python.
@@ -52,8 +52,8 @@ class Making(Value, frozen=True):
 
     Attributes:
         unit: The unit that makes it first.
-        kitchen: It is in the kitchen.
-        missing: It is neither in the kitchen nor made.
+        kitchen: True if it is in the kitchen.
+        missing: True if it is neither in the kitchen nor made.
     """
 
     unit: Unit | UnsetType = UNSET
@@ -67,7 +67,7 @@ class Making(Value, frozen=True):
 
 
 class Parting(Value, frozen=True):
-    """An object node that both trees need, traced back from the goals, and achieve in different ways."""
+    """An object node that both trees need on the way to the goals, but get in different ways."""
 
     object: Node
     a: Making
@@ -101,11 +101,11 @@ class TreeDifference(Difference, frozen=True, kw_only=True, tag=schema_name("dif
     """The two trees."""
 
     def figures(self) -> Sequence[Sequence[str]]:
-        """Return the costs of each tree."""
+        """Return a table of the costs of each tree, the headings first."""
         return [("", "costs"), ("A", self.a.costs_text), ("B", self.b.costs_text)]
 
     def show(self) -> Iterator[Block]:
-        """Return the costs of both, the units that only one has, and where they part."""
+        """Yield the costs of both, the units that only one has, and where the trees part."""
         yield "compared as task trees"
         for letter, summary, tree in (("A", self.a, self.trees[0]), ("B", self.b, self.trees[1])):
             yield f"{letter}: {summary.name}    {summary.costs_text}"
@@ -125,7 +125,9 @@ class TreeDifference(Difference, frozen=True, kw_only=True, tag=schema_name("dif
 def compare_trees(names: Sequence[str], trees: tuple[Tree, Tree]) -> TreeDifference:
     """Compare two trees: the costs, the units, and the nodes where they part, from the goals backwards."""
     goals = [node for tree in trees for node in tree.problem.goal_nodes]
-    (units_a, origins_a), (units_b, origins_b) = ((_units(tree), _origins(tree, goals)) for tree in trees)
+    (units_a, origins_a), (units_b, origins_b) = (
+        (_unit_values(tree), _origins(tree, goals)) for tree in trees
+    )
     network = trees[0].problem.network
     side_a, side_b = map(_side_of, names, trees)
     difference = TreeDifference(
@@ -144,14 +146,15 @@ def compare_trees(names: Sequence[str], trees: tuple[Tree, Tree]) -> TreeDiffere
 
 
 def _side_of(name: str, tree: Tree) -> Side:
+    """Return a tree as a :class:`Side`, without costs if a unit is not in the network."""
     problem = tree.problem
     ids = [number for unit in tree if (number := problem.network.unit_id(unit)) is not None]
     costs = problem.costs(ids) if len(ids) == len(tree) else None
     return Side(name=name, **head_of(problem), costs=costs, used_up=used_up_of(problem, tree))
 
 
-def _units(tree: Tree) -> dict[FunctionalUnit, Unit]:
-    """Return the units of a tree in order, each at its first place."""
+def _unit_values(tree: Tree) -> dict[FunctionalUnit, Unit]:
+    """Map the units of a tree, in order and without repeats, to their values for the result."""
     units: dict[FunctionalUnit, Unit] = {}
     for unit, source in zip(tree.units, tree.places, strict=True):
         units.setdefault(unit, listed_unit(tree.problem.network, unit, source))
@@ -159,11 +162,14 @@ def _units(tree: Tree) -> dict[FunctionalUnit, Unit]:
 
 
 _Origin = FunctionalUnit | bool
-"""The unit that makes an object node first; or whether the kitchen has the node."""
+"""How a tree gets an object node: the unit that makes it first, ``True`` for the kitchen, else ``False``."""
 
 
 def _origins(tree: Tree, goals: Sequence[ObjectNode]) -> dict[ObjectNode, _Origin]:
-    """Return the origins of the nodes that a tree needs, breadth first from the goals backwards."""
+    """Return how a tree gets each node that it needs, breadth first from the goals backwards.
+
+    A unit that needs a node itself does not make it.
+    """
     problem = tree.problem
     container_rule = problem.containers, problem.utensils, problem.network
     needs: dict[object, tuple[ObjectNode, ...]] = {
@@ -186,6 +192,7 @@ def _origins(tree: Tree, goals: Sequence[ObjectNode]) -> dict[ObjectNode, _Origi
 
 
 def _making(origin: _Origin, units: Mapping[FunctionalUnit, Unit]) -> Making:
+    """Return an origin as a value for the result; ``units`` maps units to their values."""
     if isinstance(origin, FunctionalUnit):
         return Making(unit=units[origin])
     return Making(kitchen=True) if origin else Making(missing=True)
