@@ -24,7 +24,7 @@ from foon_asp.text.data_folder import find_data
 from foon_asp.text.json_value import schema_name
 from foon_asp.text.writer import write_units
 
-_WORDING = frozenset((Edit.WORD, Edit.SPELLING, Edit.LABEL, Edit.NODE))  # edits of words, not of things
+_WORD_EDITS = frozenset((Edit.WORD, Edit.SPELLING, Edit.LABEL))  # other words for the same object and place
 
 
 class Match(StrEnum):
@@ -87,7 +87,7 @@ class Aligned(Result, frozen=True, kw_only=True, tag=schema_name("align")):
     """The units of the recipe in the words of the network."""
 
     def foon(self) -> str:
-        """Return the recipe as FOON text, in which a node of the network replaces each node one edit away."""
+        """Return the recipe as FOON text, in which nodes that differ in a word are written as in the network."""
         return write_units(self.aligned_units, ["In the words of another network"])
 
     def show(self) -> Iterator[Block]:
@@ -178,7 +178,10 @@ def align(
         units=len(recipe),
         nodes=nodes,
     )
-    words = {node: node if o is None else other.objects[o] for node, o in nearest.items()}
+    words = {
+        node: other.objects[o] if o is not None and row.edit and row.edit.edit in _WORD_EDITS else node
+        for (node, o), row in zip(nearest.items(), nodes, strict=True)
+    }
     renamed = (
         FunctionalUnit.of(
             unit.motion, map(words.__getitem__, unit.inputs), map(words.__getitem__, unit.outputs)

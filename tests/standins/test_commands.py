@@ -128,3 +128,15 @@ def test_align(tmp_path: Path, cli: Cli) -> None:
     )
     assert renamed.code == 0
     assert "S\ton\t[pan]" in (tmp_path / "new.txt").read_text()
+
+
+def test_align_writes_another_word_and_keeps_another_place(tmp_path: Path, cli: Cli) -> None:
+    recipe, network, written = (tmp_path / name for name in ("recipe.txt", "to.txt", "new.txt"))
+    recipe.write_text("O\tmilk\nO\tcups\nS\tin\t[pan]\nM\tpour\nO\tcup\nS\tfull\nS\thot\n//\n")
+    network.write_text("O\tmilk\nS\tin\t[carton]\nO\tcup\nS\tin\t[pan]\nM\tpour\nO\tcup\nS\tfull\n//\n")
+    assert "2 one edit away" in cli("align", str(recipe), "--to", str(network)).out
+    assert cli("align", str(recipe), "--to", str(network), "-o", str(written)).code == 0
+    assert written.read_text().splitlines()[2:] == [
+        *("O\tmilk", "O\tcup", "S\tin\t[pan]", "M\tpour"),
+        *("O\tcup", "S\tfull", "S\thot", "//"),
+    ]
