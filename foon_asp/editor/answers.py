@@ -11,7 +11,7 @@ from foon_asp.editor.field import NAME_KINDS, Field, field_at
 from foon_asp.editor.json_rpc import ErrorCode, RequestError, parameter
 from foon_asp.errors import UserError
 from foon_asp.linting.names import Names
-from foon_asp.linting.noqa import silencing
+from foon_asp.linting.noqa import silencing_comment
 from foon_asp.linting.sheet import Sheet
 from foon_asp.network import Contents, ObjectNode, counted
 from foon_asp.text.data_folder import kitchen_file
@@ -176,7 +176,7 @@ def _node_at(checked: CheckedText, line: int) -> ObjectNode | None:
     lines = checked.text.lines
     while line > 0 and lines[line][:1] in {"S", "#", ""}:
         line -= 1
-    blocks = Sheet("", lines, checked.names.files.reader).blocks(line)
+    blocks = Sheet("", lines, checked.names.files.reader).object_nodes(line)
     return next((node for start, node in blocks if start == line), None)
 
 
@@ -217,7 +217,7 @@ def _definitions(checked: CheckedText, parameters: object) -> list[Json]:
         return []
     sheet = Sheet("", text.lines, checked.names.files.reader)
     lines = (
-        next((index for index, listed in sheet.blocks(first) if listed == node), first)
+        next((index for index, listed in sheet.object_nodes(first) if listed == node), first)
         for first, _ in _achievers_and_consumers(checked, node)[0]
     )
     return [{"uri": text.uri, "range": text.range(line)} for line in lines]
@@ -308,7 +308,7 @@ def _quick_fixes(checked: CheckedText, parameters: object) -> list[Json]:
             fix = text.edit(text.end.join(split_lines(finding.fix)), line)  # several lines, if it adds one
             fixes.append(_action(f"Fix: {finding.message}", text, [fix], not finding.unsafe))
         if not text.is_json and code != "noqa":
-            comment = text.edit(silencing(code) + text.end, line, 0, 0)
+            comment = text.edit(silencing_comment(code) + text.end, line, 0, 0)
             silenced[line, code] = _action(f"Silence {code} on this line", text, [comment], False)
     return [*fixes, *silenced.values()]
 

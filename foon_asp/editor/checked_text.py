@@ -34,6 +34,6 @@ def check(text: EditedText) -> CheckedText:
     context = Context(LintedFiles([text.file], {text.file: text.text.encode("utf-8", "replace")}))
     findings = [
         (min(max(1, finding.source.line), len(text.lines)) - 1, finding)
-        for finding in settings.applied(lint_context(context))
+        for finding in settings.apply(lint_context(context))
     ]
     return CheckedText(text, context.names, findings, settings_error)

@@ -1,4 +1,4 @@
-"""Ids and motion flags: one file should give one id to one name, and has them everywhere or nowhere."""
+"""Lint rules about ids and motion flags: a file should have one id for each name, on all lines or on none."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -14,17 +14,20 @@ _KINDS = {"O": "object", "S": "state", "M": "motion"}
 
 
 class _Use(NamedTuple):
-    """A name with an id, or an id with a name; how often they occur together, and the first line's index."""
+    """A name under an id, or an id under a name.
+
+    ``often`` is the number of lines that have both. ``first`` is the index of the first of these lines.
+    """
 
     text: str
     often: int
     first: int
 
 
-def _shared(sheet: Sheet, by_id: bool) -> Iterator[tuple[str, str, list[_Use]]]:
-    """Yield the letter of each id, the id, and its names, the most frequent first.
+def _uses_by_key(sheet: Sheet, by_id: bool) -> Iterator[tuple[str, str, list[_Use]]]:
+    """Yield the letter of the lines (O, S or M), a key, and its uses, the most frequent first.
 
-    Unless ``by_id``, yield names with their ids instead.
+    With ``by_id``, keys are ids and uses are their names. Else keys are names and uses are their ids.
     """
     uses: dict[tuple[str, str], dict[str, _Use]] = {}
     for line, first, often in sheet.distinct_lines:
@@ -39,13 +42,13 @@ def _shared(sheet: Sheet, by_id: bool) -> Iterator[tuple[str, str, list[_Use]]]:
 
 @rule("id-of-two-names", WARNING, "one id for two names")
 def id_of_two_names(context: Context) -> Iterator[Diagnostic]:
-    """Ids are compared within each file, separately for objects, states and motions.
+    """One file has one id for two names of objects, of states or of motions.
 
     An id with four names or more means nothing and is reported once. foon-asp ignores ids, but other programs
     use them.
     """
     for sheet in context.sheets:
-        for letter, id_, uses in _shared(sheet, by_id=True):
+        for letter, id_, uses in _uses_by_key(sheet, by_id=True):
             usual, *others = uses
             if len(uses) >= 4:  # the id means nothing
                 shown = ", ".join(f"{use.text!r} ({use.often})" for use in uses[:3])
@@ -56,7 +59,7 @@ def id_of_two_names(context: Context) -> Iterator[Diagnostic]:
                 yield sheet.finding(message, min(use.first for use in uses))
                 continue
             for use in others:
-                line = sheet.where(usual.first, sheet)
+                line = sheet.line_name(usual.first, sheet)
                 message = (
                     f"the {_KINDS[letter]} id {letter}{id_} is that of {use.text!r} ({times(use.often)}) and "
                     f"of {usual.text!r} ({times(usual.often)}, first on {line}); one needs another id"
@@ -66,11 +69,11 @@ def id_of_two_names(context: Context) -> Iterator[Diagnostic]:
 
 @rule("name-of-two-ids", WARNING, "one name with two ids")
 def name_of_two_ids(context: Context) -> Iterator[Diagnostic]:
-    """The same problem as one id for two names, the other way around."""
+    """One file has two ids for one name of an object, a state or a motion."""
     for sheet in context.sheets:
-        for letter, name, (usual, *others) in _shared(sheet, by_id=False):
+        for letter, name, (usual, *others) in _uses_by_key(sheet, by_id=False):
             for use in others:
-                line = sheet.where(usual.first, sheet)
+                line = sheet.line_name(usual.first, sheet)
                 message = (
                     f"the {_KINDS[letter]} {name!r} has the id {letter}{use.text} ({times(use.often)}) and "
                     f"{letter}{usual.text} ({times(usual.often)}, first on {line}); it should have one"
@@ -80,10 +83,10 @@ def name_of_two_ids(context: Context) -> Iterator[Diagnostic]:
 
 @rule("missing-field", NOTE, "no id or motion flag, in a file where other lines have one")
 def missing_field(context: Context) -> Iterator[Diagnostic]:
-    """Ids and motion flags are optional, but a file has them everywhere or nowhere.
+    """Ids and motion flags are optional, but a file has them on all lines or on none.
 
-    A line without an id is reported where 19 of 20 lines have one. Where most object lines have a motion
-    flag, one finding covers all that have none.
+    Lines without an id are reported if at least 19 of 20 lines have one. If most object lines have a motion
+    flag, a single finding covers all object lines that have none.
     """
     for sheet in context.sheets:
         lines = sheet.distinct_lines
