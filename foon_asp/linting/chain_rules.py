@@ -26,10 +26,12 @@ def broken_chain(context: Context) -> Iterator[Diagnostic]:
             ends = chain.copies[consumer], 0, chain.objects[node]
             starts = chain.copies[producer], 1, chain.objects[other]
             taken_node, made_node = str(ends[2]), str(starts[2])
-            message = f"no unit makes {taken_node!r}; is it {made_node!r}, which {context.line_name(*starts)} makes?"
+            line = context.line_name(*starts)
+            message = f"no unit makes {taken_node!r}; is it {made_node!r}, which {line} makes?"
             yield context.finding_at_node(*ends, message)
             if other not in chain.consumers:
-                message = f"no unit takes {made_node!r}; is it {taken_node!r}, which {context.line_name(*ends)} takes?"
+                line = context.line_name(*ends)
+                message = f"no unit takes {made_node!r}; is it {taken_node!r}, which {line} takes?"
                 yield context.finding_at_node(*starts, message)
 
 

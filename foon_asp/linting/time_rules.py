@@ -162,9 +162,10 @@ def time_order(context: Context) -> Iterator[Diagnostic]:
             )
             if seconds > step.latest_end.seconds:
                 maker = makers[node]
+                line = sheet.line_name(maker.motion, sheet)
                 message = (
-                    f"the step ends at {step.latest_end.text}, and uses {str(network.objects[node])!r}, which "
-                    f"{network.motions[maker.unit]!r} ({sheet.line_name(maker.motion, sheet)}) begins to make at "
+                    f"the step ends at {step.latest_end.text}, and uses {str(network.objects[node])!r}, "
+                    f"which {network.motions[maker.unit]!r} ({line}) begins to make at "
                     f"{maker.earliest_start.text}; is one of the times wrong?"
                 )
                 yield sheet.finding(message, step.motion, column=step.earliest_start.column)
