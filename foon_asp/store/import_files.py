@@ -1,4 +1,4 @@
-"""The import of files into a store, whole or not at all."""
+"""The import of files into a store. The store is written as a whole or not at all."""
 
 import contextlib
 import os
@@ -29,10 +29,11 @@ from foon_asp.text.unit_price_list import read_unit_prices
 
 
 class Imported(NamedTuple):
-    """The result of an import: ``copies`` counts the units read, ``units`` and ``objects`` the distinct ones.
+    """The result of an import.
 
-    ``left_out`` counts lines that were not understood. ``remarks`` are about motions without a success rate
-    and nodes that a unit lists twice.
+    ``copies`` is the number of units read; ``units`` and ``objects`` are the numbers of distinct units and
+    object nodes. ``left_out`` is the number of lines that were not understood. ``remarks`` are about motions
+    without a success rate and about nodes that a unit lists twice.
     """
 
     copies: int
@@ -46,8 +47,9 @@ class Imported(NamedTuple):
 def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Imported:
     """Read networks and the files beside them into a store, which replaces an older one at the end.
 
-    Raises :class:`InputError` for input that is not understood, and :class:`UserError` where the store
-    cannot be written, is being written by another process, or would replace a file that is no store.
+    With ``lenient``, lines that are not understood are left out. Raises :class:`InputError` for input that is
+    not understood. Raises :class:`UserError` if the store cannot be written, is being written by another
+    process, or would replace a file that is no store.
     """
     if store.suffix != STORE_SUFFIX:
         raise UserError(f"{store}: the name of a store ends in {STORE_SUFFIX}")
@@ -67,7 +69,7 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
     earlier_warnings = len(warnings)
     last_units: dict[int, Source] = {}
     try:
-        with _written(store) as database, uncollected():
+        with _new_database(store) as database, uncollected():
             builder = StoreBuilder(database, kitchen)
             for file in files.network:
                 if is_store(file):
@@ -109,18 +111,22 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
 def _assumed_goals(
     reader: FoonReader, builder: StoreBuilder, last_units: Mapping[int, Source]
 ) -> tuple[list[ListedObject], str]:
-    """Return the marked goals, or if there are none the final outputs of last units; and their origin."""
+    """Return the goals that are assumed without a goals file, and the name of their origin.
+
+    They are the marked goals, or if there are none, the final outputs of ``last_units``.
+    """
     if reader.marked:
         return [as_entry(node, source) for node, source in reader.marked.items()], MARKED
-    return builder.last_outputs(last_units), LAST
+    return builder.final_outputs(last_units), LAST
 
 
 @contextlib.contextmanager
-def _written(store: Path) -> Iterator[sqlite3.Connection]:
-    """Yield a new database; it replaces the store at a normal end, and is removed after an error.
+def _new_database(store: Path) -> Iterator[sqlite3.Connection]:
+    """Yield a new database in one transaction; at a normal end it becomes the store.
 
-    The database is a single file in the store's folder. If this process is killed, a later import replaces
-    the file.
+    It is committed, gets its digest appended, and replaces ``store``. After an error it is removed. The
+    database is a single file in the folder of the store. If this process is killed, a later import removes
+    the file. Raises :class:`UserError` if another import is writing the store.
     """
     store = Path(os.path.realpath(store))  # a link stays one
     partial = store.with_name(f".{store.name}.partial")
@@ -138,7 +144,7 @@ def _written(store: Path) -> Iterator[sqlite3.Connection]:
             "locking_mode = EXCLUSIVE",
         ):
             database.execute(f"PRAGMA {setting}")
-        _lock(database, store)
+        _begin_exclusively(database, store)
         locked = True
         yield database
         database.execute("COMMIT")
@@ -161,20 +167,23 @@ def _written(store: Path) -> Iterator[sqlite3.Connection]:
 
 
 def _remove_leftover(partial: Path, store: Path) -> None:
-    """Remove the partial file of a killed import; raise :class:`UserError` if another import writes it."""
+    """Remove the partial file of an import that was killed.
+
+    Raises :class:`UserError` if another import is writing the file, or if it is no file of an import.
+    """
     with partial.open("rb") as file:
-        begins = file.read(len(STORE_MAGIC))
-    if begins.strip(b"\0") and begins != STORE_MAGIC:
+        first_bytes = file.read(len(STORE_MAGIC))
+    if first_bytes.strip(b"\0") and first_bytes != STORE_MAGIC:
         raise UserError(f"{partial}: is in the way, and is not left over from an import; move or remove it")
     database = sqlite3.connect(partial, timeout=0, isolation_level=None)
     # Cut off in the middle, it may be no database any more.
     with contextlib.closing(database), contextlib.suppress(sqlite3.DatabaseError):
-        _lock(database, store)
+        _begin_exclusively(database, store)
     partial.unlink(missing_ok=True)
 
 
-def _lock(database: sqlite3.Connection, store: Path) -> None:
-    """Begin to write; raises :class:`UserError` when another process does."""
+def _begin_exclusively(database: sqlite3.Connection, store: Path) -> None:
+    """Begin a transaction that excludes other processes; raises :class:`UserError` if one is writing."""
     try:
         database.execute("BEGIN EXCLUSIVE")
     except sqlite3.OperationalError as error:

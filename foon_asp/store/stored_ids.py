@@ -1,4 +1,4 @@
-"""Sets of ids of object nodes in a store, read element by element."""
+"""The ids of a kitchen in a store, as a collection that is not in memory."""
 
 from collections.abc import Callable, Collection, Iterator
 
@@ -6,7 +6,10 @@ from foon_asp.store.store import Store
 
 
 class StoredIds(Collection[int]):
-    """The ids of the nodes in the kitchen of a store, or in its starting kitchen."""
+    """The ids of the nodes in the kitchen of a store, or in its starting kitchen; read on access.
+
+    ``column`` is ``"kitchen"`` or ``"starting"``.
+    """
 
     def __init__(self, store: Store, column: str) -> None:
         self._store, self._column = store, column
