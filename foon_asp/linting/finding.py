@@ -7,7 +7,7 @@ from foon_asp.text.diagnostics import Diagnostic, Severity, excerpt_with_caret
 
 
 class SeverityCounts(Value, frozen=True):
-    """The numbers of findings of each severity."""
+    """How many findings there are of each severity."""
 
     error: int
     warning: int

@@ -21,7 +21,7 @@ from starlette.routing import Route
 from foon_asp.daemon_thread import DaemonThread
 from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
-from foon_asp.pictures.page import digest, in_script, web
+from foon_asp.pictures.page import digest, script_json, web_text
 from foon_asp.serve.desk import Desk, SendEvent
 from foon_asp.serve.form import Form, RegretForm, read_question
 from foon_asp.text.json_value import Json, json_line
@@ -184,9 +184,16 @@ async def _stream_events(
 
 def _question_page(data: Json) -> tuple[str, str]:
     """Return the HTML of the page that asks questions, and its content security policy."""
-    style = "\n".join([web("light.css"), web("dark.css"), web("page.css"), web("ask.css", _WEB)])
-    script = '"use strict";\n(() => {\n' + web("element.js") + web("ask.js", _WEB) + "})();\n"
-    page = web("ask.html", _WEB).format(style=style, script=script, data=in_script(data))
+    style = "\n".join(
+        [
+            web_text("light.css"),
+            web_text("dark.css"),
+            web_text("page.css"),
+            web_text("ask.css", _WEB),
+        ]
+    )
+    script = '"use strict";\n(() => {\n' + web_text("element.js") + web_text("ask.js", _WEB) + "})();\n"
+    page = web_text("ask.html", _WEB).format(style=style, script=script, data=script_json(data))
     policy = (
         f"default-src 'none'; script-src {digest(script)}; style-src {digest(style)}; connect-src 'self'; "
         "frame-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
