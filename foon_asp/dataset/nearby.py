@@ -53,7 +53,7 @@ class Nearby:
 
     def copied(self) -> "Nearby":
         """Return a copy that reads more units independently."""
-        other = Nearby(self.data, self._cone.copied(), self.containers)
+        other = Nearby(self.data, self._cone.copy(), self.containers)
         other._problem, other._relaxed = self._problem, self._relaxed
         return other
 

@@ -38,7 +38,7 @@ class StoreSource(Source):
         """Take an open store, and the rows of a table of amounts that replace imported amounts."""
         self._table = unit_amounts
         self.names, self.seconds = store, 0.0
-        self.unit_count, self.left_out, self.repeated = store.units, store.left_out, store.repeated
+        self.unit_count, self.left_out, self.repeated = store.unit_count, store.left_out, store.repeated
         self.kitchen = StoredIds(store, "kitchen")
         self.prices = DataPrices(store.motion_prices, {}, from_file=True)
         self._starting = StoredStartingKitchen(store)

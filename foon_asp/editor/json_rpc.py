@@ -21,7 +21,7 @@ class ErrorCode(IntEnum):
 
 
 class RequestError(Exception):
-    """A request is refused, for a reason with an error code."""
+    """A refused request, with an error code and the reason."""
 
     def __init__(self, code: ErrorCode, message: str) -> None:
         super().__init__(message)

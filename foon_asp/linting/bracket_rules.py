@@ -15,7 +15,7 @@ _LETTERS = {Kind.STATE: "S", Kind.OBJECT: "O"}
 
 
 @rule("other-bracket", WARNING, "a bracket of another kind than the word has elsewhere")
-def other_bracket(context: Context) -> Iterator[Diagnostic]:
+def find_other_brackets(context: Context) -> Iterator[Diagnostic]:
     """An ingredient is in `{ }`, a place is in `[ ]`.
 
     Elsewhere in the files or in the vocabulary, the word before the bracket nearly always has the other kind.
@@ -81,7 +81,7 @@ def _with_other_bracket(attribute: Relation | Contents) -> str:
 
 
 @rule("misread-line", WARNING, "a line that is read as a state or an object, and is probably something else")
-def misread_line(context: Context) -> Iterator[Diagnostic]:
+def find_misread_lines(context: Context) -> Iterator[Diagnostic]:
     """A state looks like a relation or contents without brackets, such as `in bowl` for `in [bowl]`.
 
     It begins with a word that has brackets elsewhere and continues with the name of an object. Also reported

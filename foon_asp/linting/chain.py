@@ -124,7 +124,7 @@ def _differ_little(needed: ObjectNode, made: ObjectNode, distance: int) -> bool:
 
 
 def _lacks_a_state(needed: ObjectNode, made: ObjectNode) -> bool:
-    """Whether the needed node is the made node without exactly one of its states.
+    """Whether the needed node is like the made node, but lacks one of its states.
 
     False for nodes that have neither relations nor contents.
     """

@@ -11,7 +11,7 @@ from foon_asp.text.diagnostics import Diagnostic
 
 
 @rule("broken-chain", WARNING, "an object that is taken, and made a little different")
-def broken_chain(context: Context) -> Iterator[Diagnostic]:
+def find_broken_chains(context: Context) -> Iterator[Diagnostic]:
     """A unit takes an object that no unit makes; an earlier unit makes an object that differs in a little.
 
     Usually no unit takes the other object either. A state, a place or an ingredient is missing in one of the
@@ -40,7 +40,7 @@ def broken_chain(context: Context) -> Iterator[Diagnostic]:
     WARNING,
     "a unit that has something and not the container that it is in, or the other way round",
 )
-def left_out(context: Context) -> Iterator[Diagnostic]:
+def find_left_out_objects(context: Context) -> Iterator[Diagnostic]:
     """A unit makes a container with an object in it, but does not make the object; or the other way round.
 
     A later unit takes both, and no unit makes the missing one. Also reported is an input that is in or on
@@ -76,10 +76,10 @@ def left_out(context: Context) -> Iterator[Diagnostic]:
 
 
 def _producer_of_companion(chain: Chain, node: int, consumer: int) -> tuple[int, int] | None:
-    """Return the position of a unit that makes a companion of a node without the node, and the companion.
+    """Find a unit that makes a companion of a node without the node; return its position and the companion.
 
-    A companion of the node is the container that it is in, or an object in it, which the unit at ``consumer``
-    takes, too. Nodes are ids. ``None`` if no earlier unit near enough makes one.
+    A companion of the node is the container that it is in, or an object in it. The unit at ``consumer`` takes
+    both. Nodes are ids. ``None`` if no earlier unit near enough makes one.
     """
     unmade_node = chain.objects[node]
     for companion in chain.network.inputs[chain.units[consumer]]:

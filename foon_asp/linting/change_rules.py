@@ -31,11 +31,10 @@ def _finding_at(context: Context, unit: int, side: int, node: int, message: str)
 
 
 @rule("lost-contents", WARNING, "contents that lose something, which no output has")
-def lost_contents(context: Context) -> Iterator[Diagnostic]:
+def find_lost_contents(context: Context) -> Iterator[Diagnostic]:
     """A container keeps some of its contents in a unit; other contents of it are in no output of the unit.
 
-    Nothing is reported for motions that are known to take something out, such as `drain`, and for motions
-    that are not known.
+    Motions that are known to take something out, such as `drain`, are not reported, nor are unknown motions.
     """
     for unit, motion, changes, habit in _units_with_habits(context):
         for node, lost in changes.lost.items() if _is_seldom(habit.lose, habit.keep) else ():
@@ -44,10 +43,10 @@ def lost_contents(context: Context) -> Iterator[Diagnostic]:
 
 
 @rule("gained-contents", WARNING, "contents that gain something, which no input has")
-def gained_contents(context: Context) -> Iterator[Diagnostic]:
+def find_gained_contents(context: Context) -> Iterator[Diagnostic]:
     """A container keeps its contents in a unit and has further contents after it, which are in no input.
 
-    Nothing is reported for motions that show what is inside, such as `open`.
+    Motions that show what is inside, such as `open`, are not reported.
     """
     for unit, motion, changes, habit in _units_with_habits(context):
         is_habit = habit.gain and not _is_seldom(habit.gain, habit.keep)
@@ -57,17 +56,17 @@ def gained_contents(context: Context) -> Iterator[Diagnostic]:
 
 
 @rule("from-nothing", WARNING, "an output that nothing among the inputs is or contains")
-def from_nothing(context: Context) -> Iterator[Diagnostic]:
-    """An output has no relation to any input, as far as names and contents tell.
+def find_outputs_from_nothing(context: Context) -> Iterator[Diagnostic]:
+    """An output comes from no input, as far as names and contents tell.
 
     It is reported if units with the motion seldom make anything new. It is also reported if another unit
     makes the same object out of an input that has its name.
     """
-    made_of_itself = _made_of_itself(context)
+    units_by_made_node = _units_by_made_node(context)
     for unit, motion, changes, habit in _units_with_habits(context):
         for node in changes.new:
             message = f"comes from no input of {motion!r}"
-            producer = made_of_itself.get(context.network.objects[node])
+            producer = units_by_made_node.get(context.network.objects[node])
             if producer is not None:
                 copy = context.files.copies[producer][0]
                 message += f"; the unit on {context.sheets[copy.sheet].line_name(copy.at)} makes it"
@@ -76,10 +75,11 @@ def from_nothing(context: Context) -> Iterator[Diagnostic]:
             yield _finding_at(context, unit, 1, node, message)
 
 
-def _made_of_itself(context: Context) -> dict[ObjectNode, int]:
-    """Return by node the id of the first unit that makes it out of inputs which mention its label.
+def _units_by_made_node(context: Context) -> dict[ObjectNode, int]:
+    """Return, by node, the id of the first unit that makes it out of an input with its name.
 
-    Other nodes are not keys.
+    The name may be the label of the input, or stand among its contents or relations. Nodes without such a
+    unit are left out.
     """
     units: dict[ObjectNode, int] = {}
     for side in context.sides:
@@ -91,10 +91,10 @@ def _made_of_itself(context: Context) -> dict[ObjectNode, int]:
 
 
 @rule("vanished", WARNING, "an input that no output is or contains")
-def vanished(context: Context) -> Iterator[Diagnostic]:
+def find_vanished_ingredients(context: Context) -> Iterator[Diagnostic]:
     """An ingredient is in no output, neither as an object nor among contents, and the unit makes nothing new.
 
-    Nothing is reported for motions that use things up, such as `wash`, and for motions that are not known.
+    Motions that use things up, such as `wash`, are not reported, nor are unknown motions.
     """
     for unit, motion, changes, habit in _units_with_habits(context):
         for node in changes.gone if _is_seldom(habit.end, habit.units) else ():

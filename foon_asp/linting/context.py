@@ -29,10 +29,10 @@ class Side(NamedTuple):
 
 
 class Context:
-    """What rules look at: the linted files with their network and names, and the names of a vocabulary.
+    """What rules look at: the linted files with their network and names, and a vocabulary of known names.
 
-    Without ``vocabulary``, a file, the bundled vocabulary is read. ``findings`` are empty at first; the
-    linter adds those of all rules but ``noqa``, which looks at them.
+    ``vocabulary`` is a vocabulary file; ``None`` stands for the bundled one. ``findings`` are empty at first.
+    The linter adds those of all rules but ``noqa``, which looks at them.
     """
 
     def __init__(self, files: LintedFiles, vocabulary: Path | None = None) -> None:

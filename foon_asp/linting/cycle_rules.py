@@ -10,7 +10,7 @@ from foon_asp.text.diagnostics import Diagnostic
 
 
 @rule("dead-cycle", NOTE, "objects that are made only by units that need them")
-def dead_cycle(context: Context) -> Iterator[Diagnostic]:
+def find_dead_cycles(context: Context) -> Iterator[Diagnostic]:
     """No task tree can make any of these objects unless one is available, as each needs another of them.
 
     This may be intended, as with a bottle that is opened and closed again. Then put one of the objects into

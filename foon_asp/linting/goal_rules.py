@@ -12,7 +12,7 @@ from foon_asp.text.line import ObjectLine
 
 
 @rule("unmade-goal", WARNING, "a goal that no unit makes")
-def unmade_goal(context: Context) -> Iterator[Diagnostic]:
+def find_unmade_goals(context: Context) -> Iterator[Diagnostic]:
     """The goal is not an output of any unit, or only of units that need it.
 
     A goal is an object line with a recipe category or `!`, or an entry of a list of goals. A list of goals is
@@ -31,7 +31,7 @@ def unmade_goal(context: Context) -> Iterator[Diagnostic]:
 
 
 @rule("unknown-item", NOTE, "an entry of a kitchen that is not in the network")
-def unknown_item(context: Context) -> Iterator[Diagnostic]:
+def find_unknown_items(context: Context) -> Iterator[Diagnostic]:
     """No unit of the networks that are linted with the kitchen has this node.
 
     There may be a slip in the kitchen or in the network, or the item is not needed. If most entries of a
@@ -42,7 +42,7 @@ def unknown_item(context: Context) -> Iterator[Diagnostic]:
 
 
 @rule("amount", ERROR, "an amount that is no number from 1 to 1,000,000, or a second one")
-def amount(context: Context) -> Iterator[Diagnostic]:
+def find_wrong_amounts(context: Context) -> Iterator[Diagnostic]:
     """A line `# Amount:` with a tab and a number stands below an object line and says how many there are.
 
     An object line has at most one such line. If a kitchen or a list of goals has an object several times, all

@@ -41,7 +41,7 @@ def _uses_by_key(sheet: Sheet, by_id: bool) -> Iterator[tuple[str, str, list[_Us
 
 
 @rule("id-of-two-names", WARNING, "one id for two names")
-def id_of_two_names(context: Context) -> Iterator[Diagnostic]:
+def find_ids_of_two_names(context: Context) -> Iterator[Diagnostic]:
     """One file has one id for two names of objects, of states or of motions.
 
     An id with four names or more means nothing and is reported once. foon-asp ignores ids, but other programs
@@ -68,7 +68,7 @@ def id_of_two_names(context: Context) -> Iterator[Diagnostic]:
 
 
 @rule("name-of-two-ids", WARNING, "one name with two ids")
-def name_of_two_ids(context: Context) -> Iterator[Diagnostic]:
+def find_names_of_two_ids(context: Context) -> Iterator[Diagnostic]:
     """One file has two ids for one name of an object, a state or a motion."""
     for sheet in context.sheets:
         for letter, name, (usual, *others) in _uses_by_key(sheet, by_id=False):
@@ -82,7 +82,7 @@ def name_of_two_ids(context: Context) -> Iterator[Diagnostic]:
 
 
 @rule("missing-field", NOTE, "no id or motion flag, in a file where other lines have one")
-def missing_field(context: Context) -> Iterator[Diagnostic]:
+def find_missing_fields(context: Context) -> Iterator[Diagnostic]:
     """Ids and motion flags are optional, but a file has them on all lines or on none.
 
     Lines without an id are reported if at least 19 of 20 lines have one. If most object lines have a motion

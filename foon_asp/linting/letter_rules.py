@@ -18,8 +18,8 @@ _UNSEEN = {"Cc", "Cf", "Zl", "Zp", "Zs"}
 
 
 @rule("ambiguous-letter", ERROR, "a letter that is not seen, or that looks like another")
-def ambiguous_letter(context: Context) -> Iterator[Diagnostic]:
-    """Two names look the same and are different, which nobody can see.
+def find_ambiguous_letters(context: Context) -> Iterator[Diagnostic]:
+    """Two names look the same but differ, which nobody can see.
 
     One name has a control character, a letter without width, or a blank that is not the usual one. Or it has
     a Cyrillic or Greek letter among Latin ones; a word in a single script is fine. Or an accented letter is

@@ -84,7 +84,7 @@ class LintedFiles:
     def _read_file(self, file: Path) -> None:
         """Read a file as a sheet, and add its units to the network.
 
-        The file is a network, or a kitchen or list of goals, whose entries the sheet gets.
+        A kitchen or a list of goals has no units; its entries are added to the sheet.
         """
         text = self.reader.text(file, self._contents.get(file))
         lines = split_lines(text)

@@ -32,7 +32,7 @@ def lint(
 
 
 def lint_context(context: Context) -> list[Diagnostic]:
-    """Return the findings about files that were read, sorted and without silenced ones, as :func:`lint`.
+    """Return the findings about files that were read; they are sorted and silenced as in :func:`lint`.
 
     Adds the findings of all rules but ``noqa`` to those of the context.
     """

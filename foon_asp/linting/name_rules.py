@@ -13,15 +13,16 @@ from foon_asp.text.line import StateLine
 
 
 @rule("near-name", WARNING, "two names that differ by a likely typing error")
-def near_name(context: Context) -> Iterator[Diagnostic]:
+def find_near_names(context: Context) -> Iterator[Diagnostic]:
     """Two names of one kind are probably meant to be the same.
 
     The kinds are objects (with containers and ingredients), states, motions, and words of relations. Names
     that differ only in doubled letters, capitals, spaces or hyphens are reported however often they occur.
     Names that differ in a single letter are reported if one of them is rare, not in the vocabulary, or never
     made or never taken. The letter is missing, added, changed, or swapped with the next. Singular and plural,
-    `cube` and `cubed` (but not `gratd`), digits, and different first letters do not count as slips. Each pair
-    is reported once in each file, at the rarer name, which need not be the wrong one.
+    endings of verbs (`cube` and `cubed`), digits, and different first letters do not count as slips; `gratd`
+    for `grated` does. Each pair is reported once in each file, at the rarer name, which need not be the wrong
+    one.
     """
     for kind, pairs in context.near_names.items():
         for name, meant in pairs:
@@ -49,7 +50,7 @@ def _near_name_findings(context: Context, kind: Kind, name: str, meant: str) -> 
 
 
 @rule("misspelt", WARNING, "a word that is nearly one of the vocabulary")
-def misspelt(context: Context) -> Iterator[Diagnostic]:
+def find_misspelt_words(context: Context) -> Iterator[Diagnostic]:
     """A word that is not in the vocabulary differs by one letter from a word of the vocabulary.
 
     If the right name stands in the files, too, the finding is a `near-name`.
@@ -71,7 +72,7 @@ def misspelt(context: Context) -> Iterator[Diagnostic]:
 
 
 @rule("unknown-container", NOTE, "an object in [ ] that is never an object line")
-def unknown_container(context: Context) -> Iterator[Diagnostic]:
+def find_unknown_containers(context: Context) -> Iterator[Diagnostic]:
     """No unit takes or makes the container as an object; it may have another name as an object.
 
     If no object has a similar name, the container is reported only if the vocabulary does not have its words.
@@ -81,7 +82,7 @@ def unknown_container(context: Context) -> Iterator[Diagnostic]:
 
 
 @rule("unknown-ingredient", WARNING, "an ingredient in { } that is never an object line")
-def unknown_ingredient(context: Context) -> Iterator[Diagnostic]:
+def find_unknown_ingredients(context: Context) -> Iterator[Diagnostic]:
     """No unit takes or makes the ingredient as an object; it may have another name as an object.
 
     If no object has a similar name, the ingredient is reported only if the vocabulary does not have its
@@ -95,8 +96,8 @@ def _unlisted_name_findings(
 ) -> Iterator[Diagnostic]:
     """Yield a finding for each name in a kind of bracket that is never an object of a unit.
 
-    ``role`` and ``advice`` are parts of the messages. Names that :func:`near_name` or :func:`misspelt`
-    reports are skipped.
+    ``role`` and ``advice`` are parts of the messages. Names that are reported as `near-name` or `misspelt`
+    are skipped.
     """
     names, vocabulary = context.names, context.vocabulary
     for name, mentions in names.mentions[Kind.OBJECT].items():

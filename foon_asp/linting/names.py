@@ -86,9 +86,9 @@ class Names:
 
     @cached_property
     def _labels_by_ending(self) -> dict[str, list[str]]:
-        """Labels in the singular by their last one to four words, and by all of their words.
+        """Labels by their endings of one to four words, and by all of their words; keys are in the singular.
 
-        The most frequent labels are first.
+        The labels with an ending are in order, the most frequent first.
         """
         endings: dict[str, list[str]] = {}
         for label in sorted(self.objects, key=lambda label: (-self.objects[label], label)):

@@ -98,7 +98,7 @@ def near_names(
 def _spelling_variants(counts: dict[str, int], known_words: Collection[str]) -> Iterator[tuple[str, str]]:
     """Yield pairs of names that differ only in doubled letters, capitals and blanks.
 
-    The second name of a pair is the usual one: of known words, or else the most frequent one.
+    The second name is the usual one: it has only known words, or else it is the most frequent.
     """
     spellings: dict[str, list[str]] = {}
     for name in counts:
@@ -121,7 +121,7 @@ def _deletion_neighbourhood(name: str) -> Iterable[str]:
 
 
 def near_word(word: str, deletions: Mapping[str, Iterable[str]], verbs: bool) -> str | None:
-    """Return the known word of which an unknown word is probably a slip, else ``None``.
+    """Return the known word that is probably meant by an unknown word, else ``None``.
 
     ``deletions`` is the :func:`deletion_index` of the known words. With ``verbs``, endings of verbs are no
     slips.

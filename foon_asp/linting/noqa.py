@@ -42,7 +42,7 @@ def unsilenced(context: Context) -> Iterator[Diagnostic]:
 
 
 @rule("noqa", WARNING, "a noqa comment that silences nothing")
-def noqa(context: Context) -> Iterator[Diagnostic]:
+def find_useless_comments(context: Context) -> Iterator[Diagnostic]:
     """The comment silences nothing: the finding that it silenced is gone, or its code is misspelt.
 
     A comment is about the next line that is neither blank nor a comment. It silences findings at that line.

@@ -14,7 +14,7 @@ FaultyNodes = Iterator[tuple[ObjectNode, str]]
 
 
 @rule("unheld", WARNING, "an object in something that contains other things, and not it")
-def unheld(context: Context) -> Iterator[Diagnostic]:
+def find_unheld_objects(context: Context) -> Iterator[Diagnostic]:
     """The object is in a container, but is not among the contents of the container on this side of the unit.
 
     If the object is in another container of the same name, that container is missing on this side.
@@ -59,11 +59,11 @@ def unheld_nodes(side: Side, habits: Habits) -> FaultyNodes:
     WARNING,
     "an object in something that the unit has not, or in nothing, while something else contains it",
 )
-def other_place(context: Context) -> Iterator[Diagnostic]:
+def find_objects_in_other_places(context: Context) -> Iterator[Diagnostic]:
     """The object is in a place that is not in the unit, and something else in the unit contains the object.
 
-    Also reported is an object without a place that a container in the unit contains. This is reported only if
-    the files mostly state of contents that they are in their container.
+    Also reported is an object without a place that a container in the unit contains. It is reported only if
+    the files mostly state for objects among contents that they are in their container.
     """
     objects = context.network.objects
     labels = {node.label for node in objects}
@@ -111,9 +111,9 @@ def misplaced_nodes(side: Side, labels: Collection[str], habits: Habits) -> Faul
 
 
 def _places_are_usual(context: Context) -> bool:
-    """Whether the files mostly state of contents that they are in or on their container.
+    """Whether the files mostly state for an object among contents that it is in or on the container.
 
-    That is, more than twice as often as they state no relation.
+    That is, more than twice as often as they state no relation for it.
     """
     placed = unplaced = 0
     for side in context.sides:

@@ -158,7 +158,7 @@ _register_reader_rule(
 
 
 @rule("space-for-tab", WARNING, "a space instead of a tab")
-def space_for_tab(context: Context) -> Iterator[Diagnostic]:
+def find_spaces_for_tabs(context: Context) -> Iterator[Diagnostic]:
     """The letter, the name, the brackets and the motion flag are separated by tabs.
 
     A space in place of such a tab is read as a tab, and `--fix` replaces it. Only a motion flag after a space

@@ -39,7 +39,7 @@ RULES: dict[str, Rule] = {}
 
 
 def rule(code: str, severity: Severity, meaning: str) -> Callable[[Finder], Finder]:
-    """Return a decorator that registers a function as the rule with a code, and returns the function.
+    """Return a decorator that registers a function as the lint rule with this code.
 
     The docstring of the function explains the code to users: ``lint --explain`` and ``docs/lint.md`` show it.
     """

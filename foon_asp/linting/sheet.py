@@ -153,7 +153,7 @@ class Sheet:
         return Diagnostic(Severity.NOTE, "", message, source, line)
 
     def _quoted_place(self, index: int, name: str) -> tuple[Source, str]:
-        """Return the first place of a quoted name in JSON from its unit or entry on, and the line there.
+        """Find a quoted name in JSON from the unit or entry of a line on; return its place and its line.
 
         If the name does not follow, return where the unit or entry begins, and an empty line.
         """

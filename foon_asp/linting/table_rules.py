@@ -18,7 +18,7 @@ _RATES = "motion.txt"
 
 
 @rule("table", ERROR, "a row of a table beside the network that cannot be read")
-def table(context: Context) -> Iterator[Diagnostic]:
+def find_unreadable_rows(context: Context) -> Iterator[Diagnostic]:
     """A row of rates (`motion.txt`), durations, numbers of tools or prices of units is not understood."""
     for sheet in context.files.tables:
         yield from _table_errors(sheet)
@@ -34,7 +34,7 @@ def _table_errors(sheet: Sheet) -> Iterator[Diagnostic]:
 
 
 @rule("unknown-row", WARNING, "a row of a table for a name that the network has not")
-def unknown_row(context: Context) -> Iterator[Diagnostic]:
+def find_unknown_rows(context: Context) -> Iterator[Diagnostic]:
     """The name of the row is probably misspelt, in the table or in a network.
 
     The tables are those of rates, durations, prices, amounts, utensils and tools. A row of amounts is also
@@ -63,9 +63,10 @@ def unknown_row(context: Context) -> Iterator[Diagnostic]:
 
 
 def _amounts_without_unit(sheet: Sheet, context: Context, unknown: Collection[str]) -> Iterator[Diagnostic]:
-    """Yield a finding for each row of amounts whose node no unit with the row's motion takes or makes.
+    """Yield a finding for each row of amounts that fits no unit.
 
-    Motions in ``unknown`` are skipped. Yields nothing for a table that cannot be read.
+    A row fits a unit that has its motion and, on the side that it is about, its node. Motions in ``unknown``
+    are skipped. Yields nothing for a table that cannot be read.
     """
     if any(_table_errors(sheet)):
         return
@@ -78,10 +79,10 @@ def _amounts_without_unit(sheet: Sheet, context: Context, unknown: Collection[st
 
 
 @rule("missing-rate", WARNING, "motions of the network without a success rate")
-def missing_rate(context: Context) -> Iterator[Diagnostic]:
+def find_missing_rates(context: Context) -> Iterator[Diagnostic]:
     """Each motion of the network needs a rate in `motion.txt`.
 
-    Without all of them no success rate of a tree can be computed, and a question about it is an error.
+    If one is missing, no success rate of a tree can be computed, and a question about it is an error.
     """
     for sheet in context.files.tables:
         rows = _first_rows(sheet)

@@ -90,7 +90,7 @@ def _spans(text: str) -> list[tuple[_Clock, _Clock]]:
 
 
 @rule("time-value", WARNING, "a time that is hardly meant: too many seconds, hours, an end before its start")
-def time_value(context: Context) -> Iterator[Diagnostic]:
+def find_unlikely_times(context: Context) -> Iterator[Diagnostic]:
     """A step ends before it begins or lasts much longer than others, or a time has more than 59 seconds.
 
     Also reported is a time of hours where most times of the file are minutes, and `1:38:50` where other times
@@ -146,8 +146,8 @@ def _odd_times(steps: list[_Step]) -> dict[int, tuple[str, int]]:
 
 
 @rule("time-order", WARNING, "a step before the one that makes what it uses")
-def time_order(context: Context) -> Iterator[Diagnostic]:
-    """A step ends before another step begins that stands above it and makes what it uses.
+def find_steps_out_of_order(context: Context) -> Iterator[Diagnostic]:
+    """A step uses what a step above it makes, but ends before that step begins.
 
     One of the times is wrong, or the order of the steps.
     """

@@ -18,7 +18,7 @@ _PLACES = {"in", "on", "inside", "under", "below", "at", "into", "onto", "on top
 
 
 @rule("no-effect", WARNING, "a unit whose outputs are its inputs")
-def no_effect(context: Context) -> Iterator[Diagnostic]:
+def find_units_without_effect(context: Context) -> Iterator[Diagnostic]:
     """The unit makes nothing, so no task tree needs it. Usually a state is missing in the outputs."""
     network = context.network
     for motion, inputs, outputs, copies in zip(
@@ -31,7 +31,7 @@ def no_effect(context: Context) -> Iterator[Diagnostic]:
 
 
 @rule("duplicate-unit", WARNING, "a unit that the file already contains")
-def duplicate_unit(context: Context) -> Iterator[Diagnostic]:
+def find_duplicate_units(context: Context) -> Iterator[Diagnostic]:
     """Two units of a file have the same motion, inputs and outputs.
 
     The order of lines and states, ids, flags and times do not count. A universal FOON has every unit once;
@@ -51,7 +51,7 @@ def duplicate_unit(context: Context) -> Iterator[Diagnostic]:
 
 
 @rule("repeated-object", WARNING, "an object node listed twice on one side of a unit, or a state of it")
-def repeated_object(context: Context) -> Iterator[Diagnostic]:
+def find_repeated_objects(context: Context) -> Iterator[Diagnostic]:
     """Inputs and outputs of a unit, and states of an object, are sets: what stands twice counts once.
 
     Two eggs are two nodes only if they differ, for example in their places. A table (`unit_amounts.txt`) says
@@ -85,7 +85,7 @@ def _repeated_nodes(context: Context, copy: Copy) -> Iterator[Diagnostic]:
 
 
 @rule("second-relation", NOTE, "two places, or two relations or lists by one word, under one object")
-def second_relation(context: Context) -> Iterator[Diagnostic]:
+def find_second_relations(context: Context) -> Iterator[Diagnostic]:
     """An object can be in two relations, such as `on [tray]` and `covered [foil]`, but not in two places.
 
     It cannot have two relations by one word, or two lists of contents by one word either. When an object is

@@ -29,8 +29,8 @@ _Row = tuple[str, str, Sequence[int]]
 class Vocabulary:
     """Known names by kind, with numbers.
 
-    A word of relations has the numbers of lines with it in each bracket. A motion has its :class:`Habit`.
-    Other names have no numbers. The numbers of several rows for one name are added up.
+    A word of relations has two numbers: on how many lines each kind of bracket follows it. A motion has its
+    :class:`Habit`. Other names have no numbers. The numbers of several rows for one name are added up.
     """
 
     def __init__(self, rows: Iterable[_Row] = ()) -> None:
@@ -118,7 +118,7 @@ class Vocabulary:
         return Habit(*self.numbers[HABIT].get(motion, ()))
 
     def brackets(self, word: str) -> dict[Bracket, int]:
-        """Return how many lines have a word with each kind of bracket, the more frequent kind first.
+        """Return on how many lines each kind of bracket follows a word, the more frequent kind first.
 
         A kind of bracket that never follows the word is left out.
         """
@@ -132,7 +132,7 @@ class Vocabulary:
     def usual_bracket(self, word: str) -> Bracket | None:
         """Return the kind of bracket that nearly always follows a word, or ``None``.
 
-        That is at least three lines, and ten times as many as with the other kind.
+        It follows the word on at least three lines, and ten times as often as the other kind.
         """
         for bracket, often in self.brackets(word).items():
             others = sum(self.brackets(word).values()) - often

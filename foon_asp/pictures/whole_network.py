@@ -40,7 +40,7 @@ class WholeNetwork(Value, frozen=True):
 
     @classmethod
     def of(cls, problem: Problem) -> Self:
-        """Return the network of a problem, with the coordinates of a layout by Graphviz.
+        """Return the whole network of a problem, with coordinates that Graphviz computes.
 
         Raises :class:`UserError` for a network that is too large for a layout, and if Graphviz is not
         installed.

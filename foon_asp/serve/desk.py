@@ -141,10 +141,10 @@ class Desk:
         return self._current_token
 
     def answer_form(self, form: Form, token: Cancel, send_event: SendEvent) -> None:
-        """Answer the question of a form with pages.
+        """Answer the question of a form with pages, once the question before it has ended.
 
-        ``send_event`` receives an event for each page, for progress, and for an error. Waits until the
-        question before it has ended.
+        ``token`` cancels the question. ``send_event`` receives an event for each page, for progress, and for
+        an error.
         """
 
         def answer(deadline: Deadline, _: _EventReporter) -> None:
@@ -168,7 +168,10 @@ class Desk:
         self._run_question(answer, token, send_event)
 
     def _problem_of(self, form: Form) -> Problem:
-        """Return the problem of a form, with the changes that the form makes to the kitchen."""
+        """Return the problem of a form, with the changes that the form makes to the kitchen.
+
+        If items are used up, the stock of the desk counts, too.
+        """
         foon = self._foon.vary(adding=form.adding, without=form.without)
         stock = stays = None
         if form.items != "lasting":
@@ -182,8 +185,8 @@ class Desk:
     def answer_regret(self, form: RegretForm, token: Cancel, send_event: SendEvent) -> None:
         """Send the regret of a unit or kitchen item: how much worse the optimum is without it.
 
-        The tree on the page that the form names has to be proved optimal. Waits until the question before it
-        has ended.
+        The tree on the page of the form has to be proved optimal. ``token`` and ``send_event`` are as for
+        :meth:`answer_form`.
         """
 
         def answer(deadline: Deadline, reporter: _EventReporter) -> None:

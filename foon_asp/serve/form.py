@@ -16,8 +16,9 @@ Question = TypeVar("Question", bound=msgspec.Struct)
 class Form(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A question for the best tree.
 
-    ``adding`` and ``without`` are kitchen items to add and to remove. ``rules`` is the text of rules.
-    ``beside`` are further answers that the page shows.
+    ``containers`` is the container rule. ``items`` says whether items are lasting or used up. ``adding`` and
+    ``without`` are kitchen items to add and to remove. ``rules`` is the text of rules. ``beside`` are further
+    answers that the page shows.
     """
 
     goals: Names = ()

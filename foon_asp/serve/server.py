@@ -8,7 +8,7 @@ import uvicorn
 
 from foon_asp.serve.connection import Connection
 from foon_asp.serve.desk import Desk
-from foon_asp.serve.site import site
+from foon_asp.serve.site import web_application
 
 
 def serve_desk(desk: Desk, ready: Callable[[str], object]) -> None:
@@ -22,7 +22,7 @@ def serve_desk(desk: Desk, ready: Callable[[str], object]) -> None:
         listener.listen()
         port = listener.getsockname()[1]
         config = uvicorn.Config(
-            site(desk, token, port),
+            web_application(desk, token, port),
             http=Connection,
             backlog=128,  # connections that may wait to be accepted
             access_log=False,  # it would have the token

@@ -40,48 +40,54 @@ _HEADERS = {
 }
 
 
-def site(desk: Desk, token: str, port: int) -> Asgi:
+def web_application(desk: Desk, token: str, port: int) -> Asgi:
     """Return the web application of a desk.
 
-    It answers requests that have the token and come from a page of this machine at ``port``, and refuses all
+    It answers requests that have the token and come from a page of this machine at ``port``. It refuses all
     others.
     """
 
     def open_page(_: Request) -> Response:
+        """Return the page with the opening form."""
         page, policy = _question_page(desk.opening_data())
         return HTMLResponse(page, headers={"content-security-policy": policy})
 
-    def answer(request: Request) -> Response:
+    def show_page(request: Request) -> Response:
+        """Return the page with the number in the address; status 404 if it is no longer kept."""
         number = request.path_params["number"]
         page = desk.page(int(number)) if _PAGE_NUMBER.fullmatch(number) else None
         if page is None:
             return PlainTextResponse("this page is no longer kept: ask again", 404)
         return HTMLResponse(page, headers={"content-security-policy": "frame-ancestors 'self'"})
 
-    def names(request: Request) -> Response:
+    def list_names(request: Request) -> Response:
+        """Return the names that begin with a text, as JSON."""
         return JSONResponse(desk.names_beginning(request.query_params.get("start", "")))
 
-    async def ask(request: Request) -> Response:
+    async def ask_question(request: Request) -> Response:
+        """Answer the form in the body, as a stream of events."""
         return await _stream_events(
             request, desk, lambda body: partial(desk.answer_form, read_question(body, Form))
         )
 
-    async def without(request: Request) -> Response:
+    async def ask_regret(request: Request) -> Response:
+        """Answer the regret form in the body, as a stream of events."""
         return await _stream_events(
             request, desk, lambda body: partial(desk.answer_regret, read_question(body, RegretForm))
         )
 
-    async def cancel(_: Request) -> Response:
+    async def cancel_question(_: Request) -> Response:
+        """Cancel the current question."""
         desk.cancel()
         return Response(status_code=204)
 
     routes = [
         Route(f"/{token}/", open_page),
-        Route(f"/{token}/page/{{number}}", answer),
-        Route(f"/{token}/names", names),
-        Route(f"/{token}/ask", ask, methods=["POST"]),
-        Route(f"/{token}/without", without, methods=["POST"]),
-        Route(f"/{token}/cancel", cancel, methods=["POST"]),
+        Route(f"/{token}/page/{{number}}", show_page),
+        Route(f"/{token}/names", list_names),
+        Route(f"/{token}/ask", ask_question, methods=["POST"]),
+        Route(f"/{token}/without", ask_regret, methods=["POST"]),
+        Route(f"/{token}/cancel", cancel_question, methods=["POST"]),
     ]
     return _guard(Starlette(routes=routes), token, f"127.0.0.1:{port}")
 

@@ -45,7 +45,7 @@ class StoreBuilder:
         """Create the tables of the store in an empty database."""
         self._database = database
         create_tables(database)
-        self.copies = 0  # of units, added so far
+        self.copy_count = 0  # of units, added so far
         self._written_units = self._sources = 0  # rows of the tables unit and source
         self.matched = [False] * len(kitchen or ())
         self._kitchen = kitchen
@@ -67,12 +67,12 @@ class StoreBuilder:
         self._rows: dict[str, list[tuple[Any, ...]]] = {}  # to be written, by statement
 
     @property
-    def units(self) -> int:
+    def unit_count(self) -> int:
         """The number of distinct units added so far."""
         return len(self._units)
 
     @property
-    def objects(self) -> int:
+    def object_count(self) -> int:
         """The number of distinct object nodes added so far."""
         return len(self._nodes)
 
@@ -106,7 +106,7 @@ class StoreBuilder:
         for file, line, column, videos in sources:
             self._insert("source", unit, self._sources, self._origin_id(file, videos), line, column)
             self._sources += 1
-        self.copies += 1
+        self.copy_count += 1
         return unit
 
     def final_outputs(self, units: Mapping[int, Source]) -> list[ListedObject]:
@@ -178,7 +178,7 @@ class StoreBuilder:
             self._insert("outline", name, column.tobytes())
         self._write_all_rows()
         write_trigrams(self._database)
-        units, objects = self.units, self.objects
+        units, objects = self.unit_count, self.object_count
         self._units.clear()  # all this frees memory for the indexes
         self._nodes.clear()
         for index in (self._attributes, self._latest, self._outline):

@@ -53,7 +53,10 @@ def decode_label(name: bytes) -> str:
 
 
 def decode_json(text: str) -> Any:
-    """Return the value of a column in JSON; raises :class:`ValueError` or :class:`TypeError`."""
+    """Return the value that a column states in JSON.
+
+    Raises :class:`ValueError` or :class:`TypeError` for a column that is no JSON.
+    """
     return json.loads(text)
 
 
@@ -83,11 +86,13 @@ _NO_RELATIONS = frozenset[Relation]()
 
 @lru_cache(maxsize=STORE.cached_attributes)
 def _decode_states(text: str) -> frozenset[str]:
+    """Return the states that :func:`attribute_columns` encoded."""
     return frozenset(map(_checked_name, decode_json(text)))
 
 
 @lru_cache(maxsize=STORE.cached_attributes)
 def _decode_relations(text: str) -> frozenset[Relation]:
+    """Return the relations that :func:`attribute_columns` encoded."""
     return frozenset(
         Relation(_checked_name(word), _checked_name(related_object))
         for word, related_object in decode_json(text)
@@ -96,6 +101,7 @@ def _decode_relations(text: str) -> frozenset[Relation]:
 
 @lru_cache(maxsize=STORE.cached_attributes)
 def _decode_contents(text: str) -> tuple[Contents, ...]:
+    """Return the contents that :func:`attribute_columns` encoded."""
     return tuple(
         Contents(_checked_name(word), tuple(map(_checked_name, items))) for word, items in decode_json(text)
     )

@@ -26,12 +26,10 @@ class Producers(Protocol):
 class Cone:
     """The units that goals can need, as far as they were read. Ids are those in the whole network.
 
-    ``goals`` are the ids of the goals, ``units`` the ids of the units that were read. ``open`` are nodes that
-    the goals or these units need, that are not available, and whose producers were not read yet. The
-    producers of all other such nodes were read.
-
-    The container rule with its ``utensils`` says which inputs a unit needs. Nothing is read for nodes that
-    are ``available``.
+    ``units`` are the units that were read. ``open`` are needed nodes that are not ``available`` and whose
+    producers were not read yet. Of all other needed nodes, all producers were read, or the node is available.
+    A node is needed if it is a goal, or if a unit of the cone needs it under the container rule with its
+    ``utensils``.
     """
 
     def __init__(
@@ -50,7 +48,7 @@ class Cone:
         self._network, self._available = network, available
         self._rule = containers, utensils
 
-    def copied(self) -> "Cone":
+    def copy(self) -> "Cone":
         """Return a copy of the cone that grows independently."""
         other = copy.copy(self)
         other.units, other.open, other._closed = set(self.units), set(self.open), set(self._closed)

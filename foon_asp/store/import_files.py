@@ -92,7 +92,7 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
                     warnings.append(unit_price_warning(unit, source))
             amounts, unmatched = with_table(reader.amounts.settled(), amount_rows, counted_units)
             warnings += unmatched
-            counts = builder.copies, builder.units, builder.objects
+            counts = builder.copy_count, builder.unit_count, builder.object_count
             builder.finish(
                 goals, goals_from, rates, utensils, reader.left_out, reader.repeated, amounts, stated, prices
             )

@@ -98,7 +98,8 @@ class Outline:
     def units_with_traits(self, traits: Iterable[Trait], kitchen: Mask) -> Mask:
         """Return the mask of the units that may have all of the traits.
 
-        A node in the mask ``kitchen`` does not count as made.
+        Names are searched in the text of contents, so the mask may have further units. A node in the mask
+        ``kitchen`` does not count as made.
         """
         mask = np.ones(len(self.motions), dtype=np.bool_)
         for having, word in traits:

@@ -80,7 +80,9 @@ class Store:
     def _read_properties(self) -> None:
         """Read the sizes and remarks of the store, and whether it has a kitchen and prices."""
         about = self.file.about
-        self.units, self.objects, self.left_out = (int(about(n)) for n in ("units", "objects", "left_out"))
+        self.unit_count, self.object_count, self.left_out = (
+            int(about(n)) for n in ("units", "objects", "left_out")
+        )
         self.has_kitchen = bool(about("kitchen"))  # or an empty one
         self.has_unit_prices = bool(about("unit_prices"))
         self.goals_from = str(about("goals_from"))  # empty where the goals are from a file
@@ -345,18 +347,19 @@ class Store:
         """Read the sources of units by their ids: a source for each copy of a unit."""
         rows = self.file.rows(f"{_SOURCE} WHERE unit IN ids ORDER BY unit, copy", units).fetchall()
         new = {origin for _, origin, _, _ in rows if origin not in self._origins}
-        self._store_origins(self.file.rows(f"{_ORIGIN} WHERE origin.id IN ids", new) if new else ())
+        self._cache_origins(self.file.rows(f"{_ORIGIN} WHERE origin.id IN ids", new) if new else ())
         return self._sources_of_rows(rows)
 
-    def _store_origins(self, rows: Iterable[tuple[int, str, str]]) -> None:
-        """Keep files with their videos, which are encoded in rows, by the ids of their origins."""
+    def _cache_origins(self, rows: Iterable[tuple[int, str, str]]) -> None:
+        """Decode rows of the table ``origin``, and keep the file and videos of each by its id."""
         for number, file, videos in rows:
             self._origins[number] = str(decode_json(file)), tuple(decode_json(videos))
 
     def _sources_of_rows(self, rows: Iterable[tuple[int, int, int, int]]) -> dict[int, tuple[Source, ...]]:
         """Return the sources of each unit, by its id, from rows of the table ``source``.
 
-        Rows of a unit follow each other. Their origins have been kept before.
+        The rows of a unit follow each other. :meth:`_cache_origins` has to be called with their origins
+        before.
         """
 
         def source(_: int, origin: int, line: int, column: int) -> Source:
@@ -431,7 +434,10 @@ class Store:
     def needs(
         self, units: Sequence[int], containers: ContainerRule, utensils: frozenset[str]
     ) -> list[list[int]]:
-        """Return, for each of the units, the ids of the nodes that it needs under a container rule."""
+        """Return, for each of the units, the ids of the nodes that it needs under a container rule.
+
+        ``utensils`` are the labels of utensils for this rule.
+        """
         self.read_units(units)
         inputs = [self._unit_row(unit)[1] for unit in units]
         self.read_nodes(set(chain.from_iterable(inputs)))
@@ -499,10 +505,12 @@ class Store:
             (motion, decode_ids(inputs), decode_ids(outputs))
             for _, motion, inputs, outputs in self._database.execute(f"{_UNIT} ORDER BY id")
         ]
-        self._store_origins(self._database.execute(_ORIGIN))
+        self._cache_origins(self._database.execute(_ORIGIN))
         sources = self._sources_of_rows(self._database.execute(f"{_SOURCE} ORDER BY unit, copy"))
-        if (len(units), len(objects)) != (self.units, self.objects):
-            raise ValueError(f"{len(units)} of {self.units} units, {len(objects)} of {self.objects} nodes")
+        if (len(units), len(objects)) != (self.unit_count, self.object_count):
+            raise ValueError(
+                f"{len(units)} of {self.unit_count} units, {len(objects)} of {self.object_count} nodes"
+            )
         network = self._build_network(units, list(sources.values()), objects, range(len(objects)))
         return network, self.nodes_where("kitchen")
 
@@ -549,7 +557,7 @@ class Store:
 
         motions = [motion for motion, _ in self._motions.values()]
         rows = self._database.execute("SELECT name, numbers FROM outline")
-        return Outline(rows, self.units, self.objects, motions, self.nodes_where)
+        return Outline(rows, self.unit_count, self.object_count, motions, self.nodes_where)
 
 
 def _price_sql(from_file: bool) -> str:

@@ -16,7 +16,7 @@ class StoredIds(Collection[int]):
         self._has: Callable[[int], bool] = store.in_kitchen if column == "kitchen" else store.is_starting
 
     def __contains__(self, o: object) -> bool:
-        return isinstance(o, int) and 0 <= o < self._store.objects and self._has(o)
+        return isinstance(o, int) and 0 <= o < self._store.object_count and self._has(o)
 
     def __iter__(self) -> Iterator[int]:
         return iter(self._store.nodes_where(self._column))

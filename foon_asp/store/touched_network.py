@@ -44,17 +44,21 @@ class TouchedNetwork(Network):
     @classmethod
     def of(cls, store: Store) -> Self:
         """Return the network of a store."""
-        nodes = _read_on_access(store.objects, store.node)
+        nodes = _read_on_access(store.object_count, store.node)
+
+        def part_reader(position: int) -> Callable[[int], Any]:
+            """Return the function that reads one of the :meth:`~.Store.unit_parts` of a unit."""
+            return lambda unit: store.unit_parts(unit)[position]
+
         motions, inputs, outputs, sources = [
-            _read_on_access(store.units, lambda unit, position=position: store.unit_parts(unit)[position])  # type: ignore[misc]
-            for position in range(4)
+            _read_on_access(store.unit_count, part_reader(position)) for position in range(4)
         ]
         return cls(nodes, motions, inputs, outputs, sources, {}, {}, store=store)
 
     @cached_property
     def producers(self) -> Any:
         """For each object node, the ids of the units that have it as an output, in order."""
-        return _read_on_access(self.store.objects, self.store.producers)
+        return _read_on_access(self.store.object_count, self.store.producers)
 
     @cached_property
     def different_motions(self) -> frozenset[str]:

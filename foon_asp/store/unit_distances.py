@@ -17,9 +17,9 @@ class UnitDistances:
     """The distances of all units of a network: lower bounds on the cost of a tree that has the unit.
 
     The distance of a unit is its cost plus the largest distance of its inputs. The distance of a node is the
-    least one of its producers, or 0 (``h_max`` of Bonet and Geffner, Artificial Intelligence 129, 2001). It
-    is 0 for nodes in the mask ``kitchen``, which are available, and in the mask ``skipped``, which units do
-    not need.
+    least one of its producers (``h_max`` of Bonet and Geffner, Artificial Intelligence 129, 2001). It is 0
+    for nodes in the mask ``kitchen``, which are available, and in the mask ``skipped``, which units do not
+    need.
 
     The cost of a unit is 1. If ``objective`` is ``success`` and there are ``rates``, it is the negative
     logarithm of the unit's rate, scaled to an integer and rounded down.
@@ -84,10 +84,11 @@ class UnitDistances:
     def relevant_units(
         self, kinds: Sequence[Mask] | None, executed: Collection[int], max_cost: int
     ) -> list[int]:
-        """Return the ids of units of some kind at most ``max_cost`` away, and of units that lead to them.
+        """Return the ids of the units that may be in a cheap enough tree with a unit of some kind.
 
-        ``kinds`` are masks of units; ``None`` means that all units count. ``executed`` are the ids of units
-        that cost nothing; they are not returned.
+        These are the units of the ``kinds`` with a distance of at most ``max_cost``, and units with such a
+        distance that lead to them. ``kinds`` are masks of units; ``None`` means that all units count.
+        ``executed`` are the ids of units that cost nothing; they are not returned.
         """
         if max_cost < int(self._costs.min(initial=FAR)):
             return []

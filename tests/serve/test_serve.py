@@ -47,7 +47,7 @@ def request(
     leaves: bool = False,
 ) -> tuple[int, dict[str, str], str]:
     """Ask the site as a server does."""
-    from foon_asp.serve.site import site  # noqa: PLC0415 (starlette may be missing)
+    from foon_asp.serve.site import web_application  # noqa: PLC0415 (starlette may be missing)
 
     sent: list[dict[str, Any]] = []
     coming = [{"type": "http.request", "body": b"" if body is None else json.dumps(body).encode()}]
@@ -71,7 +71,7 @@ def request(
         "query_string": query.encode(),
         "headers": [(name.encode(), value.encode()) for name, value in headers.items()],
     }
-    asyncio.run(site(desk, TOKEN, 80)(scope, receive, send))
+    asyncio.run(web_application(desk, TOKEN, 80)(scope, receive, send))
     start, *rest = sent
     found = {name.decode(): value.decode() for name, value in start["headers"]}
     return start["status"], found, b"".join(each.get("body", b"") for each in rest).decode()

@@ -145,13 +145,13 @@ def assert_holds(store: Path, data: Data) -> None:
     assert same_network(network, data.network)
     assert kitchen == (frozenset() if data.starting else data.kitchen)
     assert opened.goals_from == data.goals_from
-    starting = {o for o in range(opened.objects) if opened.is_starting(o)}
+    starting = {o for o in range(opened.object_count) if opened.is_starting(o)}
     assert starting == starting_nodes(network)
     assert opened.kitchen_items() == data.kitchen_items
     assert opened.goals == data.goals
     assert opened.rates == data.rates
     assert opened.utensils == data.utensils
-    assert (opened.units, opened.objects) == (len(data.network), len(data.network.objects))
+    assert (opened.unit_count, opened.object_count) == (len(data.network), len(data.network.objects))
     stated = Subject(network, kitchen, data.rates, data.utensils, data.unit_prices).digests()
     assert opened.digests == {name: stated[name] for name in opened.digests}
     for unit in range(len(network)):
@@ -786,7 +786,7 @@ def test_a_store_is_closed_at_the_end_of_with(
     soup: tuple[DataFiles, Path], opened: list[sqlite3.Connection]
 ) -> None:
     with Store(soup[1]) as store:
-        assert store.units == 4
+        assert store.unit_count == 4
     assert all_closed(opened)
     with pytest.raises(UserError, match=r"soup\.foon: the store was closed; open it again"):
         store.read_whole()
