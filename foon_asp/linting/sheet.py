@@ -92,7 +92,10 @@ class Sheet:
         ]
 
     def object_nodes(self, start: int) -> Iterator[tuple[int, ObjectNode]]:
-        """Yield the object nodes of the unit from a line on, each with the index of its object line."""
+        """Yield the object nodes of a unit, each with the index of its object line.
+
+        ``start`` is the index of the first line of the unit.
+        """
         for block in self.written_blocks(start):
             if block is None:
                 return

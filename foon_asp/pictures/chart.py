@@ -45,7 +45,7 @@ _MATPLOTLIB_STYLE: dict[Any, Any] = {  # by the names that matplotlib has for it
 
 
 def check_suffix(file: Path) -> None:
-    """Raise :class:`UserError` for a file whose suffix is neither .svg nor .png, in any case."""
+    """Raise :class:`UserError` unless the suffix of a file is .svg or .png, in small letters or capitals."""
     if file.suffix.lower() not in _SUFFIXES:
         raise UserError(f"{file}: the name of a chart ends in {' or '.join(_SUFFIXES)}")
 

@@ -96,6 +96,10 @@ def draw_tree(
             achievers.setdefault(node, number)
 
     def sources_of(nodes: Iterable[ObjectNode]) -> dict[ObjectNode, int | None]:
+        """Return, by node, the position of the unit that first makes it.
+
+        It is ``None`` for a kitchen item, and -1 if no unit makes the node.
+        """
         return {node: None if node in kitchen else achievers.get(node, -1) for node in nodes}
 
     return draw_plan(units, [sources_of(unit.inputs) for unit in units], sources_of(goals), kitchen, caption)

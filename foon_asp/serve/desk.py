@@ -62,11 +62,11 @@ class _EventReporter(Reporter):
 
 
 class Desk:
-    """Answers the questions of the page about one set of data, one after the other.
+    """The side of the server that answers the questions of the page, one after the other.
 
-    Answers are sent as events. Events of kind ``progress``, ``warning`` and ``without`` have a text, and
-    those of kind ``page`` have the number of a page. Those of kind ``error`` have a text and, for rules,
-    positions in their text.
+    All questions are about one set of data. Answers are sent as events. Events of kind ``progress``,
+    ``warning`` and ``without`` have a text, and those of kind ``page`` have the number of a page. Those of
+    kind ``error`` have a text and, for rules, positions in their text.
 
     ``opening_form`` is the question that the page shows when it opens. Limits are for each question, in
     seconds and bytes; ``None`` means no limit. Rules and encodings of ``settings`` hold for all questions.

@@ -33,12 +33,13 @@ from foon_asp.text.unit_price_list import UnitPriceList
 
 
 class StoreBuilder:
-    """Writes units into a new database; copies of a unit are merged, and all their sources are kept.
+    """A builder that writes units into a new database; it merges copies of a unit and keeps all sources.
 
     Nodes and units get the ids that :class:`~foon_asp.network.NetworkBuilder` would give them. ``kitchen``
     are the entries of the kitchen file, or ``None`` without such a file. ``matched`` says of each entry
-    whether a node matches it. ``copies`` is the number of copies added so far. The ids of all nodes and units
-    are kept in memory, some 400 bytes for each. All writing is one transaction, which the caller commits.
+    whether a node matches it. ``copy_count`` is the number of copies added so far. The ids of all nodes and
+    units are kept in memory, some 400 bytes for each. All writing is one transaction, which the caller
+    commits.
     """
 
     def __init__(self, database: sqlite3.Connection, kitchen: Sequence[ListedObject] | None) -> None:
