@@ -93,7 +93,7 @@ def _completion_item(
     id_ = "" if field.id is None else max(ids, key=ids.__getitem__, default="")
     bracket = ""
     if kind is NameKind.WORD and field.end == len(text.lines[line]):
-        holding = sum(mention.often for mention in mentions if _is_contents(mention.line))
+        holding = sum(mention.occurrences for mention in mentions if _is_contents(mention.line))
         bracket = "\t{" if 2 * holding > count else "\t["
     item: Json = {
         "label": name,
@@ -116,7 +116,7 @@ def _id_counts(names: Names, kind: NameKind, name: str) -> Counter[str]:
     ids: Counter[str] = Counter()
     for mention in names.mentions[kind].get(name, ()):
         if mention.line.id and next(line_names(mention.line))[:2] == (kind, name):
-            ids[mention.line.id] += mention.often
+            ids[mention.line.id] += mention.occurrences
     return ids
 
 
@@ -207,7 +207,7 @@ def _achievers_and_consumers(
 
     def lines_of(units: Iterable[int]) -> list[_UnitLine]:
         """Return the first line and the motion of each copy of units, in order."""
-        return sorted((copy.at, network.motions[unit]) for unit in units for copy in copies[unit])
+        return sorted((copy.first_index, network.motions[unit]) for unit in units for copy in copies[unit])
 
     id_ = network.object_id(node)
     if id_ is None:
@@ -249,7 +249,7 @@ def _unit_extents(checked: CheckedText) -> Iterator[tuple[int, int, int, int]]:
     Lines are indices from 0. Yields nothing for JSON.
     """
     lines, files = checked.text.lines, checked.names.files
-    starts = sorted((copy.at, unit) for unit, copies in enumerate(files.copies) for copy in copies)
+    starts = sorted((copy.first_index, unit) for unit, copies in enumerate(files.copies) for copy in copies)
     for first, unit in starts if not checked.text.is_json else ():
         following = range(first, len(lines))
         end = next((number for number in following if lines[number][:2] == "//"), following[-1])

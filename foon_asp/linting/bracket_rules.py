@@ -31,15 +31,15 @@ def find_other_brackets(context: Context) -> Iterator[Diagnostic]:
     ]
     counts = Counter[Relation | Contents]()
     for mention, attribute in attributes:
-        counts[attribute] += mention.often
+        counts[attribute] += mention.occurrences
     for mention, attribute in attributes:
         if not mention.line.remarks and (
             message := _reason_to_swap_brackets(attribute, counts, context.all_names)
         ):
             sheet = context.sheets[mention.sheet]
             suggestion = f"; is '{_with_other_bracket(attribute)}' meant?"
-            column = sheet.lines[mention.first].rfind("\t") + 2
-            yield sheet.finding(message + suggestion, mention.first, column=column)
+            column = sheet.lines[mention.first_index].rfind("\t") + 2
+            yield sheet.finding(message + suggestion, mention.first_index, column=column)
 
 
 def _reason_to_swap_brackets(

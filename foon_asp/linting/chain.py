@@ -129,8 +129,10 @@ def _lacks_a_state(needed: ObjectNode, made: ObjectNode) -> bool:
     False for nodes that have neither relations nor contents.
     """
     other_parts = needed.relations, needed.contents
-    same = needed.label == made.label and any(other_parts) and other_parts == (made.relations, made.contents)
-    return same and needed.states < made.states and len(made.states - needed.states) == 1
+    is_alike = (
+        needed.label == made.label and any(other_parts) and other_parts == (made.relations, made.contents)
+    )
+    return is_alike and needed.states < made.states and len(made.states - needed.states) == 1
 
 
 def _count_attributes(node: ObjectNode) -> int:

@@ -69,7 +69,7 @@ def find_outputs_from_nothing(context: Context) -> Iterator[Diagnostic]:
             producer = units_by_made_node.get(context.network.objects[node])
             if producer is not None:
                 copy = context.files.copies[producer][0]
-                message += f"; the unit on {context.sheets[copy.sheet].line_name(copy.at)} makes it"
+                message += f"; the unit on {context.sheets[copy.sheet].line_name(copy.first_index)} makes it"
             elif not _is_seldom(habit.make, habit.units):
                 continue
             yield _finding_at(context, unit, 1, node, message)

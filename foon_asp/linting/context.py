@@ -78,11 +78,11 @@ class Context:
     @cached_property
     def sides(self) -> list[Side]:
         """Both sides of each unit, inputs first, in the order of unit ids."""
-        objects, both = self.network.objects, []
+        objects, both_sides = self.network.objects, []
         for unit, sides in enumerate(zip(self.network.inputs, self.network.outputs, strict=True)):
             inputs, outputs = ([objects[node] for node in side] for side in sides)
-            both += [Side(unit, 0, inputs, outputs), Side(unit, 1, outputs, inputs)]
-        return both
+            both_sides += [Side(unit, 0, inputs, outputs), Side(unit, 1, outputs, inputs)]
+        return both_sides
 
     @cached_property
     def chains(self) -> list[Chain]:
@@ -91,7 +91,7 @@ class Context:
 
     def finding_at_unit(self, copy: Copy, message: str) -> Diagnostic:
         """Return a finding at the first line of a copy of a unit."""
-        return self.sheets[copy.sheet].finding(message, copy.at)
+        return self.sheets[copy.sheet].finding(message, copy.first_index)
 
     def finding_at_node(self, copy: Copy, side: int, node: ObjectNode, message: str) -> Diagnostic:
         """Return a finding at the object line of an input (``side`` 0) or output (1) of a copy of a unit."""
@@ -112,9 +112,9 @@ class Context:
         It is the first line of the copy if that side, inputs (0) or outputs (1), does not list the node.
         """
         blocks = self.node_lines(copy)[side]
-        return next((index for index, listed_node in blocks if listed_node == node), copy.at)
+        return next((index for index, listed_node in blocks if listed_node == node), copy.first_index)
 
     def node_lines(self, copy: Copy) -> tuple[list[tuple[int, ObjectNode]], list[tuple[int, ObjectNode]]]:
         """Return the inputs and the outputs of a copy of a unit, each with the index of its object line."""
-        blocks = list(self.sheets[copy.sheet].object_nodes(copy.at))
+        blocks = list(self.sheets[copy.sheet].object_nodes(copy.first_index))
         return blocks[: copy.inputs], blocks[copy.inputs :]

@@ -27,7 +27,7 @@ def find_dead_cycles(context: Context) -> Iterator[Diagnostic]:
         steps = []
         for (_, unit), (node, _) in zip(cycle.steps, (*cycle.steps[1:], cycle.steps[0]), strict=True):
             step_copy = context.files.copies[unit][0]
-            location = sheets[step_copy.sheet].line_name(step_copy.at, sheets[copy.sheet])
+            location = sheets[step_copy.sheet].line_name(step_copy.first_index, sheets[copy.sheet])
             steps.append(f"{network.motions[unit]!r} ({location}) makes {str(network.objects[node])!r}")
         if len(steps) > 4:
             steps[3:-1] = [counted(len(steps) - 4, "more step")]

@@ -72,7 +72,7 @@ def _unmade_marked_goals(sheet: Sheet, context: Context) -> Iterator[Diagnostic]
     A node that is marked several times is reported once.
     """
     tagged = {
-        sheet.lines[written_line.first]
+        sheet.lines[written_line.first_index]
         for written_line in sheet.distinct_lines
         if isinstance(written_line.line, ObjectLine) and written_line.line.is_goal
     }

@@ -36,12 +36,12 @@ def with_tables(paths: Iterable[Path], files: Iterable[Path]) -> list[Path]:
 class Copy(NamedTuple):
     """A copy of a unit in a file.
 
-    ``sheet`` is the number of its sheet, ``at`` the index of its first line. ``inputs`` and ``outputs`` are
-    the numbers of nodes that it lists.
+    ``sheet`` is the number of its sheet, ``first_index`` the index of its first line. ``inputs`` and
+    ``outputs`` are the numbers of nodes that it lists.
     """
 
     sheet: int
-    at: int
+    first_index: int
     inputs: int
     outputs: int
 

@@ -115,10 +115,12 @@ def _unlisted_name_findings(
         alike = " or ".join(map(repr, names.similar_labels(name)))
         if not alike and all(word in vocabulary.words for word in name.lower().replace("-", " ").split()):
             continue
-        first = min(bracketed, key=lambda mention: (mention.sheet, mention.first))
+        first = min(bracketed, key=lambda mention: (mention.sheet, mention.first_index))
         sheets = len({mention.sheet for mention in bracketed})
-        often = times(sum(mention.often for mention in bracketed)) + (
+        how_often = times(sum(mention.occurrences for mention in bracketed)) + (
             f" in {sheets} files" if sheets > 1 else ""
         )
-        message = f"{name!r} {role} {often}, and is never an object; {f'is it {alike}?' if alike else advice}"
-        yield context.sheets[first.sheet].finding(message, first.first, name)
+        message = (
+            f"{name!r} {role} {how_often}, and is never an object; {f'is it {alike}?' if alike else advice}"
+        )
+        yield context.sheets[first.sheet].finding(message, first.first_index, name)

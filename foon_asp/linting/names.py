@@ -24,14 +24,14 @@ def is_of_another_network(unknown: int, total: int) -> bool:
 class Mention(NamedTuple):
     """A line with a name.
 
-    ``sheet`` is the number of the sheet. Equal lines of a sheet are one mention: ``first`` is the index of
-    the first of them, ``often`` is how many there are.
+    ``sheet`` is the number of the sheet. Equal lines of a sheet are one mention: ``first_index`` is the index
+    of the first of them, ``occurrences`` is how many there are.
     """
 
     sheet: int
     line: Line
-    first: int
-    often: int
+    first_index: int
+    occurrences: int
 
 
 class Names:
@@ -49,13 +49,13 @@ class Names:
         self.objects: dict[str, int] = {}
         """The number of object lines with each label."""
         for number, sheet in enumerate(files.sheets):
-            for line, index, often in sheet.distinct_lines:
-                mention = Mention(number, line, index, often)
+            for line, index, occurrences in sheet.distinct_lines:
+                mention = Mention(number, line, index, occurrences)
                 for kind, name, _ in dict.fromkeys(line_names(line)):
                     self.mentions[kind].setdefault(name, []).append(mention)
-                    self.counts[kind][name] = self.counts[kind].get(name, 0) + often
+                    self.counts[kind][name] = self.counts[kind].get(name, 0) + occurrences
                 if isinstance(line, ObjectLine):
-                    self.objects[line.label] = self.objects.get(line.label, 0) + often
+                    self.objects[line.label] = self.objects.get(line.label, 0) + occurrences
 
     @cached_property
     def one_sided(self) -> dict[Kind, set[str]]:
@@ -69,9 +69,10 @@ class Names:
             }
             for nodes_by_unit in (network.inputs, network.outputs)
         )
-        both = input_names & output_names
+        two_sided = input_names & output_names
         return {
-            kind: {name for name in names if (kind, name) not in both} for kind, names in self.counts.items()
+            kind: {name for name in names if (kind, name) not in two_sided}
+            for kind, names in self.counts.items()
         }
 
     def similar_labels(self, name: str) -> list[str]:
@@ -100,9 +101,9 @@ class Names:
     def by_sheet(self, kind: Kind, name: str) -> Iterator[tuple[Sheet, int, int]]:
         """Yield each sheet with a name, the index of its first line with it, and the number of such lines."""
         by_sheet: dict[int, tuple[int, int]] = {}
-        for sheet, _, index, often in self.mentions[kind][name]:
+        for sheet, _, index, occurrences in self.mentions[kind][name]:
             first, total = by_sheet.get(sheet, (index, 0))
-            by_sheet[sheet] = min(first, index), total + often
+            by_sheet[sheet] = min(first, index), total + occurrences
         for sheet, first_and_total in by_sheet.items():
             yield self.files.sheets[sheet], *first_and_total
 

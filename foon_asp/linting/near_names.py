@@ -85,7 +85,9 @@ def near_names(
                 sharing.append(name)
     for name in rare_names:
         candidates = {
-            c for shortened in _deletion_neighbourhood(name) for c in frequent.get(shortened, ())
+            candidate
+            for shortened in _deletion_neighbourhood(name)
+            for candidate in frequent.get(shortened, ())
         }.difference({name})
         ordered = sorted(candidates, key=lambda other: (-counts[other], other))
         meant_name = next(

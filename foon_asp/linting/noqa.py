@@ -15,11 +15,11 @@ _COMMENT = re.compile(r"#\s*noqa\b\s*(?P<colon>:?)(?P<codes>.*)", re.IGNORECASE)
 class _Comment(NamedTuple):
     """A ``# noqa`` comment.
 
-    ``at`` is its index in the lines of the sheet. ``line`` is the number, from 1, of the line that it is
-    about. ``codes`` are the codes that it silences; empty for all codes.
+    ``comment_index`` is its index in the lines of the sheet. ``line`` is the number, from 1, of the line that
+    it is about. ``codes`` are the codes that it silences; empty for all codes.
     """
 
-    at: int
+    comment_index: int
     line: int
     codes: tuple[str, ...]
 
@@ -53,12 +53,12 @@ def find_useless_comments(context: Context) -> Iterator[Diagnostic]:
             for code in comment.codes:
                 if code not in RULES:
                     message = f"there is no code {code!r}; this comment does not silence it"
-                    yield sheet.finding(message, comment.at, code)
+                    yield sheet.finding(message, comment.comment_index, code)
             known_codes = sorted(RULES.keys() & comment.codes)
             if (known_codes or not comment.codes) and not any(map(comment.silences, sheet_findings)):
                 silenced = f"no {' or '.join(known_codes)}" if known_codes else "nothing"
                 message = f"there is {silenced} to silence on line {comment.line}; leave the comment out"
-                yield sheet.finding(message, comment.at)
+                yield sheet.finding(message, comment.comment_index)
 
 
 def _commented_sheets(context: Context) -> Iterator[Sheet]:

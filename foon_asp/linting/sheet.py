@@ -25,33 +25,33 @@ _QUOTED = re.compile(r'"((?:[^"\\]|\\(?:["\\/bfnrt]|u[0-9a-fA-F]{4}))*+)("?)')
 class Entry(NamedTuple):
     """An entry of a kitchen or of a list of goals.
 
-    ``at`` is the index of its object line, ``amount`` its stated amount or ``None``.
+    ``object_index`` is the index of its object line, ``amount`` its stated amount or ``None``.
     """
 
     pattern: NodePattern
-    at: int
+    object_index: int
     amount: int | None
 
 
 class WrittenLine(NamedTuple):
     """A line of a sheet, parsed; equal lines are one.
 
-    ``first`` is the index of the first of the equal lines, ``often`` is how many there are.
+    ``first_index`` is the index of the first of the equal lines, ``occurrences`` is how many there are.
     """
 
     line: Line
-    first: int
-    often: int
+    first_index: int
+    occurrences: int
 
 
 class WrittenBlock(NamedTuple):
     """An object as it is written in a sheet.
 
-    ``at`` is the index of its object line. ``attributes`` are the states, relations and contents on the lines
-    below, each with the index of its line.
+    ``object_index`` is the index of its object line. ``attributes`` are the states, relations and contents on
+    the lines below, each with the index of its line.
     """
 
-    at: int
+    object_index: int
     label: str
     attributes: list[tuple[int, str | Relation | Contents]]
 
@@ -86,8 +86,8 @@ class Sheet:
         for index, line in enumerate(self.lines):
             first.setdefault(line, index)
         return [
-            WrittenLine(parsed, first[line], often)
-            for line, often in counts.items()
+            WrittenLine(parsed, first[line], occurrences)
+            for line, occurrences in counts.items()
             if line[:1] in _LETTERS and not isinstance(parsed := self.reader.parse(line), LineError)
         ]
 
@@ -99,7 +99,10 @@ class Sheet:
         for block in self.written_blocks(start):
             if block is None:
                 return
-            yield block.at, node_of(block.label, (attribute for _, attribute in block.attributes))
+            yield (
+                block.object_index,
+                node_of(block.label, (attribute for _, attribute in block.attributes)),
+            )
 
     @cached_property
     def _parsed(self) -> dict[str, Line]:

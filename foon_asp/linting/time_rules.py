@@ -69,7 +69,7 @@ def _timed_steps(sheet: Sheet, copies: list[tuple[Copy, int]]) -> Iterator[_Step
 
     ``copies`` are the copies of units in the sheet, each with the id of its unit.
     """
-    starts = [copy.at for copy, _ in copies]
+    starts = [copy.first_index for copy, _ in copies]
     for index, text in enumerate(sheet.lines):
         if text[:1] == "M" and ":" in text and isinstance(sheet.reader.parse(text), MotionLine):
             spans = _spans(text)

@@ -43,9 +43,10 @@ def find_duplicate_units(context: Context) -> Iterator[Diagnostic]:
             sheet = context.sheets[copy.sheet]
             first = firsts.setdefault(copy.sheet, copy)
             if first is not copy:
+                line = sheet.line_name(first.first_index, sheet)
                 message = (
-                    f"the unit {motion!r} is already on {sheet.line_name(first.at, sheet)}, with the "
-                    "same inputs and outputs; one is enough"
+                    f"the unit {motion!r} is already on {line}, with the same inputs and outputs; "
+                    "one is enough"
                 )
                 yield context.finding_at_unit(copy, message)
 

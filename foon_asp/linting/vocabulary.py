@@ -55,9 +55,9 @@ class Vocabulary:
             if Path(table.file).name == _UTENSILS_FILE:
                 rows += [(UTENSIL, line.strip(), ()) for line in table.lines if line.strip()[:1] not in "#"]
         for word, mentions in names.mentions[Kind.WORD].items():
-            for line, often in ((mention.line, mention.often) for mention in mentions):
+            for line, occurrences in ((mention.line, mention.occurrences) for mention in mentions):
                 if isinstance(line, StateLine) and not line.remarks and not isinstance(line.attribute, str):
-                    rows.append((_BRACKETS[type(line.attribute)], word, [often]))
+                    rows.append((_BRACKETS[type(line.attribute)], word, [occurrences]))
                     if isinstance(line.attribute, Relation) and line.attribute.object in names.objects:
                         rows.append((UTENSIL, line.attribute.object, ()))
         return cls([*rows, *((HABIT, motion, habit) for motion, habit in habits.habits_of_units())])
@@ -134,9 +134,9 @@ class Vocabulary:
 
         It follows the word on at least three lines, and ten times as often as the other kind.
         """
-        for bracket, often in self.brackets(word).items():
-            others = sum(self.brackets(word).values()) - often
-            return bracket if often >= max(3, 10 * others) else None
+        for bracket, occurrences in self.brackets(word).items():
+            others = sum(self.brackets(word).values()) - occurrences
+            return bracket if occurrences >= max(3, 10 * others) else None
         return None
 
     def text(self) -> str:
@@ -151,7 +151,9 @@ def words_of(name: str) -> Iterator[str]:
     Words with other characters than letters are left out.
     """
     if not name.isascii():
-        name = "".join(c for c in unicodedata.normalize("NFD", name) if not unicodedata.combining(c))
+        name = "".join(
+            letter for letter in unicodedata.normalize("NFD", name) if not unicodedata.combining(letter)
+        )
     return (word for word in name.lower().replace("-", " ").split(" ") if word.isalpha())
 
 

@@ -187,7 +187,7 @@ class StoreBuilder:
         create_indexes(self._database)
         self._write_starting()
         all_prices = {**prices_by_id[0], **prices_by_id[1]}
-        about: dict[str, Any] = {
+        properties: dict[str, Any] = {
             "units": units,
             "objects": objects,
             "kitchen": self._kitchen is not None,
@@ -208,7 +208,7 @@ class StoreBuilder:
                 all_prices if all_prices or prices else None,
             ),
         }
-        for name, value in about.items():
+        for name, value in properties.items():
             self._insert("about", name, encode_json(value))
         self._write_all_rows()
 
@@ -234,22 +234,22 @@ class StoreBuilder:
 
     def _node_id(self, node: ObjectNode) -> int:
         """Return the id of a node; a new node is added to the store."""
-        number = self._latest.get(node)
-        if number is None:
+        node_id = self._latest.get(node)
+        if node_id is None:
             label = self._labels.get(node.label)
             if label is None:
                 label = self._labels[node.label] = len(self._labels)
                 self._insert("label", label, encode_label(node.label))
             columns = attribute_columns(*node[1:])
             attributes = self._attributes.setdefault("".join(columns), len(self._attributes))
-            new = len(self._nodes)
-            number = self._nodes.setdefault((label, attributes), new)
-            if number == new:
-                self._insert("node", number, label, *columns, int(self._matches_kitchen(number, node)), 0)
+            new_id = len(self._nodes)
+            node_id = self._nodes.setdefault((label, attributes), new_id)
+            if node_id == new_id:
+                self._insert("node", node_id, label, *columns, int(self._matches_kitchen(node_id, node)), 0)
             if len(self._latest) >= STORE.cached_nodes:
                 self._latest.clear()
-            self._latest[node] = number
-        return number
+            self._latest[node] = node_id
+        return node_id
 
     def _added_id(self, node: ObjectNode) -> int | None:
         """Return the id of a node that was added, or ``None`` if it was not."""
@@ -257,7 +257,7 @@ class StoreBuilder:
         attributes = self._attributes.get("".join(attribute_columns(*node[1:])))
         return None if label is None or attributes is None else self._nodes.get((label, attributes))
 
-    def _matches_kitchen(self, number: int, node: ObjectNode) -> bool:
+    def _matches_kitchen(self, node_id: int, node: ObjectNode) -> bool:
         """Whether a node matches entries of the kitchen file.
 
         Records these entries as matched, and the amount of the last one as the stock of the node.
@@ -270,28 +270,28 @@ class StoreBuilder:
                     if item.pattern.matches(node):
                         matches = self.matched[entry] = True
                         if item.amount is not None:
-                            self._stock[number] = item.amount
+                            self._stock[node_id] = item.amount
         return matches
 
-    def _read_node(self, number: int) -> ObjectNode:
+    def _read_node(self, node_id: int) -> ObjectNode:
         """Read the node with an id from the database."""
         label, *columns = self._database.execute(
             "SELECT name, states, relations, contents FROM node JOIN label ON label.id = label "
             "WHERE node.id = ?",
-            (number,),
+            (node_id,),
         ).fetchone()
         return decode_node(decode_label(label), *columns)
 
     def _origin_id(self, file: str, videos: tuple[str, ...]) -> int:
         """Return the id of a file together with its videos; a new pair is added to the store."""
-        number = self._origins.get((file, videos))
-        if number is None:
-            number = self._origins[file, videos] = len(self._origins)
+        origin_id = self._origins.get((file, videos))
+        if origin_id is None:
+            origin_id = self._origins[file, videos] = len(self._origins)
             if file not in self._files:
                 self._files[file] = len(self._files)
                 self._insert("file", self._files[file], json_string(file))
-            self._insert("origin", number, self._files[file], json_list(videos))
-        return number
+            self._insert("origin", origin_id, self._files[file], json_list(videos))
+        return origin_id
 
     def _write_starting(self) -> None:
         """Write the starting kitchen: the union of the starting kitchens of the files.

@@ -62,9 +62,9 @@ def content_digests(
     )
     prices = "null"
     if motions is not None or priced is not None:
-        single = ([unit, str(price)] for unit, price in sorted((priced or {}).items()))
+        sorted_unit_prices = ([unit, str(price)] for unit, price in sorted((priced or {}).items()))
         prices = encode_json(
-            [sorted([motion, str(price)] for motion, price in (motions or {}).items()), [*single]]
+            [sorted([motion, str(price)] for motion, price in (motions or {}).items()), [*sorted_unit_prices]]
         )
     return {
         "network": _digest_of_lists("3", *network),

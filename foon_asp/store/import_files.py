@@ -74,14 +74,14 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
             for file in files.network:
                 if is_store(file):
                     raise UserError(f"{file}: is a store already; merge the files that it was made from")
-                last: tuple[int, Source] | None = None
+                last_unit: tuple[int, Source] | None = None
                 for motion, inputs, outputs, sources, _ in reader.file_units(file):
-                    added = builder.add(motion, inputs, outputs, sources)
-                    last = (added, sources[0]) if outputs else last
+                    unit_id = builder.add(motion, inputs, outputs, sources)
+                    last_unit = (unit_id, sources[0]) if outputs else last_unit
                     if motion in counted_motions:
                         counted_units[FunctionalUnit.of(motion, inputs, outputs)] = None
-                if last:
-                    last_units.setdefault(*last)
+                if last_unit:
+                    last_units.setdefault(*last_unit)
             reader.raise_errors(earlier_warnings)
             goals_from = ""
             if files.goals is None:
@@ -152,14 +152,14 @@ def _new_database(store: Path) -> Iterator[sqlite3.Connection]:
         append_digest(partial)
         with partial.open("rb+") as file:
             os.fsync(file.fileno())
-        old = None
+        replaced = None
         if store.exists():
             with store.open("rb+"):  # may it be written? Renaming asks the folder alone
-                old = store.stat()
-            pass_on(old, partial)
+                replaced = store.stat()
+            pass_on(replaced, partial)
         partial.replace(store)
-        if old is not None:
-            warn_of_replaced(store, old)
+        if replaced is not None:
+            warn_of_replaced(store, replaced)
     finally:
         database.close()
         if locked:

@@ -91,8 +91,8 @@ class Outline:
         """
         mask = self._named_masks.get(word)
         if mask is None:
-            holds = self.node_mask(self._nodes_where("instr(contents, ?)", json_string(word)))
-            mask = self._named_masks[word] = self.labelled_nodes((word,)) | holds
+            may_contain = self.node_mask(self._nodes_where("instr(contents, ?)", json_string(word)))
+            mask = self._named_masks[word] = self.labelled_nodes((word,)) | may_contain
         return mask
 
     def units_with_traits(self, traits: Iterable[Trait], kitchen: Mask) -> Mask:
@@ -146,11 +146,11 @@ class Outline:
         while True:
             if limit is not None:
                 max_distance = min(max_distance, limit(distances))
-            closer = (new_distances <= max_distance) & (new_distances < distances[units])
-            units = units[closer]
+            is_closer = (new_distances <= max_distance) & (new_distances < distances[units])
+            units = units[is_closer]
             if not len(units):
                 return distances
-            distances[units] = new_distances[closer]
+            distances[units] = new_distances[is_closer]
             positions, owners = self.outputs.positions_of(units)
             made = self.outputs.entries[positions]
             previous = node_distances[made]
@@ -173,8 +173,8 @@ class Outline:
         new = np.flatnonzero(mask)
         while len(new):
             needed = self.inputs.entries_of_all(new)
-            makers = self._producers.entries_of_all(needed[~available[needed]])
-            new = makers[candidates[makers] & ~mask[makers]]
+            producers_of_needed = self._producers.entries_of_all(needed[~available[needed]])
+            new = producers_of_needed[candidates[producers_of_needed] & ~mask[producers_of_needed]]
             mask[new] = True
         return mask
 

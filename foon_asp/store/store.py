@@ -79,15 +79,16 @@ class Store:
     @reporting_damage
     def _read_properties(self) -> None:
         """Read the sizes and remarks of the store, and whether it has a kitchen and prices."""
-        about = self.file.about
+        read_property = self.file.about
         self.unit_count, self.object_count, self.left_out = (
-            int(about(n)) for n in ("units", "objects", "left_out")
+            int(read_property(name)) for name in ("units", "objects", "left_out")
         )
-        self.has_kitchen = bool(about("kitchen"))  # or an empty one
-        self.has_unit_prices = bool(about("unit_prices"))
-        self.goals_from = str(about("goals_from"))  # empty where the goals are from a file
+        self.has_kitchen = bool(read_property("kitchen"))  # or an empty one
+        self.has_unit_prices = bool(read_property("unit_prices"))
+        self.goals_from = str(read_property("goals_from"))  # empty where the goals are from a file
         self.repeated = tuple(
-            RepeatedNode(node, Source(file, line, column)) for node, file, line, column in about("repeated")
+            RepeatedNode(node, Source(file, line, column))
+            for node, file, line, column in read_property("repeated")
         )
 
     def close(self) -> None:

@@ -94,9 +94,9 @@ class StoreFile:
             raise UserError(f"{self.file}: the store was closed; open it again to read from it") from None
         self.raise_damaged(str(error) or type(error).__name__)
 
-    def raise_damaged(self, what: str) -> NoReturn:
-        """Raise :class:`UserError` for a damaged store; ``what`` describes the damage."""
-        raise UserError(f"{self.file}: the store is damaged ({what}); import its source files again")
+    def raise_damaged(self, damage: str) -> NoReturn:
+        """Raise :class:`UserError` for a damaged store; ``damage`` describes the damage."""
+        raise UserError(f"{self.file}: the store is damaged ({damage}); import its source files again")
 
     def _check_header(self) -> None:
         """Raise :class:`UserError` for a file that is no store of this version, or not of its stated size.
