@@ -89,7 +89,7 @@ def find_misread_lines(context: Context) -> Iterator[Diagnostic]:
     the line is wrong.
     """
     names, vocabulary = context.names, context.vocabulary
-    states, objects = names.counts[Kind.STATE], names.objects
+    states, objects = names.counts[Kind.STATE], names.object_counts
     for state in states:
         if meant := _suggested_attribute(state, context):
             for sheet, index, _ in names.by_sheet(Kind.STATE, state):

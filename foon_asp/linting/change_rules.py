@@ -20,7 +20,7 @@ def _is_seldom(count: int, total: int) -> bool:
 def _units_with_habits(context: Context) -> Iterator[tuple[int, str, Changes, Habit]]:
     """Yield the id of each unit, its motion, its changes, and the habit of all units with this motion."""
     for unit, motion in enumerate(context.network.motions):
-        yield unit, motion, context.habits.units[unit], context.all_names.habit(motion)
+        yield unit, motion, context.habits.changes_by_unit[unit], context.all_names.habit(motion)
 
 
 def _finding_at(context: Context, unit: int, side: int, node: int, message: str) -> Diagnostic:

@@ -78,7 +78,7 @@ class Habits:
         )
 
     @cached_property
-    def units(self) -> list[Changes]:
+    def changes_by_unit(self) -> list[Changes]:
         """The changes of each unit, by its id."""
         return [self.changes(unit) for unit in range(len(self.network))]
 
@@ -142,7 +142,7 @@ class Habits:
 
     def habits_of_units(self) -> Iterator[tuple[str, Habit]]:
         """Yield for each unit its motion, and a habit in which this unit alone is counted."""
-        for motion, changes in zip(self.network.motions, self.units, strict=True):
+        for motion, changes in zip(self.network.motions, self.changes_by_unit, strict=True):
             changed = changes.keeps, changes.lost, changes.gained, changes.new, changes.gone
             yield motion, Habit(1, *(int(bool(names)) for names in changed))
 

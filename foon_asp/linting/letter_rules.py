@@ -33,15 +33,14 @@ def find_ambiguous_letters(context: Context) -> Iterator[Diagnostic]:
         if not line.startswith("#") and not _PLAIN.fullmatch(line)
     ]
     spelt = Counter(word for _, _, line in odd_lines for word in _LETTERS_OF_WORD.findall(line))
-    usual: dict[
-        str, str
-    ] = {}  # of the forms of a word, by its composed form, which is usual if all are as rare
+    # the most frequent form of each word, by its composed form, which comes first among equally frequent ones
+    usual_forms: dict[str, str] = {}
     for word in sorted(spelt, key=lambda form: (spelt[form], unicodedata.is_normalized("NFC", form))):
-        usual[unicodedata.normalize("NFC", word)] = word
+        usual_forms[unicodedata.normalize("NFC", word)] = word
     for sheet, index, line in odd_lines:
         faults = [_invisible_character_fault(line), _mixed_script_fault(line)]
         for word in dict.fromkeys(_LETTERS_OF_WORD.findall(line)):
-            if word != usual[unicodedata.normalize("NFC", word)]:
+            if word != usual_forms[unicodedata.normalize("NFC", word)]:
                 message = (
                     f"{word!r} looks the same elsewhere, where its accents are other characters; the names "
                     "differ, so copy the word from there"

@@ -41,6 +41,10 @@ def lint_context(context: Context) -> list[Diagnostic]:
             context.findings += rule.findings(context)
     findings = [*unsilenced(context), *CATALOG[_ABOUT_FINDINGS].findings(context)]
     order = {sheet.file: number for number, sheet in enumerate([*context.sheets, *context.files.tables])}
-    return sorted(
-        findings, key=lambda f: (order.get(f.source.file, 0), f.source.line, f.source.column, f.code)
-    )
+
+    def sort_key(finding: Diagnostic) -> tuple[int, int, int, str]:
+        """Return the position of the file of a finding, its line, its column, and its code."""
+        source = finding.source
+        return order.get(source.file, 0), source.line, source.column, finding.code
+
+    return sorted(findings, key=sort_key)

@@ -37,8 +37,8 @@ def _near_name_findings(context: Context, kind: Kind, name: str, meant: str) -> 
     # two names that stand equally often: which one is wrong?
     rename = Rename(kind, name, meant) if counts[meant] > counts[name] or is_slip else None
     roles = ""
-    if kind is Kind.OBJECT and (name in names.objects) != (meant in names.objects):
-        unlisted = name if meant in names.objects else meant
+    if kind is Kind.OBJECT and (name in names.object_counts) != (meant in names.object_counts):
+        unlisted = name if meant in names.object_counts else meant
         roles = f", and {unlisted!r} is never an object of its own"
     for sheet, index, count in names.by_sheet(kind, name):
         others = "" if count == counts[name] else f" ({times(count)} in this file)"
@@ -101,7 +101,7 @@ def _unlisted_name_findings(
     """
     names, vocabulary = context.names, context.vocabulary
     for name, mentions in names.mentions[Kind.OBJECT].items():
-        if name in names.objects or (Kind.OBJECT, name) in context.paired_names:
+        if name in names.object_counts or (Kind.OBJECT, name) in context.paired_names:
             continue
         bracketed = [
             mention

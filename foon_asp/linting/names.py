@@ -46,7 +46,7 @@ class Names:
         self.network = files.network
         self.mentions: dict[Kind, dict[str, list[Mention]]] = {kind: {} for kind in Kind}
         self.counts: dict[Kind, dict[str, int]] = {kind: {} for kind in Kind}
-        self.objects: dict[str, int] = {}
+        self.object_counts: dict[str, int] = {}
         """The number of object lines with each label."""
         for number, sheet in enumerate(files.sheets):
             for line, index, occurrences in sheet.distinct_lines:
@@ -55,7 +55,7 @@ class Names:
                     self.mentions[kind].setdefault(name, []).append(mention)
                     self.counts[kind][name] = self.counts[kind].get(name, 0) + occurrences
                 if isinstance(line, ObjectLine):
-                    self.objects[line.label] = self.objects.get(line.label, 0) + occurrences
+                    self.object_counts[line.label] = self.object_counts.get(line.label, 0) + occurrences
 
     @cached_property
     def one_sided(self) -> dict[Kind, set[str]]:
@@ -92,7 +92,7 @@ class Names:
         The labels with an ending are in order, the most frequent first.
         """
         endings: dict[str, list[str]] = {}
-        for label in sorted(self.objects, key=lambda label: (-self.objects[label], label)):
+        for label in sorted(self.object_counts, key=lambda label: (-self.object_counts[label], label)):
             words = _singular(label).split(" ")
             for start in {0, *range(max(1, len(words) - 4), len(words))}:
                 endings.setdefault(" ".join(words[start:]), []).append(label)

@@ -202,7 +202,9 @@ def _is_slip(
 def _is_rare_enough(word: str, other: str, rare: int, frequent: int) -> bool:
     """Whether a word is so much rarer than a similar word that it is probably a slip.
 
-    ``rare`` and ``frequent`` are the numbers of mentions of the names with these words.
+    ``rare`` and ``frequent`` are the numbers of mentions of the names with these words. The ratio that is
+    needed depends on the length of the words and on their difference: swapped letters, a changed letter, or a
+    missing one.
     """
     # Short words, and words with another letter, are mostly words of their own: dip, drip; batter, butter.
     shortest, ratio = min(len(word), len(other)), frequent / rare

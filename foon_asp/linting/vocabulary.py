@@ -58,7 +58,7 @@ class Vocabulary:
             for line, occurrences in ((mention.line, mention.occurrences) for mention in mentions):
                 if isinstance(line, StateLine) and not line.remarks and not isinstance(line.attribute, str):
                     rows.append((_BRACKETS[type(line.attribute)], word, [occurrences]))
-                    if isinstance(line.attribute, Relation) and line.attribute.object in names.objects:
+                    if isinstance(line.attribute, Relation) and line.attribute.object in names.object_counts:
                         rows.append((UTENSIL, line.attribute.object, ()))
         return cls([*rows, *((HABIT, motion, habit) for motion, habit in habits.habits_of_units())])
 
