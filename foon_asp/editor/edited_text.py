@@ -32,7 +32,10 @@ class EditedText:
         return Path(re.sub("^/(?=[A-Za-z]:)", "", path) if scheme == "file" else "untitled")
 
     def requested_position(self, parameters: object) -> tuple[int, int]:
-        """Return line and letter of the position in the parameters of a request."""
+        """Return line and letter of the position in the parameters of a request.
+
+        A position below the text is in its last line.
+        """
         line = min(parameter(parameters, "position.line", int), len(self.lines) - 1)
         column = parameter(parameters, "position.character", int)
         code_units = self.lines[line].encode("utf-16-le", "surrogatepass")[: 2 * column]

@@ -154,7 +154,7 @@ def _comes_from_any(node: ObjectNode, places: AbstractSet[str]) -> bool:
 
 
 def _is_named_by_state(name: str, nodes: Collection[ObjectNode]) -> bool:
-    """Whether a state of a node begins like a word of ``name``: the state salted for the name salt."""
+    """Whether a word in a state of a node begins like a word of ``name``: salted for the name salt."""
     words = [word for node in nodes for state in node.states for word in state.split(" ")]
     return any(word.startswith(name_word[:_STEM]) for name_word in words_in([name]) for word in words)
 

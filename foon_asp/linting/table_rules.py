@@ -39,7 +39,7 @@ def find_unknown_rows(context: Context) -> Iterator[Diagnostic]:
 
     The tables are those of rates, durations, prices, amounts, utensils and tools. A row of amounts is also
     reported if no unit with its motion takes, or makes, its node. Utensils that the vocabulary has are not
-    reported.
+    reported. If most names of a table are unknown, a single finding reports them all.
     """
     for sheet in context.files.tables if len(context.network) else ():
         kind = TABLES[Path(sheet.file).name].names

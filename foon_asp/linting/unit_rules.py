@@ -135,7 +135,7 @@ def _exclude_each_other(labels: set[str], first: _Attribute, second: _Attribute)
     """Whether two attributes exclude each other: both have the same word, or both are places.
 
     Places are relations such as ``in`` or ``on`` to objects with one of ``labels``. Equal attributes do not
-    exclude each other.
+    exclude each other, nor do a relation and contents.
     """
     if isinstance(first, Contents) and isinstance(second, Contents):
         return first.word == second.word and first != second
