@@ -14,11 +14,11 @@ from foon_asp.cli.output_file import check_outputs, refuse_inputs
 from foon_asp.cli.shown_diff import show_diff
 from foon_asp.errors import UserError
 from foon_asp.linting.baseline import Baseline, check_replaceable
-from foon_asp.linting.catalog import CATALOG, unknown_code
+from foon_asp.linting.catalog import CATALOG, unknown_code_message
 from foon_asp.linting.context import Context
 from foon_asp.linting.example import example
 from foon_asp.linting.linted_files import LintedFiles
-from foon_asp.linting.mending import is_mendable, mended
+from foon_asp.linting.mending import is_mendable, mend
 from foon_asp.linting.vocabulary import Vocabulary
 from foon_asp.network import counted
 from foon_asp.questions.lint import Findings, Linted, find_findings, linted_files
@@ -42,7 +42,7 @@ def _explain(context: click.Context, _: click.Parameter, code: str | None) -> No
     if code is None or context.resilient_parsing:
         return
     if code not in CATALOG:
-        raise UserError(unknown_code(code))
+        raise UserError(unknown_code_message(code))
     write_parts(rule_page(CATALOG[code], example(code)))
     context.exit()
 
@@ -234,7 +234,7 @@ def _repair(found: Findings, contents: Mapping[Path, bytes], unsafe: bool) -> _R
         if file not in contents and not file.is_file():
             raise UserError(f"{file}: not a file that can be written; --fix repairs files in place")
         before = contents[file] if file in contents else read_content(file)
-        repaired[file] = before, mended(before, fixes[str(file)], unsafe)
+        repaired[file] = before, mend(before, fixes[str(file)], unsafe)
     return repaired
 
 

@@ -4,7 +4,7 @@ import click
 
 from foon_asp.cli import shared_options
 from foon_asp.cli.exit_code import ExitCode
-from foon_asp.editor.language_server import serve
+from foon_asp.editor.language_server import serve_editor
 
 
 @click.command("lsp")
@@ -18,4 +18,4 @@ def command() -> ExitCode:
 
     Exits with 0 when the editor ends it.
     """
-    return ExitCode.DONE if serve() else ExitCode.NEGATIVE
+    return ExitCode.DONE if serve_editor() else ExitCode.NEGATIVE

@@ -52,7 +52,7 @@ def _serve(question: dict[str, Any], data: dict[str, Any], deadline: Deadline) -
     try:
         from foon_asp.serve.desk import Desk
         from foon_asp.serve.form import Form
-        from foon_asp.serve.server import serve
+        from foon_asp.serve.server import serve_desk
     except ImportError as error:
         raise UserError(f"--serve needs more packages ({error}): pip install 'foon-asp[view]'") from None
     dataset = shared_options.read_dataset(**data)
@@ -75,5 +75,5 @@ def _serve(question: dict[str, Any], data: dict[str, Any], deadline: Deadline) -
     assemble(rules, functools.partial(click.echo, err=True), problem=example)
     used_up = items_of(dataset, question["items"], question["stock"], question["stays"])
     desk = Desk(Foon(dataset, "the data"), form, deadline.seconds, deadline.memory, rules, used_up)
-    serve(desk, lambda address: click.echo(f"{address}\nopen this in a browser; ctrl-C ends it"))
+    serve_desk(desk, lambda address: click.echo(f"{address}\nopen this in a browser; ctrl-C ends it"))
     return ExitCode.DONE

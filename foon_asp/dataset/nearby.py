@@ -54,7 +54,7 @@ class Nearby:
 
     def copied(self) -> "Nearby":
         """Return a copy with the same units read; reading more units in one does not affect the other."""
-        other = Nearby(self.data, self._cone.copied(), self.containers)
+        other = Nearby(self.data, self._cone.copy(), self.containers)
         other._problem, other._relaxed = self._problem, self._relaxed
         return other
 

@@ -101,7 +101,9 @@ class _Search:
             if distances is None:
                 return None
             requests = rules.wanted
-            kinds = None if requests is None else [distances.matching(request.rows) for request in requests]
+            kinds = (
+                None if requests is None else [distances.units_matching(request.rows) for request in requests]
+            )
         if requests is None or kinds is None:  # the rules depend only on the units of a tree
             tree = self._solved(nearby.problem)
         else:
@@ -137,7 +139,7 @@ class _Search:
         tree = _numbers(self._unconstrained)
         for max_units, max_steps in NEARBY.widths:
             with self._settings.begun.watched("reading"):
-                units, least_distances = distances.nearest(kinds, tree, max_units, max_steps)
+                units, least_distances = distances.nearest_units(kinds, tree, max_units, max_steps)
                 problem = self._nearby.among({*tree, *units})
             outcome = self._solved(problem)
             if outcome.units is not None or outcome.stopped:
@@ -162,7 +164,7 @@ class _Search:
         max_cost = self._max_far_cost(tree.costs)
         with self._settings.begun.watched("reading"):
             near_units = self._read_near_units(tree.costs)
-            far_units = [] if near_units is None else distances.relevant(kinds, near_units, max_cost)
+            far_units = [] if near_units is None else distances.relevant_units(kinds, near_units, max_cost)
             if near_units is None or len(far_units) > NEARBY.max_units:
                 return None
             return self._nearby.among({*near_units, *far_units, *_numbers(tree)})

@@ -38,14 +38,14 @@ class StoreSource(Source):
         """Take an open store, and the rows of a table of amounts that replace imported amounts."""
         self._table = unit_amounts
         self.names, self.seconds = store, 0.0
-        self.unit_count, self.left_out, self.repeated = store.units, store.left_out, store.repeated
+        self.unit_count, self.left_out, self.repeated = store.unit_count, store.left_out, store.repeated
         self.kitchen = StoredIds(store, "kitchen")
         self.prices = DataPrices(store.motion_prices, {}, from_file=True)
         self._starting = StoredStartingKitchen(store)
 
     @cached_property
     def _amounts_and_unmatched(self) -> tuple[DataAmounts, list[Diagnostic]]:
-        units = self.names.with_motions({row.name[0] for row in self._table}) if self._table else ()
+        units = self.names.units_with_motions({row.name[0] for row in self._table}) if self._table else ()
         return apply_amount_table(self.names.amounts, self._table, units)
 
     @property
@@ -82,7 +82,7 @@ class StoreSource(Source):
     @cached_property
     def _whole(self) -> tuple[Network, frozenset[int]]:
         with self._timed():
-            return self.names.whole()
+            return self.names.read_whole()
 
     def whole(self) -> Network:
         """Read the whole network."""
@@ -107,7 +107,7 @@ class StoreSource(Source):
     def part(self, units: Iterable[int], objects: Iterable[int]) -> Network:
         """Read a network that has the given units with their nodes, and the given further nodes."""
         with self._timed():
-            return self.names.part(units, objects)
+            return self.names.read_part(units, objects)
 
     def unit_distances(
         self,
@@ -123,7 +123,7 @@ class StoreSource(Source):
         from foon_asp.store.unit_distances import UnitDistances  # noqa: PLC0415 (few answers need numpy)
 
         outline = self.names.outline
-        available, skipped = outline.nodes(kitchen), outline.labelled(utensils)
+        available, skipped = outline.node_mask(kitchen), outline.labelled_nodes(utensils)
         return UnitDistances(outline, available, skipped, rates, objective)
 
     def true_digests(self) -> dict[str, str]:

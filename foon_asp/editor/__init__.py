@@ -1,1 +1,1 @@
-"""FOON text in an editor: a language server."""
+"""A language server, which checks FOON text in an editor."""

@@ -11,7 +11,7 @@ from foon_asp.editor.field import NAME_KINDS, Field, field_at
 from foon_asp.editor.json_rpc import ErrorCode, RequestError, parameter
 from foon_asp.errors import UserError
 from foon_asp.linting.names import Names
-from foon_asp.linting.noqa import silencing
+from foon_asp.linting.noqa import silencing_comment
 from foon_asp.linting.sheet import Sheet
 from foon_asp.network import Contents, ObjectNode, counted
 from foon_asp.text.data_folder import kitchen_file
@@ -37,7 +37,7 @@ _LINE_HEADS = {
 
 
 def diagnostics(checked: CheckedText) -> list[Json]:
-    """Return all findings of lint as diagnostics of the protocol."""
+    """Return all findings of lint as diagnostics of the protocol; each covers the field at its column."""
     reported = []
     for line, finding in checked.findings:
         start = max(0, finding.source.column - 1)
@@ -55,12 +55,16 @@ def diagnostics(checked: CheckedText) -> list[Json]:
 
 
 def completion(text: EditedText, names: Names, parameters: object) -> Json:
-    """Return completions at a position: names of the kinds that may be there, the most frequent first."""
-    line, letter = text.position_of(parameters)
+    """Return the completions at the position in the parameters of a request.
+
+    These are the names of the kinds that may stand there, the most frequent first. At the beginning of a
+    line, they are those of :func:`_line_head_items`.
+    """
+    line, letter = text.requested_position(parameters)
     content = text.lines[line]
     field = field_at(content, letter)
     if field is None:
-        return {"isIncomplete": False, "items": _line_heads(text, line, letter, names)}
+        return {"isIncomplete": False, "items": _line_head_items(text, line, letter, names)}
     typed = content[field.start : letter]
     folded = typed.casefold()
     matches = [
@@ -70,20 +74,26 @@ def completion(text: EditedText, names: Names, parameters: object) -> Json:
         if folded in name.casefold() and (name != typed or count > 1)  # one mention is the one being typed
     ]
     items = [
-        _item(text, line, field, names, kind, name) | {"sortText": f"{number:03}"}
+        _completion_item(text, line, field, names, kind, name) | {"sortText": f"{number:03}"}
         for number, (_, _, kind, name) in enumerate(sorted(matches)[:_MAX_ITEMS])
     ]
     return {"isIncomplete": len(matches) > _MAX_ITEMS, "items": items}
 
 
-def _item(text: EditedText, line: int, field: Field, names: Names, kind: NameKind, name: str) -> Json:
-    """Return the completion item of a name, which adds its id where the line has none."""
+def _completion_item(
+    text: EditedText, line: int, field: Field, names: Names, kind: NameKind, name: str
+) -> Json:
+    """Return the completion item of a name in a field of a line.
+
+    If the head of the line lacks an id, the item adds the most frequent id of the name. After a word of
+    relations at the end of the line, it adds a tab and the more frequent bracket.
+    """
     count, mentions = names.counts[kind][name], names.mentions[kind][name]
-    ids = _ids(names, kind, name)
+    ids = _id_counts(names, kind, name)
     id_ = "" if field.id is None else max(ids, key=ids.__getitem__, default="")
     bracket = ""
     if kind is NameKind.WORD and field.end == len(text.lines[line]):
-        holding = sum(mention.often for mention in mentions if _is_contents(mention.line))
+        holding = sum(mention.occurrences for mention in mentions if _is_contents(mention.line))
         bracket = "\t{" if 2 * holding > count else "\t["
     item: Json = {
         "label": name,
@@ -97,20 +107,25 @@ def _item(text: EditedText, line: int, field: Field, names: Names, kind: NameKin
 
 
 def _is_contents(line: Line) -> bool:
+    """Whether a line has contents, in ``{ }``."""
     return isinstance(line, StateLine) and isinstance(line.attribute, Contents)
 
 
-def _ids(names: Names, kind: NameKind, name: str) -> Counter[str]:
-    """Return how often a name has each of its ids."""
+def _id_counts(names: Names, kind: NameKind, name: str) -> Counter[str]:
+    """Return how many lines have a name with each of its ids."""
     ids: Counter[str] = Counter()
     for mention in names.mentions[kind].get(name, ()):
         if mention.line.id and next(line_names(mention.line))[:2] == (kind, name):
-            ids[mention.line.id] += mention.often
+            ids[mention.line.id] += mention.occurrences
     return ids
 
 
-def _line_heads(text: EditedText, line: int, letter: int, names: Names) -> list[Json]:
-    """Return completions of the beginning of a line; after O, S or M and digits, names with such an id."""
+def _line_head_items(text: EditedText, line: int, letter: int, names: Names) -> list[Json]:
+    """Return completions of the beginning of a line: ``O``, ``S``, ``M`` and their tabs, or ``//``.
+
+    After a letter and digits, they are the names whose id begins with these digits. JSON has no completions,
+    and neither has a line with text after the position.
+    """
     content = text.lines[line]
     if text.is_json or content[letter:].strip():
         return []
@@ -120,7 +135,7 @@ def _line_heads(text: EditedText, line: int, letter: int, names: Names) -> list[
             (id_, name, kind)
             for kind in NAME_KINDS[head]
             for name in names.counts[kind]
-            for id_ in _ids(names, kind, name)
+            for id_ in _id_counts(names, kind, name)
             if id_.startswith(digits)
         )
         heads = [
@@ -146,12 +161,13 @@ def _line_heads(text: EditedText, line: int, letter: int, names: Names) -> list[
 
 
 def _hover(checked: CheckedText, parameters: object) -> Json | None:
-    """Return a hover on the node of a line: its achievers and consumers, and whether it is available.
+    """Return a hover text on the node of a line: its achievers, its consumers, and whether it is available.
 
-    ``None`` outside of nodes. Without a kitchen in the file's folder, a node that no unit makes is available.
+    ``None`` outside of nodes. The kitchen in the folder of the file is read. Without one, a node that no unit
+    makes counts as available.
     """
     text = checked.text
-    line, letter = text.position_of(parameters)
+    line, letter = text.requested_position(parameters)
     node = _node_at(checked, line)
     if node is None:
         return None
@@ -163,31 +179,35 @@ def _hover(checked: CheckedText, parameters: object) -> Json | None:
         if file := kitchen_file(text.file.parent):
             in_kitchen = any(entry.pattern.matches(node) for entry in read_object_list(file))
             availability = "available: it is in the kitchen" if in_kitchen else "not in the kitchen"
-    paragraphs = [f"**{_plain(str(node))}**", f"made by {_units(achievers)}"]
-    paragraphs += [f"needed by {_units(consumers)}", availability]
+    paragraphs = [f"**{_escape_markdown(str(node))}**", f"made by {_units_text(achievers)}"]
+    paragraphs += [f"needed by {_units_text(consumers)}", availability]
     field = field_at(text.lines[line], letter)
     if field and (count := checked.names.counts[field.kinds[0]].get(field.name)):
-        paragraphs.append(f"{field.kinds[0]} '{_plain(field.name)}': {counted(count, 'time')}")
+        paragraphs.append(f"{field.kinds[0]} '{_escape_markdown(field.name)}': {counted(count, 'time')}")
     return {"contents": {"kind": "markdown", "value": "\n\n".join(paragraphs)}}
 
 
 def _node_at(checked: CheckedText, line: int) -> ObjectNode | None:
-    """Return the object node that a line is part of, or ``None``."""
+    """Return the object node to which a line belongs, or ``None``."""
     lines = checked.text.lines
     while line > 0 and lines[line][:1] in {"S", "#", ""}:
         line -= 1
-    blocks = Sheet("", lines, checked.names.files.reader).blocks(line)
+    blocks = Sheet("", lines, checked.names.files.reader).object_nodes(line)
     return next((node for start, node in blocks if start == line), None)
 
 
 def _achievers_and_consumers(
     checked: CheckedText, node: ObjectNode
 ) -> tuple[list[_UnitLine], list[_UnitLine]]:
-    """Return the units that make a node and do not need it, and the units that need it."""
+    """Return the units that make a node without needing it, and the units that need it.
+
+    They are in the order of their lines, once for each copy; empty if no unit has the node.
+    """
     network, copies = checked.names.network, checked.names.files.copies
 
     def lines_of(units: Iterable[int]) -> list[_UnitLine]:
-        return sorted((copy.at, network.motions[unit]) for unit in units for copy in copies[unit])
+        """Return the first line and the motion of each copy of units, in order."""
+        return sorted((copy.first_index, network.motions[unit]) for unit in units for copy in copies[unit])
 
     id_ = network.object_id(node)
     if id_ is None:
@@ -196,37 +216,40 @@ def _achievers_and_consumers(
     return lines_of(achievers), lines_of(network.consumers[id_])
 
 
-def _units(units: list[_UnitLine], max_shown: int = 8) -> str:
-    """Return units in words, by their motions and lines."""
-    shown = [f"{_plain(motion)} (line {line + 1})" for line, motion in units[:max_shown]]
+def _units_text(units: list[_UnitLine], max_shown: int = 8) -> str:
+    """Return units as text, such as ``mix (line 4), bake (line 9)``; at most ``max_shown`` are named."""
+    shown = [f"{_escape_markdown(motion)} (line {line + 1})" for line, motion in units[:max_shown]]
     if len(units) > max_shown:
         shown.append(f"{len(units) - max_shown} more")
     return ", ".join(shown) or "no unit"
 
 
-def _plain(text: str) -> str:
-    """Return a name with its special characters escaped, as Markdown."""
+def _escape_markdown(text: str) -> str:
+    """Return a text in which the characters that have a meaning in Markdown are escaped."""
     return re.sub(r"([\\`*_{}\[\]<>#+\-!|&])", r"\\\1", text)
 
 
 def _definitions(checked: CheckedText, parameters: object) -> list[Json]:
-    """Return where the achievers of the node of a line state it as their output."""
+    """Return the locations where the achievers of the node of a line list it as an output."""
     text = checked.text
-    node = _node_at(checked, text.position_of(parameters)[0])
+    node = _node_at(checked, text.requested_position(parameters)[0])
     if node is None:
         return []
     sheet = Sheet("", text.lines, checked.names.files.reader)
     lines = (
-        next((index for index, listed in sheet.blocks(first) if listed == node), first)
+        next((index for index, listed in sheet.object_nodes(first) if listed == node), first)
         for first, _ in _achievers_and_consumers(checked, node)[0]
     )
     return [{"uri": text.uri, "range": text.range(line)} for line in lines]
 
 
-def _extents(checked: CheckedText) -> Iterator[tuple[int, int, int, int]]:
-    """Return the lines of each unit, in order: its first line, its motion, its end; and its number."""
+def _unit_extents(checked: CheckedText) -> Iterator[tuple[int, int, int, int]]:
+    """Yield the extent of each unit, in order: its first line, its motion line, its last line, and its id.
+
+    Lines are indices from 0. Yields nothing for JSON.
+    """
     lines, files = checked.text.lines, checked.names.files
-    starts = sorted((copy.at, unit) for unit, copies in enumerate(files.copies) for copy in copies)
+    starts = sorted((copy.first_index, unit) for unit, copies in enumerate(files.copies) for copy in copies)
     for first, unit in starts if not checked.text.is_json else ():
         following = range(first, len(lines))
         end = next((number for number in following if lines[number][:2] == "//"), following[-1])
@@ -234,11 +257,11 @@ def _extents(checked: CheckedText) -> Iterator[tuple[int, int, int, int]]:
         yield first, motion, end, unit
 
 
-def _symbols(checked: CheckedText, _: object) -> list[Json]:
-    """Return the outline of the text: each unit by its motion and the labels that it makes."""
+def _document_symbols(checked: CheckedText, _: object) -> list[Json]:
+    """Return the outline of the text: each unit by its motion and the labels of what it makes."""
     network, position = checked.names.network, checked.text.position
     symbols = []
-    for first, motion, end, unit in _extents(checked):
+    for first, motion, end, unit in _unit_extents(checked):
         outputs = (node for node in network.outputs[unit] if node not in network.inputs[unit])
         labels = " + ".join(dict.fromkeys(network.objects[node].label for node in outputs))
         symbols.append(
@@ -253,47 +276,53 @@ def _symbols(checked: CheckedText, _: object) -> list[Json]:
     return symbols
 
 
-def _folds(checked: CheckedText, _: object) -> list[Json]:
-    """Return the ranges that can be folded: each unit, up to its separator."""
-    return [{"startLine": first, "endLine": end - 1} for first, _, end, _ in _extents(checked)]
+def _folding_ranges(checked: CheckedText, _: object) -> list[Json]:
+    """Return the ranges that can be folded: each unit, without its separator."""
+    return [{"startLine": first, "endLine": end - 1} for first, _, end, _ in _unit_extents(checked)]
 
 
-def _renameable(checked: CheckedText, parameters: object) -> Json | None:
-    """Return the range of the name at a position, or ``None``."""
-    line, letter = checked.text.position_of(parameters)
+def _rename_range(checked: CheckedText, parameters: object) -> Json | None:
+    """Return the range of the name at a position, which can be renamed, or ``None`` if no name is there."""
+    line, letter = checked.text.requested_position(parameters)
     field = field_at(checked.text.lines[line], letter)
     return checked.text.range(line, field.start, field.end) if field and field.name else None
 
 
-def _rename(checked: CheckedText, parameters: object) -> Json:
+def _rename_everywhere(checked: CheckedText, parameters: object) -> Json:
     """Return the edits that rename the name at a position everywhere in the text.
 
-    Raises :class:`RequestError` where no name is, and for a new name that FOON text cannot hold.
+    Raises :class:`RequestError` if no name is there, or if FOON text cannot hold the new name.
     """
-    line, letter = checked.text.position_of(parameters)
+    line, letter = checked.text.requested_position(parameters)
     field, new = field_at(checked.text.lines[line], letter), parameter(parameters, "newName", str)
     if not field or not field.name or not is_name(field.kinds[0], new):
         raise RequestError(ErrorCode.INVALID_PARAMETERS, f"found {new!r}, which cannot be a name there")
-    return {"changes": {checked.text.uri: _renamed(checked, Rename(field.kinds[0], field.name, new))}}
+    return {"changes": {checked.text.uri: _rename_edits(checked, Rename(field.kinds[0], field.name, new))}}
 
 
-def _renamed(checked: CheckedText, rename: Rename) -> list[Json]:
-    """Return the edits of a renaming."""
+def _rename_edits(checked: CheckedText, rename: Rename) -> list[Json]:
+    """Return the edits that apply a renaming to the whole text.
+
+    Lines with the new name also get the id that this name has elsewhere.
+    """
     renaming = Renaming(rename)
-    renaming.learn_ids(_ids(checked.names, NameKind(rename.kind), rename.new))
-    return checked.text.edits([renaming.line(line) for line in checked.text.lines])
+    renaming.learn_ids(_id_counts(checked.names, NameKind(rename.kind), rename.new))
+    return checked.text.edits_to([renaming.line(line) for line in checked.text.lines])
 
 
-def formatted(text: EditedText) -> list[Json]:
+def format_edits(text: EditedText) -> list[Json]:
     """Return the edits that bring the text into canonical form; none for a text with errors."""
     try:
-        return text.edits(split_lines(format_of(text.text).canonical_text(text.text, "", lenient=True)))
+        return text.edits_to(split_lines(format_of(text.text).canonical_text(text.text, "", lenient=True)))
     except InputError:
         return []
 
 
 def _quick_fixes(checked: CheckedText, parameters: object) -> list[Json]:
-    """Return the actions that fix or silence the findings on a range of lines."""
+    """Return the actions for the findings on a range of lines: those that fix, then those that silence.
+
+    The number of findings is limited.
+    """
     text = checked.text
     first, last = (parameter(parameters, f"range.{end}.line", int) for end in ("start", "end"))
     fixes: list[Json] = []
@@ -301,19 +330,22 @@ def _quick_fixes(checked: CheckedText, parameters: object) -> list[Json]:
     in_range = [(line, finding) for line, finding in checked.findings if first <= line <= last]
     for line, finding in in_range[:_MAX_ITEMS]:
         code, rename = finding.code, finding.rename
-        if rename and (edits := _renamed(checked, rename)):
+        if rename and (edits := _rename_edits(checked, rename)):
             title = f"Write {rename.new!r} for the {rename.kind} {rename.old!r} everywhere in this file"
-            fixes.append(_action(title, text, edits, False))
+            fixes.append(_quick_fix(title, text, edits, False))
         elif finding.fix is not None and text.lines[line] == finding.excerpt:
-            fix = text.edit(text.end.join(split_lines(finding.fix)), line)  # several lines, if it adds one
-            fixes.append(_action(f"Fix: {finding.message}", text, [fix], not finding.unsafe))
+            fix = text.edit(
+                text.line_end.join(split_lines(finding.fix)), line
+            )  # several lines, if it adds one
+            fixes.append(_quick_fix(f"Fix: {finding.message}", text, [fix], not finding.unsafe))
         if not text.is_json and code != "noqa":
-            comment = text.edit(silencing(code) + text.end, line, 0, 0)
-            silenced[line, code] = _action(f"Silence {code} on this line", text, [comment], False)
+            comment = text.edit(silencing_comment(code) + text.line_end, line, 0, 0)
+            silenced[line, code] = _quick_fix(f"Silence {code} on this line", text, [comment], False)
     return [*fixes, *silenced.values()]
 
 
-def _action(title: str, text: EditedText, edits: list[Json], preferred: bool) -> Json:
+def _quick_fix(title: str, text: EditedText, edits: list[Json], preferred: bool) -> Json:
+    """Return a quick fix of the protocol, which makes these edits of the text."""
     edit = {"changes": {text.uri: edits}}
     return {"title": title, "kind": "quickfix", "isPreferred": preferred, "edit": edit}
 
@@ -321,10 +353,10 @@ def _action(title: str, text: EditedText, edits: list[Json], preferred: bool) ->
 ANSWERS: dict[str, Callable[[CheckedText, object], object]] = {
     "textDocument/hover": _hover,
     "textDocument/definition": _definitions,
-    "textDocument/prepareRename": _renameable,
-    "textDocument/rename": _rename,
-    "textDocument/documentSymbol": _symbols,
-    "textDocument/foldingRange": _folds,
+    "textDocument/prepareRename": _rename_range,
+    "textDocument/rename": _rename_everywhere,
+    "textDocument/documentSymbol": _document_symbols,
+    "textDocument/foldingRange": _folding_ranges,
     "textDocument/codeAction": _quick_fixes,
 }
 """The functions that answer requests about a checked text, by method of the protocol."""

@@ -1,4 +1,4 @@
-"""Checked text: a text of the editor with its names and the findings of lint."""
+"""A text of the editor with its names and the findings of lint."""
 
 from typing import NamedTuple
 
@@ -13,9 +13,11 @@ from foon_asp.text.diagnostics import Diagnostic
 
 
 class CheckedText(NamedTuple):
-    """A text, the names and units in it, and its findings, each with its line, from 0.
+    """A text of the editor after a check.
 
-    ``settings_error`` says what is wrong with the settings of lint, which are then ignored; empty if nothing.
+    ``names`` are the names in it, with its units. ``findings`` are those of lint, each after the index of its
+    line. ``settings_error`` says what is wrong in the settings of lint, which are then ignored; else it is
+    empty.
     """
 
     text: EditedText
@@ -25,7 +27,10 @@ class CheckedText(NamedTuple):
 
 
 def check(text: EditedText) -> CheckedText:
-    """Return a text read and linted by itself, under the settings of its folder."""
+    """Lint a text by itself, under the settings of the folder of its file.
+
+    Settings with errors are replaced by the defaults, and reported as ``settings_error``.
+    """
     settings, settings_error = LintSettings(), ""
     try:
         settings = find_settings([text.file])
@@ -34,6 +39,6 @@ def check(text: EditedText) -> CheckedText:
     context = Context(LintedFiles([text.file], {text.file: text.text.encode("utf-8", "replace")}))
     findings = [
         (min(max(1, finding.source.line), len(text.lines)) - 1, finding)
-        for finding in settings.applied(lint_context(context))
+        for finding in settings.apply(lint_context(context))
     ]
     return CheckedText(text, context.names, findings, settings_error)

@@ -1,4 +1,4 @@
-"""Text that is open in an editor, and the protocol's positions, ranges and edits in it."""
+"""A text that is open in an editor, and the protocol's positions, ranges and edits in it."""
 
 import re
 import sys
@@ -12,49 +12,56 @@ from foon_asp.text.plain_file import split_lines
 
 
 class EditedText:
-    """A text with its lines. Letters of a line are code points, columns of the protocol UTF-16 code units."""
+    """A text that is open in an editor.
+
+    Lines and letters are counted from 0. A letter is a code point, while a column of the protocol is a UTF-16
+    code unit. ``line_end`` is the line end of edits: that of Windows if the text has one.
+    """
 
     def __init__(self, uri: str, text: str) -> None:
         self.uri = uri
         self.text = text
         self.lines = split_lines(text)
-        self.end = "\r\n" if "\r\n" in text else "\n"
+        self.line_end = "\r\n" if "\r\n" in text else "\n"
         self.is_json = not format_of(text).has_comments
 
     @property
     def file(self) -> Path:
-        """The path of the file."""
+        """The path of the file; ``untitled`` for a text that is not in a file."""
         scheme, _, path = unquote(self.uri).partition("://")
         return Path(re.sub("^/(?=[A-Za-z]:)", "", path) if scheme == "file" else "untitled")
 
-    def position_of(self, parameters: object) -> tuple[int, int]:
-        """Return the line and the letter, from 0, of the position in the parameters of a request."""
+    def requested_position(self, parameters: object) -> tuple[int, int]:
+        """Return line and letter of the position in the parameters of a request.
+
+        A position below the text is in its last line.
+        """
         line = min(parameter(parameters, "position.line", int), len(self.lines) - 1)
         column = parameter(parameters, "position.character", int)
         code_units = self.lines[line].encode("utf-16-le", "surrogatepass")[: 2 * column]
         return line, len(code_units.decode("utf-16-le", "ignore"))
 
     def position(self, line: int, letter: int = 0) -> Json:
-        """Return the protocol's position of a letter of a line."""
+        """Return a letter of a line as a position of the protocol."""
         prefix = self.lines[line][:letter]
         return {"line": line, "character": len(prefix.encode("utf-16-le", "surrogatepass")) // 2}
 
     def range(self, line: int, start: int = 0, end: int = sys.maxsize) -> Json:
-        """Return the protocol's range of the letters of a line from ``start`` to before ``end``."""
+        """Return letters of a line, from ``start`` to before ``end``, as a range of the protocol."""
         return {"start": self.position(line, start), "end": self.position(line, end)}
 
     def edit(self, text: str, line: int, start: int = 0, end: int = sys.maxsize) -> Json:
-        """Return the edit that replaces letters of a line by a text."""
+        """Return the edit that replaces letters of a line, from ``start`` to before ``end``, by a text."""
         return {"range": self.range(line, start, end), "newText": text}
 
-    def edits(self, lines: list[str]) -> list[Json]:
-        """Return the edits that turn the text into one with these lines."""
+    def edits_to(self, lines: list[str]) -> list[Json]:
+        """Return the edits that turn the text into a text with these lines."""
         last = min(len(self.lines), len(lines)) - 1  # the edit of this line covers all lines after it
         edits = [
             self.edit(lines[number], number) for number in range(last) if lines[number] != self.lines[number]
         ]
         if self.lines[last:] != lines[last:]:
-            edit = self.edit(self.end.join(lines[last:]), last)
+            edit = self.edit(self.line_end.join(lines[last:]), last)
             edit["range"]["end"] = self.range(len(self.lines) - 1)["end"]
             edits.append(edit)
         return edits

@@ -1,4 +1,4 @@
-"""Fields of a line of FOON text, which may be incomplete while it is typed."""
+"""Fields of a line of FOON text, which may be incomplete while somebody types."""
 
 import re
 from typing import NamedTuple
@@ -16,10 +16,12 @@ _FIELD = re.compile(r"[^\t\[\]{},]*")
 
 
 class Field(NamedTuple):
-    """A field of a line: a name, which may be empty, from letter ``start`` to before ``end``.
+    """A field of a line that holds a name, which may be empty.
 
-    ``kinds`` are the kinds that the name may have. ``letter`` and ``id`` are the head of the line; ``id`` is
-    ``None`` where the id of the line belongs to another name.
+    ``kinds``: the kinds that the name may have.
+    ``start``, ``end``: the index of the first letter of the name, and the index after the last.
+    ``letter``: the letter of the line, O, S or M.
+    ``id``: the id at the head of the line; ``None`` if that is the id of another name than this one.
     """
 
     kinds: tuple[NameKind, ...]
@@ -31,7 +33,10 @@ class Field(NamedTuple):
 
 
 def field_at(line: str, position: int) -> Field | None:
-    """Return the field of a line that has or ends at the letter ``position``; ``None`` outside of names."""
+    """Return the field of a line that contains the letter at ``position`` or ends before it.
+
+    ``None`` if no name can be there.
+    """
     head = _LINE_HEAD.match(line)
     if head is None or position < head.end():
         return None

@@ -1,4 +1,4 @@
-"""JSON-RPC 2.0 with a Content-Length before each message, the transport of language servers."""
+"""JSON-RPC 2.0 with a Content-Length before each message, by which language servers communicate."""
 
 import contextlib
 from enum import IntEnum
@@ -10,7 +10,7 @@ Value = TypeVar("Value")
 
 
 class ErrorCode(IntEnum):
-    """Why there is no result; the numbers are those of the protocol."""
+    """The reason why a request has no result; the numbers are those of the protocol."""
 
     INVALID_REQUEST = -32600
     METHOD_NOT_FOUND = -32601
@@ -21,7 +21,7 @@ class ErrorCode(IntEnum):
 
 
 class RequestError(Exception):
-    """A request is refused with an error code."""
+    """A refused request, with an error code and the reason."""
 
     def __init__(self, code: ErrorCode, message: str) -> None:
         super().__init__(message)
@@ -29,7 +29,10 @@ class RequestError(Exception):
 
 
 def read_message(stream: BinaryIO) -> Json | None:
-    """Return the next message; ``{}`` where it is no JSON object, ``None`` at the end of the stream."""
+    """Read the next message from a stream.
+
+    Returns ``{}`` for a message that is no JSON object, and ``None`` at the end of the stream.
+    """
     length = 0
     while (line := stream.readline()).strip():
         name, _, value = line.partition(b":")
@@ -43,7 +46,7 @@ def read_message(stream: BinaryIO) -> Json | None:
 
 
 def write_message(stream: BinaryIO, message: Json) -> None:
-    """Write a message; a stream that its reader has closed is ignored."""
+    """Write a message to a stream; does nothing if the reader of the stream has closed it."""
     body = json_line({"jsonrpc": "2.0", **message}).encode()
     with contextlib.suppress(BrokenPipeError):
         stream.write(b"Content-Length: %d\r\n\r\n%b" % (len(body), body))
@@ -51,9 +54,9 @@ def write_message(stream: BinaryIO, message: Json) -> None:
 
 
 def parameter(parameters: object, path: str, kind: type[Value]) -> Value:
-    """Return the value at a path of keys, joined by dots, in the parameters of a request.
+    """Return the value at a path of keys, such as ``position.line``, in the parameters of a request.
 
-    Raises :class:`RequestError` for a value of another type, and for a negative number.
+    Raises :class:`RequestError` if the value is missing, of another type than ``kind``, or a negative number.
     """
     value: Any = parameters
     for key in path.split("."):

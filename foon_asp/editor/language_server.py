@@ -1,4 +1,4 @@
-"""Language server: it receives the texts that an editor has open, checks them, and answers requests."""
+"""A language server: it receives the texts that an editor has open, checks them, and answers requests."""
 
 import asyncio
 import sys
@@ -33,7 +33,11 @@ _CAPABILITIES = {
 
 
 class LanguageServer:
-    """Server for one editor: a thread checks each text once it has not changed for a while."""
+    """A server for one editor, which reads requests from ``stdin`` and writes responses to ``stdout``.
+
+    Texts are checked one after the other in a thread. After a change, the check begins once the text has not
+    changed for a while.
+    """
 
     def __init__(self, stdin: BinaryIO, stdout: BinaryIO) -> None:
         self._in, self._out = stdin, stdout
@@ -47,14 +51,17 @@ class LanguageServer:
             "initialize": self._initialize,
             "shutdown": lambda _: self._ending.add("shutdown"),
             "exit": lambda _: self._ending.add("exit"),
-            "textDocument/didOpen": self._open,
-            "textDocument/didChange": self._change,
-            "textDocument/didClose": self._close,
-            "textDocument/formatting": lambda parameters: answers.formatted(self._text(parameters)),
+            "textDocument/didOpen": self._open_text,
+            "textDocument/didChange": self._change_text,
+            "textDocument/didClose": self._close_text,
+            "textDocument/formatting": lambda parameters: answers.format_edits(self._text_of(parameters)),
         }
 
     async def run(self) -> bool:
-        """Answer until the editor exits or closes the stream; return whether it sent shutdown before exit."""
+        """Answer requests until the editor sends exit or closes the stream.
+
+        Returns false if exit came without shutdown before it, and else true.
+        """
         async with asyncio.TaskGroup() as responses:
             while "exit" not in self._ending:
                 message = await asyncio.to_thread(read_message, self._in)
@@ -65,7 +72,7 @@ class LanguageServer:
         return self._ending != {"exit"}
 
     async def _respond(self, message: Json) -> None:
-        """Process a message, and write a response unless it is a notification."""
+        """Process a message, and write a response unless the message is a notification."""
         id_ = message["id"] if type(message.get("id")) in {str, int} else None
         is_request = "id" in message or "method" not in message
         try:
@@ -74,68 +81,77 @@ class LanguageServer:
                 raise RequestError(ErrorCode.INVALID_REQUEST, reason)
             response: Json = {"result": await self._result(str(message.get("method")), message.get("params"))}
         except RequestError as error:
-            response = _error(error.code, str(error))
+            response = _error_response(error.code, str(error))
         except asyncio.CancelledError:
-            response = _error(ErrorCode.CONTENT_MODIFIED, "the text has changed")
+            response = _error_response(ErrorCode.CONTENT_MODIFIED, "the text has changed")
         except Exception as error:  # the editor waits for an answer
-            response = _error(ErrorCode.INTERNAL_ERROR, repr(error))
+            response = _error_response(ErrorCode.INTERNAL_ERROR, repr(error))
         if is_request:
             write_message(self._out, {"id": id_, **response})
 
     async def _result(self, method: str, parameters: object) -> object:
-        """Return the result of a request; raises :class:`RequestError`."""
+        """Return the result of a request, after the check of the text that it is about.
+
+        For completions, an earlier check is enough. Raises :class:`RequestError` for a request that is
+        refused.
+        """
         if method in self._methods:
             return self._methods[method](parameters)
         if method == "textDocument/completion":
-            text = self._text(parameters)
+            text = self._text_of(parameters)
             checked = self._checked.get(text.uri) or await self._checks[text.uri]
             return answers.completion(text, checked.names, parameters)
         if answer := answers.ANSWERS.get(method):
-            return answer(await self._checks[self._text(parameters).uri], parameters)
+            return answer(await self._checks[self._text_of(parameters).uri], parameters)
         raise RequestError(ErrorCode.METHOD_NOT_FOUND, f"there is no method {method}")
 
     def _initialize(self, parameters: object) -> Json:
-        """Return what the server can do."""
+        """Return the capabilities of the server."""
         parameter(parameters, "capabilities", dict)
         return {
             "capabilities": _CAPABILITIES,
             "serverInfo": {"name": "foon-asp", "version": __version__},
         }
 
-    def _open(self, parameters: object) -> None:
+    def _open_text(self, parameters: object) -> None:
+        """Open a text, and check it at once."""
         uri = parameter(parameters, "textDocument.uri", str)
-        self._begin(EditedText(uri, parameter(parameters, "textDocument.text", str)), 0)
+        self._schedule_check(EditedText(uri, parameter(parameters, "textDocument.text", str)), 0)
 
-    def _change(self, parameters: object) -> None:
-        text = self._text(parameters)
+    def _change_text(self, parameters: object) -> None:
+        """Replace a text by its new version, and check this one after a while."""
+        text = self._text_of(parameters)
         for change in parameter(parameters, "contentChanges", list):
             # sooner, texts would be checked while somebody types
-            self._begin(EditedText(text.uri, parameter(change, "text", str)), 0.25)
+            self._schedule_check(EditedText(text.uri, parameter(change, "text", str)), 0.25)
 
-    def _close(self, parameters: object) -> None:
-        """Forget a text that the editor has closed, and its findings."""
-        uri = self._text(parameters).uri
+    def _close_text(self, parameters: object) -> None:
+        """Forget a text that the editor has closed; its check is cancelled, its findings are withdrawn."""
+        uri = self._text_of(parameters).uri
         self._checks.pop(uri).cancel()
         self._checked.pop(uri, None)
         del self._texts[uri]
         self._notify("textDocument/publishDiagnostics", {"uri": uri, "diagnostics": []})
 
-    def _text(self, parameters: object) -> EditedText:
-        """Return the text that a message is about; raises :class:`RequestError` where it is not open."""
+    def _text_of(self, parameters: object) -> EditedText:
+        """Return the text that a message is about; raises :class:`RequestError` if it is not open."""
         uri = parameter(parameters, "textDocument.uri", str)
         if uri not in self._texts:
             raise RequestError(ErrorCode.INVALID_PARAMETERS, f"found {uri}, expected a text that is open")
         return self._texts[uri]
 
-    def _begin(self, text: EditedText, seconds: float) -> None:
-        """Begin the check of a text after ``seconds``, and cancel that of an earlier version."""
+    def _schedule_check(self, text: EditedText, seconds: float) -> None:
+        """Keep a text, begin its check after ``seconds``, and cancel the check of an earlier version."""
         if earlier_check := self._checks.get(text.uri):
             earlier_check.cancel()
         self._texts[text.uri] = text
         self._checks[text.uri] = asyncio.create_task(self._check(text, seconds))
 
     async def _check(self, text: EditedText, seconds: float) -> CheckedText:
-        """Check a text after ``seconds``, and publish its findings."""
+        """Check a text after ``seconds``, publish its findings, and return the checked text.
+
+        A new error in the settings of lint is shown to the user.
+        """
         await asyncio.sleep(seconds)
         checked = await asyncio.get_running_loop().run_in_executor(self._worker, check, text)
         self._checked[text.uri] = checked
@@ -147,14 +163,19 @@ class LanguageServer:
         return checked
 
     def _notify(self, method: str, parameters: Json) -> None:
+        """Send a notification to the editor."""
         write_message(self._out, {"method": method, "params": parameters})
 
 
-def _error(code: ErrorCode, message: str) -> Json:
+def _error_response(code: ErrorCode, message: str) -> Json:
+    """Return the part of a response that says why there is no result."""
     return {"error": {"code": code, "message": message}}
 
 
-def serve() -> bool:
-    """Serve an editor over standard input and output; return whether it sent shutdown before exit."""
+def serve_editor() -> bool:
+    """Serve an editor over standard input and output; return the result of :meth:`LanguageServer.run`.
+
+    Threads of this process switch more often from then on.
+    """
     sys.setswitchinterval(0.0005)  # until checking yields to an answer: less makes it slower
     return asyncio.run(LanguageServer(sys.stdin.buffer, sys.stdout.buffer).run())

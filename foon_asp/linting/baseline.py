@@ -1,4 +1,4 @@
-"""Baselines: known findings, which are not reported again even if their line has moved in its file."""
+"""Baselines: files of known findings, which lint does not report again even if their line has moved."""
 
 import os
 from collections import Counter
@@ -14,10 +14,10 @@ from foon_asp.text.plain_file import read_content
 
 
 class KnownFinding(Struct, frozen=True):
-    """A finding in a baseline, and how often it is known.
+    """A finding that a baseline lists, and how many times it occurs.
 
-    ``file`` is relative to the folder of the baseline. ``text`` is the line, or the message of a finding
-    without a line: line numbers do not count.
+    ``file`` is the path relative to the folder of the baseline. ``text`` is the text of the line, or the
+    message of a finding without a line. The number of the line is not compared.
     """
 
     file: str
@@ -27,28 +27,31 @@ class KnownFinding(Struct, frozen=True):
 
 
 class Baseline(Struct, frozen=True, tag_field="schema", tag=schema_name("lint-baseline")):
-    """The findings that are known."""
+    """The findings that are known, as the contents of a baseline file."""
 
     known: tuple[KnownFinding, ...]
 
     @classmethod
     def of(cls, file: Path, findings: Iterable[Diagnostic]) -> "Baseline":
-        """Return the baseline of the findings, to be written to a file."""
-        counts = Counter(_key(file, finding) for finding in findings)
+        """Return a baseline of all these findings.
+
+        ``file`` is the baseline file to be written; paths of findings become relative to its folder.
+        """
+        counts = Counter(_finding_key(file, finding) for finding in findings)
         return cls(tuple(KnownFinding(*key, count) for key, count in sorted(counts.items())))
 
-    def compared(self, file: Path, findings: Iterable[Diagnostic]) -> tuple[list[Diagnostic], int]:
-        """Return the new findings, and the number of findings in the baseline that no longer occur.
+    def compare_with(self, file: Path, findings: Iterable[Diagnostic]) -> tuple[list[Diagnostic], int]:
+        """Return the findings that are not in the baseline, and how many in the baseline no longer occur.
 
-        ``file`` is the file of the baseline. If a line has more findings of a code than the baseline lists,
-        the last of them are new.
+        ``file`` is the file of the baseline. A line may have more findings of one code than the baseline
+        lists; then the last of them are returned as new.
         """
         remaining = Counter[tuple[str, str, str]]()
         for known_finding in self.known:
             remaining[known_finding.file, known_finding.code, known_finding.text] += known_finding.count
         new = []
         for finding in findings:
-            key = _key(file, finding)
+            key = _finding_key(file, finding)
             if remaining[key] > 0:
                 remaining[key] -= 1
             else:
@@ -57,7 +60,10 @@ class Baseline(Struct, frozen=True, tag_field="schema", tag=schema_name("lint-ba
 
 
 def read_baseline(file: Path) -> Baseline:
-    """Read a baseline; raises :class:`UserError` for another file."""
+    """Read a baseline from its file.
+
+    Raises :class:`UserError` if the file does not exist or is no baseline.
+    """
     expected = f"expected a baseline; foon-asp lint --baseline {file} --write-baseline FILE|DIR... writes one"
     if not file.exists():
         raise UserError(f"{file}: there is no such file, {expected}")
@@ -68,7 +74,10 @@ def read_baseline(file: Path) -> Baseline:
 
 
 def check_replaceable(file: Path) -> None:
-    """Raise :class:`UserError` if a file is neither empty nor a baseline."""
+    """Raise :class:`UserError` for a file that is neither empty nor a baseline.
+
+    A file that does not exist passes.
+    """
     if file.is_file() and read_content(file):
         try:
             read_baseline(file)
@@ -78,6 +87,7 @@ def check_replaceable(file: Path) -> None:
             ) from None
 
 
-def _key(file: Path, finding: Diagnostic) -> tuple[str, str, str]:
+def _finding_key(file: Path, finding: Diagnostic) -> tuple[str, str, str]:
+    """Return the relative path, the code and the text by which a :class:`KnownFinding` is recognised."""
     relative_path = Path(os.path.relpath(finding.source.file, file.parent)).as_posix()
     return relative_path, finding.code, finding.excerpt or finding.message

@@ -1,4 +1,4 @@
-"""Rules about brackets: the wrong kind, missing ones, and lines with a wrong letter."""
+"""Lint rules about brackets: the wrong kind, missing ones, and lines with a wrong first letter."""
 
 from collections import Counter
 from collections.abc import Iterator
@@ -15,11 +15,11 @@ _LETTERS = {Kind.STATE: "S", Kind.OBJECT: "O"}
 
 
 @rule("other-bracket", WARNING, "a bracket of another kind than the word has elsewhere")
-def other_bracket(context: Context) -> Iterator[Diagnostic]:
-    """In `{ }` is an ingredient, in `[ ]` a place.
+def find_other_brackets(context: Context) -> Iterator[Diagnostic]:
+    """An ingredient is in `{ }`, a place is in `[ ]`.
 
-    In the files and in the vocabulary, the word stands with the other bracket nearly always, or the same
-    thing does.
+    Elsewhere in the files or in the vocabulary, the word before the bracket nearly always has the other kind.
+    Or the whole text, such as `in [bowl]`, is more frequent with the other kind.
     """
     mentions = [
         mention for name_mentions in context.names.mentions[Kind.WORD].values() for mention in name_mentions
@@ -31,21 +31,24 @@ def other_bracket(context: Context) -> Iterator[Diagnostic]:
     ]
     counts = Counter[Relation | Contents]()
     for mention, attribute in attributes:
-        counts[attribute] += mention.often
+        counts[attribute] += mention.occurrences
     for mention, attribute in attributes:
         if not mention.line.remarks and (
-            message := _reason_for_other_bracket(attribute, counts, context.all_names)
+            message := _reason_to_swap_brackets(attribute, counts, context.all_names)
         ):
             sheet = context.sheets[mention.sheet]
-            suggestion = f"; is '{_in_other_bracket(attribute)}' meant?"
-            column = sheet.lines[mention.first].rfind("\t") + 2
-            yield sheet.finding(message + suggestion, mention.first, column=column)
+            suggestion = f"; is '{_with_other_bracket(attribute)}' meant?"
+            column = sheet.lines[mention.first_index].rfind("\t") + 2
+            yield sheet.finding(message + suggestion, mention.first_index, column=column)
 
 
-def _reason_for_other_bracket(
+def _reason_to_swap_brackets(
     attribute: Relation | Contents, counts: Counter[Relation | Contents], vocabulary: Vocabulary
 ) -> str:
-    """Return the reason why the other bracket is probably meant, in words; empty if there is no reason."""
+    """Return in words why an attribute probably needs the other kind of bracket; empty if nothing says so.
+
+    ``counts`` are the numbers of lines by attribute.
+    """
     other: Bracket = Contents if isinstance(attribute, Relation) else Relation
     usual = vocabulary.usual_bracket(attribute.word)
     if usual is other:
@@ -56,7 +59,7 @@ def _reason_for_other_bracket(
     swapped = Contents(attribute.word, objects) if other is Contents else Relation(attribute.word, objects[0])
     count, swapped_count = counts[attribute], counts[swapped]
     if swapped_count > count:
-        return f"'{_in_other_bracket(attribute)}' stands {times(swapped_count)}, this {times(count)}"
+        return f"'{_with_other_bracket(attribute)}' stands {times(swapped_count)}, this {times(count)}"
     if (
         other is Relation
         and objects[0] in vocabulary.utensils
@@ -67,25 +70,28 @@ def _reason_for_other_bracket(
 
 
 def _bracketed_objects(attribute: Relation | Contents) -> tuple[str, ...]:
+    """Return the ingredients in ``{ }``, or the single object in ``[ ]``."""
     return attribute.ingredients if isinstance(attribute, Contents) else (attribute.object,)
 
 
-def _in_other_bracket(attribute: Relation | Contents) -> str:
+def _with_other_bracket(attribute: Relation | Contents) -> str:
+    """Return an attribute as text with its brackets swapped: ``in {bowl}`` for ``in [bowl]``."""
     objects = ",".join(_bracketed_objects(attribute))
     return f"{attribute.word} " + (f"{{{objects}}}" if isinstance(attribute, Relation) else f"[{objects}]")
 
 
 @rule("misread-line", WARNING, "a line that is read as a state or an object, and is probably something else")
-def misread_line(context: Context) -> Iterator[Diagnostic]:
-    """A state begins with a word that has brackets elsewhere and continues with the name of an object.
+def find_misread_lines(context: Context) -> Iterator[Diagnostic]:
+    """A state looks like a relation or contents without brackets, such as `in bowl` for `in [bowl]`.
 
-    It is a relation or contents, but without brackets behind a tab. Or a state is known as an object and an
-    object as a state, and the letter at the beginning of the line is the wrong one.
+    It begins with a word that has brackets elsewhere and continues with the name of an object. Also reported
+    is a state that is known as an object, or an object that is known as a state: probably the first letter of
+    the line is wrong.
     """
     names, vocabulary = context.names, context.vocabulary
-    states, objects = names.counts[Kind.STATE], names.objects
+    states, objects = names.counts[Kind.STATE], names.object_counts
     for state in states:
-        if meant := _bracketed(state, context):
+        if meant := _suggested_attribute(state, context):
             for sheet, index, _ in names.by_sheet(Kind.STATE, state):
                 message = f"{state!r} is read as a state; is {meant!r} meant, with brackets behind a tab?"
                 yield sheet.finding(message, index, state)
@@ -103,8 +109,11 @@ def misread_line(context: Context) -> Iterator[Diagnostic]:
                     yield sheet.finding(message, index, name)
 
 
-def _bracketed(state: str, context: Context) -> str:
-    """Return the relation or contents that a state is probably meant to be; empty for a state."""
+def _suggested_attribute(state: str, context: Context) -> str:
+    """Return the relation or contents that a state probably stands for; empty for a likely state.
+
+    For example, ``in [bowl]`` for the state ``in bowl``.
+    """
     all_names, words = context.all_names, state.split(" ")
     for length in range(min(3, len(words) - 1), 0, -1):  # a relation has up to three words: on top of
         word, objects = " ".join(words[:length]), " ".join(words[length:])

@@ -1,4 +1,4 @@
-"""Every rule of linting, by code."""
+"""All lint rules by their codes."""
 
 from difflib import get_close_matches
 
@@ -24,8 +24,8 @@ CATALOG = dict(sorted(RULES.items()))
 """Every rule by code, in alphabetical order."""
 
 
-def unknown_code(code: str) -> str:
-    """Return the error message about an unknown code, with the most similar code."""
+def unknown_code_message(code: str) -> str:
+    """Return the error message about a code that no rule has; it names the most similar code, if any."""
     similar_codes = get_close_matches(code, CATALOG, n=1)
     hint = f"; did you mean {similar_codes[0]!r}?" if similar_codes else ""
     return f"there is no code {code!r}; docs/lint.md lists them{hint}"

@@ -1,40 +1,38 @@
-"""Rules about chains of units: objects that do not fit, and objects left out of a unit."""
+"""Lint rules about chains of units: objects that do not fit, and objects left out of a unit."""
 
 from collections.abc import Iterator
 
 from foon_asp.linting.chain import MAX_DISTANCE, Chain
 from foon_asp.linting.context import Context
 from foon_asp.linting.habits import content_names
-from foon_asp.linting.place_rules import misplaced_nodes, only_after, unheld_nodes
+from foon_asp.linting.place_rules import inputs_placed_in_outputs, misplaced_nodes, unheld_nodes
 from foon_asp.linting.rule import WARNING, rule
 from foon_asp.text.diagnostics import Diagnostic
 
 
 @rule("broken-chain", WARNING, "an object that is taken, and made a little different")
-def broken_chain(context: Context) -> Iterator[Diagnostic]:
-    """An object that no unit makes is taken, and a unit before it makes one that differs in a little.
+def find_broken_chains(context: Context) -> Iterator[Diagnostic]:
+    """A unit takes an object that no unit makes; an earlier unit makes an object that differs in a little.
 
-    Usually no unit takes that one: a state, a place or an ingredient is missing in one of the two, or spelt
-    differently. No task tree can go through here. Both ends are reported. Only units near each other in one
-    file are compared.
+    Usually no unit takes the other object either. A state, a place or an ingredient is missing in one of the
+    two, or is spelt differently. No task tree can go through here. Both lines are reported. Only units near
+    each other in one file are compared.
     """
     for chain in context.chains:
-        for node, consumer in chain.unmade():
-            if not (similar := chain.nearest(node, consumer)):
+        for node, consumer in chain.unmade_nodes():
+            if not (similar := chain.nearest_similar(node, consumer)):
                 continue
             producer, other = similar
             ends = chain.copies[consumer], 0, chain.objects[node]
             starts = chain.copies[producer], 1, chain.objects[other]
             taken_node, made_node = str(ends[2]), str(starts[2])
-            message = (
-                f"no unit makes {taken_node!r}; is it {made_node!r}, which {context.line(*starts)} makes?"
-            )
-            yield context.at_node(*ends, message)
+            line = context.line_name(*starts)
+            message = f"no unit makes {taken_node!r}; is it {made_node!r}, which {line} makes?"
+            yield context.finding_at_node(*ends, message)
             if other not in chain.consumers:
-                message = (
-                    f"no unit takes {made_node!r}; is it {taken_node!r}, which {context.line(*ends)} takes?"
-                )
-                yield context.at_node(*starts, message)
+                line = context.line_name(*ends)
+                message = f"no unit takes {made_node!r}; is it {taken_node!r}, which {line} takes?"
+                yield context.finding_at_node(*starts, message)
 
 
 @rule(
@@ -42,29 +40,31 @@ def broken_chain(context: Context) -> Iterator[Diagnostic]:
     WARNING,
     "a unit that has something and not the container that it is in, or the other way round",
 )
-def left_out(context: Context) -> Iterator[Diagnostic]:
-    """A unit makes a container with an object in it, but not the object, or the other way round.
+def find_left_out_objects(context: Context) -> Iterator[Diagnostic]:
+    """A unit makes a container with an object in it, but does not make the object; or the other way round.
 
-    A later unit takes both, and no unit makes what is missing. Or an input is in or on something that is an
-    output of the unit and no input: what was scraped from the board leaves it behind, so the board was there
-    before.
+    A later unit takes both, and no unit makes the missing one. Also reported is an input that is in or on
+    something which is an output of the unit and no input. For example, food is scraped from a board, and the
+    board is only among the outputs.
     """
     for chain in context.chains:
-        for node, consumer in chain.unmade():
-            if (incomplete := _producer_without(chain, node, consumer)) and not chain.nearest(node, consumer):
+        for node, consumer in chain.unmade_nodes():
+            if (incomplete := _producer_of_companion(chain, node, consumer)) and not chain.nearest_similar(
+                node, consumer
+            ):
                 producer, companion = incomplete
                 lacking, made = chain.objects[node], chain.objects[companion]
                 motion = context.network.motions[chain.units[producer]]
                 taking = chain.copies[consumer]
                 message = (
                     f"{motion!r} makes {str(made)!r}, and not {str(lacking)!r}, which "
-                    f"{context.line(taking, 0, lacking)} takes with it and no unit makes; is it "
+                    f"{context.line_name(taking, 0, lacking)} takes with it and no unit makes; is it "
                     "left out here?"
                 )
-                yield context.at_node(chain.copies[producer], 1, made, message)
+                yield context.finding_at_node(chain.copies[producer], 1, made, message)
     labels = {node.label for node in context.network.objects}
     for side in context.sides:
-        containers = [] if side.number else list(only_after(side))
+        containers = [] if side.number else list(inputs_placed_in_outputs(side))
         if containers:
             reported = [*unheld_nodes(side, context.habits), *misplaced_nodes(side, labels, context.habits)]
             others = {input_ for input_, _ in reported}
@@ -72,14 +72,14 @@ def left_out(context: Context) -> Iterator[Diagnostic]:
             for input_, message in containers:
                 if input_ not in others:
                     text = f"{message} of {motion!r} have, and the inputs have not"
-                    yield context.at_node(copy, 0, input_, text)
+                    yield context.finding_at_node(copy, 0, input_, text)
 
 
-def _producer_without(chain: Chain, node: int, consumer: int) -> tuple[int, int] | None:
-    """Return the position of a unit that makes only a companion of a node, and the companion.
+def _producer_of_companion(chain: Chain, node: int, consumer: int) -> tuple[int, int] | None:
+    """Find a unit that makes a companion of a node without the node; return its position and the companion.
 
-    A companion is a container that has the node in it, or an object in the node. ``None`` if no unit makes
-    one.
+    A companion of the node is the container that it is in, or an object in it. The unit at ``consumer`` takes
+    both. Nodes are ids. ``None`` if no earlier unit near enough makes one.
     """
     unmade_node = chain.objects[node]
     for companion in chain.network.inputs[chain.units[consumer]]:
@@ -93,7 +93,7 @@ def _producer_without(chain: Chain, node: int, consumer: int) -> tuple[int, int]
         earlier = [position for position in chain.producers.get(companion, ()) if position < consumer]
         if not (is_inside or is_around) or not earlier or consumer - earlier[-1] > MAX_DISTANCE:
             continue
-        input_labels, output_labels = (chain.labels(earlier[-1], side) for side in (0, 1))
+        input_labels, output_labels = (chain.side_labels(earlier[-1], side) for side in (0, 1))
         if unmade_node.label not in output_labels and (is_around or unmade_node.label in input_labels):
             return earlier[-1], companion
     return None

@@ -1,4 +1,4 @@
-"""The context of rules: the files that are linted together, and a vocabulary of known names."""
+"""The context in which lint rules run: the linted files, and a vocabulary of known names."""
 
 from functools import cached_property
 from pathlib import Path
@@ -17,7 +17,10 @@ from foon_asp.text.diagnostics import Diagnostic
 
 
 class Side(NamedTuple):
-    """One side of a unit: its inputs (``number`` 0) or its outputs (1), and the nodes of its other side."""
+    """One side of a unit: its inputs (``number`` 0) or its outputs (1).
+
+    ``nodes`` are the nodes of this side, ``others`` those of the other side. ``unit`` is the id of the unit.
+    """
 
     unit: int
     number: int
@@ -26,9 +29,10 @@ class Side(NamedTuple):
 
 
 class Context:
-    """The files with their network and names, and the names of a vocabulary.
+    """What rules look at: the linted files with their network and names, and a vocabulary of known names.
 
-    ``findings`` are those of all rules but ``noqa``, once these have run.
+    ``vocabulary`` is a vocabulary file; ``None`` stands for the bundled one. ``findings`` are empty at first.
+    The linter adds those of all rules but ``noqa``, which looks at them.
     """
 
     def __init__(self, files: LintedFiles, vocabulary: Path | None = None) -> None:
@@ -39,72 +43,78 @@ class Context:
 
     @cached_property
     def habits(self) -> Habits:
-        """The changes and habits of the units."""
+        """The changes of each unit of the files, and the habits of motions."""
         return Habits(self.network)
 
     @cached_property
     def all_names(self) -> Vocabulary:
-        """The vocabulary, with the names and habits of the files added."""
-        return self.vocabulary.plus(Vocabulary.of(self.names, self.habits))
+        """The names and habits of the vocabulary and of the files together."""
+        return self.vocabulary.union(Vocabulary.of(self.names, self.habits))
 
     @cached_property
     def remarks(self) -> dict[str, list[Diagnostic]]:
-        """The remarks of the reader, by code."""
+        """The remarks of the reader on the files, by code, with the fixes that are certain."""
         return remarks_by_code(self.files, self.all_names)
 
     @cached_property
     def near_names(self) -> dict[Kind, list[tuple[str, str]]]:
-        """Pairs of similar names by kind: the rarer name, and the one that may be meant."""
+        """By kind of name, pairs of similar names: the rarer one, and the one that is probably meant."""
         names, words = self.names, self.vocabulary.words
         return {
-            kind: list(near_names(names.counts[kind], kind is not Kind.OBJECT, words, names.loose[kind]))
+            kind: list(near_names(names.counts[kind], kind is not Kind.OBJECT, words, names.one_sided[kind]))
             for kind in Kind
         }
 
     @cached_property
     def paired_names(self) -> set[tuple[Kind, str]]:
-        """The names in :attr:`near_names`, with their kinds."""
+        """All names in the pairs of :attr:`near_names`, each after its kind."""
         return {(kind, name) for kind, pairs in self.near_names.items() for pair in pairs for name in pair}
 
     @cached_property
-    def made(self) -> set[int]:
-        """The nodes that a unit makes: those among its outputs and not among its inputs."""
+    def made_nodes(self) -> set[int]:
+        """The ids of the nodes that some unit makes: they are among its outputs and not among its inputs."""
         return {node for chain in self.chains for node in chain.producers}
 
     @cached_property
     def sides(self) -> list[Side]:
-        """Both sides of each unit."""
-        objects, both = self.network.objects, []
+        """Both sides of each unit, inputs first, in the order of unit ids."""
+        objects, both_sides = self.network.objects, []
         for unit, sides in enumerate(zip(self.network.inputs, self.network.outputs, strict=True)):
             inputs, outputs = ([objects[node] for node in side] for side in sides)
-            both += [Side(unit, 0, inputs, outputs), Side(unit, 1, outputs, inputs)]
-        return both
+            both_sides += [Side(unit, 0, inputs, outputs), Side(unit, 1, outputs, inputs)]
+        return both_sides
 
     @cached_property
     def chains(self) -> list[Chain]:
-        """The units of each sheet in order."""
+        """The chain of each sheet, in the order of the sheets."""
         return [Chain(self.network, copies) for copies in self.files.copies_by_sheet]
 
-    def at_unit(self, copy: Copy, message: str) -> Diagnostic:
-        """Return a finding about a copy of a unit."""
-        return self.sheets[copy.sheet].finding(message, copy.at)
+    def finding_at_unit(self, copy: Copy, message: str) -> Diagnostic:
+        """Return a finding at the first line of a copy of a unit."""
+        return self.sheets[copy.sheet].finding(message, copy.first_index)
 
-    def at_node(self, copy: Copy, side: int, node: ObjectNode, message: str) -> Diagnostic:
-        """Return a finding about a node among the inputs (0) or outputs (1) of a copy of a unit."""
+    def finding_at_node(self, copy: Copy, side: int, node: ObjectNode, message: str) -> Diagnostic:
+        """Return a finding at the object line of an input (``side`` 0) or output (1) of a copy of a unit."""
         sheet = self.sheets[copy.sheet]
         return sheet.finding(message, self.node_line(copy, side, node), node.label)
 
-    def line(self, copy: Copy, side: int, node: ObjectNode) -> str:
-        """Return the line of a node in a copy of a unit, as messages about the same file name it."""
+    def line_name(self, copy: Copy, side: int, node: ObjectNode) -> str:
+        """Return the line of a node in a copy of a unit as text for messages, such as ``line 7``.
+
+        ``side`` is 0 for inputs and 1 for outputs.
+        """
         sheet = self.sheets[copy.sheet]
-        return sheet.where(self.node_line(copy, side, node), sheet)
+        return sheet.line_name(self.node_line(copy, side, node), sheet)
 
     def node_line(self, copy: Copy, side: int, node: ObjectNode) -> int:
-        """Return the index of a node's object line in a copy of a unit, else of the copy's first line."""
+        """Return the index of the object line of a node in a copy of a unit.
+
+        It is the first line of the copy if that side, inputs (0) or outputs (1), does not list the node.
+        """
         blocks = self.node_lines(copy)[side]
-        return next((index for index, listed_node in blocks if listed_node == node), copy.at)
+        return next((index for index, listed_node in blocks if listed_node == node), copy.first_index)
 
     def node_lines(self, copy: Copy) -> tuple[list[tuple[int, ObjectNode]], list[tuple[int, ObjectNode]]]:
-        """Return the input and output nodes that a copy of a unit lists, each with its object line."""
-        blocks = list(self.sheets[copy.sheet].blocks(copy.at))
+        """Return the inputs and the outputs of a copy of a unit, each with the index of its object line."""
+        blocks = list(self.sheets[copy.sheet].object_nodes(copy.first_index))
         return blocks[: copy.inputs], blocks[copy.inputs :]

@@ -1,4 +1,4 @@
-"""Dead cycles: objects that only units make which need them."""
+"""Lint rule about dead cycles: objects that are made only by units that need them."""
 
 from collections.abc import Iterator
 
@@ -10,23 +10,24 @@ from foon_asp.text.diagnostics import Diagnostic
 
 
 @rule("dead-cycle", NOTE, "objects that are made only by units that need them")
-def dead_cycle(context: Context) -> Iterator[Diagnostic]:
+def find_dead_cycles(context: Context) -> Iterator[Diagnostic]:
     """No task tree can make any of these objects unless one is available, as each needs another of them.
 
-    This may be intended, as with a bottle that is opened and closed again. Then put one of them into the
-    kitchen; linted together with that kitchen, the cycle is not reported. Or the cycle was meant to begin
-    elsewhere, and a state is wrong. An object that a unit both needs and gives, such as the knife that chops,
-    does not count as made by it. Everything else is assumed to be available, and so is a utensil in a state,
-    such as a stove that is off. The cycle is reported where it is first entered.
+    This may be intended, as with a bottle that is opened and closed again. Then put one of the objects into
+    the kitchen; if the kitchen is linted together with the network, the cycle is not reported. Or a state is
+    wrong, and the cycle was meant to begin with another object. An object that a unit both needs and makes,
+    such as the knife that chops, does not count as made by the unit. All other objects are assumed to be
+    available, and so are utensils in any state, such as a stove that is off. The cycle is reported at the
+    unit where it is first entered.
     """
     network, sheets = context.network, context.sheets
-    for cycle in dead_cycles(network, _available(context)):
+    for cycle in dead_cycles(network, _available_nodes(context)):
         start, first_unit = cycle.steps[0]
         copy = context.files.copies[first_unit][0]
         steps = []
         for (_, unit), (node, _) in zip(cycle.steps, (*cycle.steps[1:], cycle.steps[0]), strict=True):
             step_copy = context.files.copies[unit][0]
-            location = sheets[step_copy.sheet].where(step_copy.at, sheets[copy.sheet])
+            location = sheets[step_copy.sheet].line_name(step_copy.first_index, sheets[copy.sheet])
             steps.append(f"{network.motions[unit]!r} ({location}) makes {str(network.objects[node])!r}")
         if len(steps) > 4:
             steps[3:-1] = [counted(len(steps) - 4, "more step")]
@@ -41,8 +42,8 @@ def dead_cycle(context: Context) -> Iterator[Diagnostic]:
         yield sheets[copy.sheet].finding(message, line)
 
 
-def _available(context: Context) -> set[int]:
-    """Return the nodes of kitchens among the linted files, and utensils without relations and contents."""
+def _available_nodes(context: Context) -> set[int]:
+    """Return the ids of nodes that a linted kitchen lists, and of utensils without relations and contents."""
     available = {
         number
         for number, node in enumerate(context.network.objects)

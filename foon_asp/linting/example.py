@@ -1,4 +1,4 @@
-"""The example of each rule: files with the slip that it finds."""
+"""Examples of lint rules: small files with the slip that the rule finds."""
 
 from pathlib import Path
 from typing import NamedTuple
@@ -10,13 +10,13 @@ _EXAMPLES = Path(__file__).parent / "examples"
 
 
 class Example(NamedTuple):
-    """Example files of a rule: their contents by name, and the findings of the rule in them."""
+    """The example of a rule: the bytes of its files by name, and the findings of the rule in these files."""
 
     files: dict[Path, bytes]
     findings: list[Finding]
 
 
 def example(code: str) -> Example:
-    """Return the example of the rule of a code."""
+    """Read the example files of the rule with a code, and lint them."""
     files = {Path(file.name): file.read_bytes() for file in sorted((_EXAMPLES / code).iterdir())}
     return Example(files, [Finding.of(finding) for finding in lint(files, files) if finding.code == code])

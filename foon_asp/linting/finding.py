@@ -1,4 +1,4 @@
-"""A finding of linting as a value, as people and programs get it."""
+"""Findings of lint as values: printed as text, or written as JSON."""
 
 from foon_asp.escapes import escaped
 from foon_asp.linting.mending import is_mendable
@@ -41,7 +41,7 @@ class Finding(Value, frozen=True):
 
     @classmethod
     def of(cls, diagnostic: Diagnostic) -> "Finding":
-        """Return the finding of a diagnostic that a rule yielded."""
+        """Return the value of a finding; ``diagnostic`` is what a rule yielded."""
         mendable = is_mendable(diagnostic)
         return cls(
             diagnostic.source.file,
@@ -57,7 +57,10 @@ class Finding(Value, frozen=True):
         )
 
     def __str__(self) -> str:
-        """Return ``file:line:column: severity: message [code]`` and the line with a caret."""
+        """Return ``file:line:column: severity: message [code]``, and below it the line and a caret.
+
+        Without a text of the line, return the first line only.
+        """
         head = f"{escaped(self.file)}:{self.line}:{self.column}: {self.severity}: {escaped(self.message)}"
         excerpt = f"\n{excerpt_with_caret(self.text, self.column)}" if self.text else ""
         return f"{head} [{self.code}]{excerpt}"

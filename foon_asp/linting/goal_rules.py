@@ -1,4 +1,4 @@
-"""Goals and kitchens, compared with the network."""
+"""Lint rules about goals and kitchens, which are compared with the network."""
 
 from collections.abc import Iterator
 
@@ -12,40 +12,41 @@ from foon_asp.text.line import ObjectLine
 
 
 @rule("unmade-goal", WARNING, "a goal that no unit makes")
-def unmade_goal(context: Context) -> Iterator[Diagnostic]:
+def find_unmade_goals(context: Context) -> Iterator[Diagnostic]:
     """The goal is not an output of any unit, or only of units that need it.
 
-    It is an object line with a recipe category or `!`, or an entry of a list of goals (a file with `goal` in
-    its name). Lists are compared with the networks that are linted together with them.
+    A goal is an object line with a recipe category or `!`, or an entry of a list of goals. A list of goals is
+    a file with `goal` in its name. Lists are compared with the networks that are linted together with them.
     """
     for sheet in context.sheets:
         if sheet.entries is None:
-            yield from _tagged(sheet, context)
-    for sheet in _lists(context, of_goals=True):
-        yield from _unknown(sheet, context.network)
+            yield from _unmade_marked_goals(sheet, context)
+    for sheet in _object_lists(context, of_goals=True):
+        yield from _unknown_entries(sheet, context.network)
         for pattern, index, _ in sheet.entries or ():
             nodes = context.network.find(pattern)
-            if nodes and context.made.isdisjoint(nodes):
+            if nodes and context.made_nodes.isdisjoint(nodes):
                 message = f"{str(pattern)!r} is a goal, and no unit makes it"
                 yield sheet.finding(message, index, pattern.label)
 
 
 @rule("unknown-item", NOTE, "an entry of a kitchen that is not in the network")
-def unknown_item(context: Context) -> Iterator[Diagnostic]:
-    """No unit of the networks linted with the kitchen has this node.
+def find_unknown_items(context: Context) -> Iterator[Diagnostic]:
+    """No unit of the networks that are linted with the kitchen has this node.
 
-    There may be a slip in one of the two, or the item is not needed. If most entries of a kitchen are
-    unknown, they are reported together.
+    There may be a slip in the kitchen or in the network, or the item is not needed. If most entries of a
+    kitchen are unknown, a single finding reports them all.
     """
-    for sheet in _lists(context, of_goals=False):
-        yield from _unknown(sheet, context.network)
+    for sheet in _object_lists(context, of_goals=False):
+        yield from _unknown_entries(sheet, context.network)
 
 
 @rule("amount", ERROR, "an amount that is no number from 1 to 1,000,000, or a second one")
-def amount(context: Context) -> Iterator[Diagnostic]:
-    """A line `# Amount:`, a tab and a number is under an object line, once, and says how many there are.
+def find_wrong_amounts(context: Context) -> Iterator[Diagnostic]:
+    """A line `# Amount:` with a tab and a number stands below an object line and says how many there are.
 
-    An object that a kitchen or a list of goals has several times has the same amount each time, or none.
+    An object line has at most one such line. If a kitchen or a list of goals has an object several times, all
+    its entries have the same amount, or none has one.
     """
     yield from context.remarks.get("amount", [])
     for sheet in context.sheets:
@@ -55,17 +56,23 @@ def amount(context: Context) -> Iterator[Diagnostic]:
                 yield sheet.finding(f"a second amount of {str(pattern)!r}", index, pattern.label)
 
 
-def _lists(context: Context, of_goals: bool) -> Iterator[Sheet]:
-    """Yield the lists of goals, or the kitchens; without units, there is nothing to compare them with."""
+def _object_lists(context: Context, of_goals: bool) -> Iterator[Sheet]:
+    """Yield the sheets that are lists of goals (``of_goals``), or those that are kitchens.
+
+    Yields nothing if the files have no units to compare them with.
+    """
     for sheet in context.sheets if len(context.network) else ():
         if sheet.entries is not None and sheet.lists_goals is of_goals:
             yield sheet
 
 
-def _tagged(sheet: Sheet, context: Context) -> Iterator[Diagnostic]:
-    """Yield a finding for each tagged goal that is not made."""
+def _unmade_marked_goals(sheet: Sheet, context: Context) -> Iterator[Diagnostic]:
+    """Yield a finding for each object of a sheet that is marked as a goal and that no unit makes.
+
+    A node that is marked several times is reported once.
+    """
     tagged = {
-        sheet.lines[written_line.first]
+        sheet.lines[written_line.first_index]
         for written_line in sheet.distinct_lines
         if isinstance(written_line.line, ObjectLine) and written_line.line.is_goal
     }
@@ -73,15 +80,18 @@ def _tagged(sheet: Sheet, context: Context) -> Iterator[Diagnostic]:
     for index, line in enumerate(sheet.lines) if tagged else ():
         if line not in tagged:
             continue
-        _, node = next(sheet.blocks(index))
-        if node not in reported and context.network.object_id(node) not in context.made:
+        _, node = next(sheet.object_nodes(index))
+        if node not in reported and context.network.object_id(node) not in context.made_nodes:
             reported.add(node)
             message = f"{str(node)!r} is marked as a goal, and no unit makes it"
             yield sheet.finding(message, index, node.label)
 
 
-def _unknown(sheet: Sheet, network: Network) -> Iterator[Diagnostic]:
-    """Yield a finding for each entry of a list that is no object node, or a single one if most are none."""
+def _unknown_entries(sheet: Sheet, network: Network) -> Iterator[Diagnostic]:
+    """Yield a finding for each entry of a list that matches no object node of the network.
+
+    If most entries match none, yield one finding about all of them.
+    """
     entries = sheet.entries or ()
     unknown = [entry for entry in entries if not network.find(entry.pattern)]
     if is_of_another_network(len(unknown), len(entries)):
@@ -93,12 +103,14 @@ def _unknown(sheet: Sheet, network: Network) -> Iterator[Diagnostic]:
         yield sheet.finding(message, index, pattern.label)
         return
     for pattern, index, _ in unknown:
-        message = f"{str(pattern)!r} is no object node of the network; {_alike(pattern.label, network)}"
+        message = (
+            f"{str(pattern)!r} is no object node of the network; {_same_label_hint(pattern.label, network)}"
+        )
         yield sheet.finding(message, index, pattern.label)
 
 
-def _alike(label: str, network: Network) -> str:
-    """Return the nodes that have a label, in words."""
+def _same_label_hint(label: str, network: Network) -> str:
+    """Return the end of a message: which nodes of the network have a label, or that none has it."""
     nodes = network.by_label.get(label, ())
     if not nodes:
         return f"none there is called {label!r}"

@@ -1,4 +1,4 @@
-"""The changes of units, objects and contents that appear or vanish, and the habits of motions."""
+"""Changes of units: objects and contents that appear or vanish. Habits: how often units of a motion do so."""
 
 from collections.abc import Collection, Iterator
 from collections.abc import Set as AbstractSet
@@ -12,10 +12,13 @@ _NO_NAMES: frozenset[str] = frozenset()
 
 
 class Changes(NamedTuple):
-    """The changes of a unit that may be slips: names by the node that shows them.
+    """The changes of a unit that may be slips. Keys and entries are node ids.
 
-    ``lost`` and ``gained`` are contents of a container that keeps other contents; ``new`` outputs and
-    ``gone`` inputs are mentioned on one side only.
+    ``lost`` and ``gained``: by output, the names of contents that a container loses or gains while it keeps
+    others.
+    ``new``: outputs that come from no input.
+    ``gone``: inputs that are in no output.
+    ``keeps``: whether a container keeps some of its contents.
     """
 
     lost: dict[int, list[str]]
@@ -26,25 +29,25 @@ class Changes(NamedTuple):
 
 
 def content_names(node: ObjectNode) -> AbstractSet[str]:
-    """Return the names of the contents of a node."""
+    """Return the names of all contents of a node; empty without contents."""
     return _NO_NAMES if not node.contents else {item for _, items in node.contents for item in items}
 
 
-def mentioned(nodes: Collection[ObjectNode]) -> set[str]:
-    """Return every name in nodes: labels, contents and related objects."""
+def mentioned_names(nodes: Collection[ObjectNode]) -> set[str]:
+    """Return every name in nodes: their labels, contents and related objects."""
     names = {node.label for node in nodes}
     names.update(related_object for node in nodes for _, related_object in node.relations)
     return names.union(*map(content_names, nodes))
 
 
 class Habit(NamedTuple):
-    """Counts of the units with a motion.
+    """How often units with one motion change something.
 
-    ``units``: all of them.
-    ``keep``: those with a container that keeps a part of its contents.
-    ``lose``, ``gain``: those in which such a container also loses or gains contents.
-    ``make``: those with outputs that come from no input.
-    ``end``: those with inputs that are in no output.
+    ``units``: all of these units.
+    ``keep``: units with a container that keeps some of its contents.
+    ``lose``, ``gain``: units in which such a container also loses or gains contents.
+    ``make``: units with outputs that come from no input.
+    ``end``: units with inputs that are in no output.
     """
 
     units: int = 0
@@ -58,8 +61,8 @@ class Habit(NamedTuple):
 class Habits:
     """The changes of the units of a network.
 
-    ``ingredients`` are all names among contents; ``foods`` are the ingredients that are never a container or
-    a place.
+    ``ingredients`` are all names that stand among contents. ``foods`` are the ingredients that never have
+    contents and to which no object has a relation.
     """
 
     def __init__(self, network: Network) -> None:
@@ -75,16 +78,20 @@ class Habits:
         )
 
     @cached_property
-    def units(self) -> list[Changes]:
-        """The changes of each unit."""
+    def changes_by_unit(self) -> list[Changes]:
+        """The changes of each unit, by its id."""
         return [self.changes(unit) for unit in range(len(self.network))]
 
     def changes(self, unit: int) -> Changes:
-        """Return the changes that a unit makes to objects and contents."""
+        """Return the changes that a unit makes to objects and contents, as far as they may be slips.
+
+        Names that share a word, such as egg and beaten egg, count as one object. New outputs excuse missing
+        inputs, and the other way round.
+        """
         objects = self.network.objects
         inputs = {node: objects[node] for node in self.network.inputs[unit]}
         outputs = {node: objects[node] for node in self.network.outputs[unit]}
-        input_names, output_names = mentioned(inputs.values()), mentioned(outputs.values())
+        input_names, output_names = mentioned_names(inputs.values()), mentioned_names(outputs.values())
         emptied = {
             node.label
             for node in inputs.values()
@@ -92,12 +99,12 @@ class Habits:
         }
         lost: dict[int, list[str]] = {}
         gained: dict[int, list[str]] = {}
-        kept = list(_containers(inputs, outputs))
+        kept = list(_kept_containers(inputs, outputs))
         for node, old_contents, new_contents in kept:
-            missing = _sharing_no_word(
+            missing = _names_sharing_no_word(
                 old_contents - new_contents - output_names - emptied, new_contents - old_contents
             )
-            added = _sharing_no_word(new_contents - old_contents - input_names, input_names)
+            added = _names_sharing_no_word(new_contents - old_contents - input_names, input_names)
             if missing and not added:
                 lost[node] = missing
             elif added and not missing:
@@ -110,8 +117,8 @@ class Habits:
             for node, object_node in inputs.items()
             if object_node.label in self.foods
             and object_node.label not in output_names
-            and not _comes_from(object_node, input_names)
-            and not _is_in_a_state(object_node.label, outputs.values())
+            and not _comes_from_any(object_node, input_names)
+            and not _is_named_by_state(object_node.label, outputs.values())
         ]
         if gone or not new:
             return Changes(lost, gained, [], [] if new else gone, bool(kept))
@@ -122,7 +129,7 @@ class Habits:
             node
             for node, object_node in new.items()
             if object_node.label not in products
-            and not _comes_from(object_node, input_names)
+            and not _comes_from_any(object_node, input_names)
             and input_names.isdisjoint(content_names(object_node))
             and not any(
                 word.startswith(stem[:_STEM])
@@ -133,29 +140,32 @@ class Habits:
         ]
         return Changes(lost, gained, unrelated, [], bool(kept))
 
-    def of_units(self) -> Iterator[tuple[str, Habit]]:
-        """Yield for each unit its motion, and the habit counted from this unit alone."""
-        for motion, changes in zip(self.network.motions, self.units, strict=True):
+    def habits_of_units(self) -> Iterator[tuple[str, Habit]]:
+        """Yield for each unit its motion, and a habit in which this unit alone is counted."""
+        for motion, changes in zip(self.network.motions, self.changes_by_unit, strict=True):
             changed = changes.keeps, changes.lost, changes.gained, changes.new, changes.gone
             yield motion, Habit(1, *(int(bool(names)) for names in changed))
 
 
-def _comes_from(node: ObjectNode, places: AbstractSet[str]) -> bool:
-    """Whether a state or relation of a node names a place that it comes from, as water from a tap."""
+def _comes_from_any(node: ObjectNode, places: AbstractSet[str]) -> bool:
+    """Whether a state or relation of a node says that it comes from one of ``places``: water from a tap."""
     origins = {state.removeprefix("from ") for state in node.states if state.startswith("from ")}
     return not places.isdisjoint(origins.union(origin for word, origin in node.relations if word == "from"))
 
 
-def _is_in_a_state(name: str, nodes: Collection[ObjectNode]) -> bool:
-    """Whether a state of a node shares its stem with a name, as salted with salt."""
+def _is_named_by_state(name: str, nodes: Collection[ObjectNode]) -> bool:
+    """Whether a word in a state of a node begins like a word of ``name``: salted for the name salt."""
     words = [word for node in nodes for state in node.states for word in state.split(" ")]
     return any(word.startswith(name_word[:_STEM]) for name_word in words_in([name]) for word in words)
 
 
-def _containers(
+def _kept_containers(
     inputs: dict[int, ObjectNode], outputs: dict[int, ObjectNode]
 ) -> Iterator[tuple[int, AbstractSet[str], AbstractSet[str]]]:
-    """Yield the outputs that keep some contents, with their old and their new contents."""
+    """Yield the id of each output that keeps some contents, with the names of its old and new contents.
+
+    Outputs whose label is not unique among inputs, or among outputs, are skipped.
+    """
     for node, output in outputs.items():
         same_label = [other for other in inputs.values() if other.label == output.label]
         if len(same_label) == 1 and sum(other.label == output.label for other in outputs.values()) == 1:
@@ -164,12 +174,12 @@ def _containers(
                 yield node, old_contents, new_contents
 
 
-def _sharing_no_word(names: Collection[str], others: Collection[str]) -> list[str]:
-    """Return the names that share no word with the others, sorted."""
+def _names_sharing_no_word(names: Collection[str], others: Collection[str]) -> list[str]:
+    """Return the names that share no word with any of ``others``, sorted."""
     words = words_in(others)
     return sorted(name for name in names if words.isdisjoint(words_in([name])))
 
 
 def words_in(names: Collection[str]) -> set[str]:
-    """Return the words of names, in the singular."""
+    """Return all words of names, without a final s."""
     return {word.removesuffix("s") for name in names for word in name.replace("-", " ").split(" ")}

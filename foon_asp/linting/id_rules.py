@@ -1,4 +1,4 @@
-"""Ids and motion flags: one file should give one id to one name, and has them everywhere or nowhere."""
+"""Lint rules about ids and motion flags: a file should have one id for each name, on all lines or on none."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -14,88 +14,94 @@ _KINDS = {"O": "object", "S": "state", "M": "motion"}
 
 
 class _Use(NamedTuple):
-    """A name with an id, or an id with a name; how often they occur together, and the first line's index."""
+    """A name under an id, or an id under a name.
+
+    ``occurrences`` is the number of lines that have both. ``first_index`` is the index of the first of these
+    lines.
+    """
 
     text: str
-    often: int
-    first: int
+    occurrences: int
+    first_index: int
 
 
-def _shared(sheet: Sheet, by_id: bool) -> Iterator[tuple[str, str, list[_Use]]]:
-    """Yield the letter of each id, the id, and its names, the most frequent first.
+def _uses_by_key(sheet: Sheet, by_id: bool) -> Iterator[tuple[str, str, list[_Use]]]:
+    """Yield the letter of the lines (O, S or M), a key, and its uses, the most frequent first.
 
-    Unless ``by_id``, yield names with their ids instead.
+    With ``by_id``, keys are ids and uses are their names. Else keys are names and uses are their ids.
     """
     uses: dict[tuple[str, str], dict[str, _Use]] = {}
-    for line, first, often in sheet.distinct_lines:
+    for line, first, occurrences in sheet.distinct_lines:
         if line.id:
             key, text = (line.id, name_of(line)) if by_id else (name_of(line), line.id)
             uses_of_key = uses.setdefault((sheet.lines[first][0], key), {})
             earlier = uses_of_key.get(text, _Use(text, 0, first))
-            uses_of_key[text] = _Use(text, earlier.often + often, min(earlier.first, first))
+            uses_of_key[text] = _Use(text, earlier.occurrences + occurrences, min(earlier.first_index, first))
     for (letter, key), uses_of_key in uses.items():
-        yield letter, key, sorted(uses_of_key.values(), key=lambda use: (-use.often, use.first))
+        yield letter, key, sorted(uses_of_key.values(), key=lambda use: (-use.occurrences, use.first_index))
 
 
 @rule("id-of-two-names", WARNING, "one id for two names")
-def id_of_two_names(context: Context) -> Iterator[Diagnostic]:
-    """Ids are compared within each file, separately for objects, states and motions.
+def find_ids_of_two_names(context: Context) -> Iterator[Diagnostic]:
+    """One file has one id for two names of objects, of states or of motions.
 
     An id with four names or more means nothing and is reported once. foon-asp ignores ids, but other programs
     use them.
     """
     for sheet in context.sheets:
-        for letter, id_, uses in _shared(sheet, by_id=True):
+        for letter, id_, uses in _uses_by_key(sheet, by_id=True):
             usual, *others = uses
             if len(uses) >= 4:  # the id means nothing
-                shown = ", ".join(f"{use.text!r} ({use.often})" for use in uses[:3])
+                shown = ", ".join(f"{use.text!r} ({use.occurrences})" for use in uses[:3])
                 message = (
                     f"the {_KINDS[letter]} id {letter}{id_} is that of {len(uses)} names: {shown}, ...; "
                     "ids should tell names apart, or be left out"
                 )
-                yield sheet.finding(message, min(use.first for use in uses))
+                yield sheet.finding(message, min(use.first_index for use in uses))
                 continue
             for use in others:
-                line = sheet.where(usual.first, sheet)
+                line = sheet.line_name(usual.first_index, sheet)
                 message = (
-                    f"the {_KINDS[letter]} id {letter}{id_} is that of {use.text!r} ({times(use.often)}) and "
-                    f"of {usual.text!r} ({times(usual.often)}, first on {line}); one needs another id"
+                    f"the {_KINDS[letter]} id {letter}{id_} is that of {use.text!r} "
+                    f"({times(use.occurrences)}) and of {usual.text!r} "
+                    f"({times(usual.occurrences)}, first on {line}); one needs another id"
                 )
-                yield sheet.finding(message, use.first)
+                yield sheet.finding(message, use.first_index)
 
 
 @rule("name-of-two-ids", WARNING, "one name with two ids")
-def name_of_two_ids(context: Context) -> Iterator[Diagnostic]:
-    """The same problem as one id for two names, the other way around."""
+def find_names_of_two_ids(context: Context) -> Iterator[Diagnostic]:
+    """One file has two ids for one name of an object, a state or a motion."""
     for sheet in context.sheets:
-        for letter, name, (usual, *others) in _shared(sheet, by_id=False):
+        for letter, name, (usual, *others) in _uses_by_key(sheet, by_id=False):
             for use in others:
-                line = sheet.where(usual.first, sheet)
+                line = sheet.line_name(usual.first_index, sheet)
                 message = (
-                    f"the {_KINDS[letter]} {name!r} has the id {letter}{use.text} ({times(use.often)}) and "
-                    f"{letter}{usual.text} ({times(usual.often)}, first on {line}); it should have one"
+                    f"the {_KINDS[letter]} {name!r} has the id {letter}{use.text} "
+                    f"({times(use.occurrences)}) and {letter}{usual.text} "
+                    f"({times(usual.occurrences)}, first on {line}); it should have one"
                 )
-                yield sheet.finding(message, use.first)
+                yield sheet.finding(message, use.first_index)
 
 
 @rule("missing-field", NOTE, "no id or motion flag, in a file where other lines have one")
-def missing_field(context: Context) -> Iterator[Diagnostic]:
-    """Ids and motion flags are optional, but a file has them everywhere or nowhere.
+def find_missing_fields(context: Context) -> Iterator[Diagnostic]:
+    """Ids and motion flags are optional, but a file has them on all lines or on none.
 
-    A line without an id is reported where 19 of 20 lines have one. Where most object lines have a motion
-    flag, one finding covers all that have none.
+    Lines without an id are reported if at least 19 of 20 lines have one. If most object lines have a motion
+    flag, a single finding covers all object lines that have none.
     """
     for sheet in context.sheets:
         lines = sheet.distinct_lines
         without_id = [written for written in lines if not written.line.id]
-        count = sum(written.often for written in without_id)
-        if 20 * count <= sum(written.often for written in lines):
+        count = sum(written.occurrences for written in without_id)
+        if 20 * count <= sum(written.occurrences for written in lines):
             for written in without_id:
-                letter = sheet.lines[written.first][0]
+                letter = sheet.lines[written.first_index][0]
                 message = f"no {_KINDS[letter]} id behind {letter}; nearly all lines of the file have ids"
-                yield sheet.finding(message, written.first)
+                yield sheet.finding(message, written.first_index)
         objects = [
-            (written.line, written.first, written.often)
+            (written.line, written.first_index, written.occurrences)
             for written in lines
             if isinstance(written.line, ObjectLine)
         ]

@@ -1,4 +1,4 @@
-"""Rules about invisible letters, and letters that look like others."""
+"""Lint rule about letters that are invisible or look like others."""
 
 import re
 import unicodedata
@@ -18,13 +18,13 @@ _UNSEEN = {"Cc", "Cf", "Zl", "Zp", "Zs"}
 
 
 @rule("ambiguous-letter", ERROR, "a letter that is not seen, or that looks like another")
-def ambiguous_letter(context: Context) -> Iterator[Diagnostic]:
-    """Names are different that look the same: nobody can see why they do not go together.
+def find_ambiguous_letters(context: Context) -> Iterator[Diagnostic]:
+    """Two names look the same but differ, which nobody can see.
 
-    One has a control character, a letter without width or a blank that is no usual blank; or a Cyrillic or
-    Greek letter among Latin ones, while a word in one script is fine; or an accented letter that is two
-    characters in one place and one in another, of which the rarer form is reported. Type the name again, or
-    copy it.
+    One name has a control character, a letter without width, or a blank that is not the usual one. Or it has
+    a Cyrillic or Greek letter among Latin ones; a word in a single script is fine. Or an accented letter is
+    two characters in one name and one character in the other; then the rarer form is reported. Type the name
+    again, or copy it.
     """
     odd_lines = [
         (sheet, index, line)
@@ -33,15 +33,14 @@ def ambiguous_letter(context: Context) -> Iterator[Diagnostic]:
         if not line.startswith("#") and not _PLAIN.fullmatch(line)
     ]
     spelt = Counter(word for _, _, line in odd_lines for word in _LETTERS_OF_WORD.findall(line))
-    usual: dict[
-        str, str
-    ] = {}  # of the forms of a word, by its composed form, which is usual if all are as rare
+    # the most frequent form of each word, by its composed form, which comes first among equally frequent ones
+    usual_forms: dict[str, str] = {}
     for word in sorted(spelt, key=lambda form: (spelt[form], unicodedata.is_normalized("NFC", form))):
-        usual[unicodedata.normalize("NFC", word)] = word
+        usual_forms[unicodedata.normalize("NFC", word)] = word
     for sheet, index, line in odd_lines:
-        faults = [_invisible_character(line), _of_two_scripts(line)]
+        faults = [_invisible_character_fault(line), _mixed_script_fault(line)]
         for word in dict.fromkeys(_LETTERS_OF_WORD.findall(line)):
-            if word != usual[unicodedata.normalize("NFC", word)]:
+            if word != usual_forms[unicodedata.normalize("NFC", word)]:
                 message = (
                     f"{word!r} looks the same elsewhere, where its accents are other characters; the names "
                     "differ, so copy the word from there"
@@ -51,8 +50,11 @@ def ambiguous_letter(context: Context) -> Iterator[Diagnostic]:
             yield sheet.finding(message, index, column=column)
 
 
-def _invisible_character(line: str) -> tuple[int, str] | None:
-    """Return the column of the first invisible character, and the message about it."""
+def _invisible_character_fault(line: str) -> tuple[int, str] | None:
+    """Return the column of the first invisible character, from 1, and the message about it.
+
+    ``None`` if the line has no such character.
+    """
     for column, letter in enumerate(line, 1):
         category = unicodedata.category(letter)
         if letter not in "\t " and category in _UNSEEN:
@@ -63,8 +65,11 @@ def _invisible_character(line: str) -> tuple[int, str] | None:
     return None
 
 
-def _of_two_scripts(line: str) -> tuple[int, str] | None:
-    """Return the column of the first letter of a rarer script in a word, and the message about it."""
+def _mixed_script_fault(line: str) -> tuple[int, str] | None:
+    """Return the column, from 1, of the first letter of another script within a word, and the message.
+
+    The other script is the one with the fewest letters in the word. ``None`` if every word has one script.
+    """
     for match in _LETTERS_OF_WORD.finditer(line):
         scripts: dict[str, list[int]] = {}
         for index, letter in enumerate(match[0]):

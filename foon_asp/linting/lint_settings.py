@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
-from foon_asp.linting.catalog import CATALOG, unknown_code
+from foon_asp.linting.catalog import CATALOG, unknown_code_message
 from foon_asp.network import Source
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
 from foon_asp.text.plain_file import read_plain_text, split_lines
@@ -21,12 +21,14 @@ _WORD = re.compile(r"""#[^\n]*|\"{3}.*?\"{3}|'{3}.*?'{3}|"(?:[^"\\\n]|\\.)*"|'[^
 
 @dataclass(frozen=True)
 class LintSettings:
-    """The settings of linting: the findings that are reported, and their severities.
+    """The settings of linting: which findings are reported, and with which severities.
 
-    ``select`` are the codes that are reported, empty for all codes; ``ignore`` are the codes that are left
-    out. ``per_file`` has codes that are left out in files under ``folder`` whose path matches a pattern.
-    ``severity`` has severities by code that replace those of the catalog. ``file`` is the file of the
-    settings, ``None`` for the defaults.
+    ``select``: the codes that are reported; empty for all codes.
+    ``ignore``: the codes that are not reported.
+    ``per_file``: by pattern of paths, further codes that are not reported in these files; paths are relative
+    to the folder of ``file``.
+    ``severity``: by code, the severity that replaces that of the rule.
+    ``file``: the file that the settings are from; ``None`` for the defaults.
     """
 
     select: tuple[str, ...] = ()
@@ -35,8 +37,8 @@ class LintSettings:
     severity: Mapping[str, Severity] = field(default_factory=dict)
     file: Path | None = None
 
-    def applied(self, findings: Iterable[Diagnostic]) -> list[Diagnostic]:
-        """Return the findings that these settings report, with their severities."""
+    def apply(self, findings: Iterable[Diagnostic]) -> list[Diagnostic]:
+        """Return the findings that these settings report, with the severities that they set."""
         return [
             finding._replace(severity=self.severity.get(finding.code, finding.severity))
             for finding in findings
@@ -46,23 +48,24 @@ class LintSettings:
         ]
 
     def _is_ignored_in(self, file: str, code: str) -> bool:
-        """Whether a pattern for single files ignores a code in this file."""
+        """Whether ``per_file`` ignores a code in this file."""
         patterns = [pattern for pattern, codes in self.per_file.items() if code in codes]
         if not patterns or self.file is None:
             return False
         path = PurePosixPath(Path(os.path.relpath(file, self.file.parent)).as_posix())
-        return any(_matches(path, pattern) for pattern in patterns)
+        return any(_path_matches(path, pattern) for pattern in patterns)
 
 
-def _matches(path: PurePosixPath, pattern: str) -> bool:
-    """Whether a path, or a folder that it is in, matches: ``old``, ``old/*.txt``, ``*.json``."""
+def _path_matches(path: PurePosixPath, pattern: str) -> bool:
+    """Whether a pattern such as ``old``, ``old/*.txt`` or ``*.json`` matches a path or one of its folders."""
     return any(candidate.match(pattern) for candidate in (path, *path.parents))
 
 
 def find_settings(files: Sequence[Path]) -> LintSettings:
-    """Read the settings nearest to the files: in the common folder of all files, or in one above it.
+    """Read the nearest settings: those in the common folder of all files, or in the nearest folder above.
 
-    Raises :class:`InputError`, with the place, for settings that are not understood.
+    Returns the defaults where no folder has settings. Raises :class:`InputError`, with the place, for
+    settings that are not understood.
     """
     folders = [os.path.dirname(os.path.abspath(file)) for file in files]
     try:
@@ -80,7 +83,7 @@ def find_settings(files: Sequence[Path]) -> LintSettings:
 
 
 def read_settings(file: Path) -> LintSettings | None:
-    """Read the settings of a file; ``None`` if it has none.
+    """Read the settings in a TOML file; ``None`` if it has no table for them.
 
     Raises :class:`InputError` with line and column of everything that is not understood.
     """
@@ -91,15 +94,15 @@ def read_settings(file: Path) -> LintSettings | None:
         match = _ERROR_POSITION.search(str(error))
         position = (int(match[1]), int(match[2])) if match and match[1] else _line_and_column(text, len(text))
         message = f"the file is not TOML: {_ERROR_POSITION.sub('', str(error))}"
-        raise InputError([_error(file, text, position, message)]) from None
+        raise InputError([_settings_error(file, text, position, message)]) from None
     faults: list[_Fault] = []
     if file.name == _FILES[0] and isinstance(table, dict) and "lint" in table:
         faults.append((("lint",), f"found the table [lint], expected [{_TABLE}]"))
     for key in _TABLE.split("."):
         table = table.get(key) if isinstance(table, dict) else None
-    faults += [] if table is None else _faults(table)
+    faults += [] if table is None else _table_faults(table)
     if faults:
-        errors = [_error(file, text, _position(text, path), message) for path, message in faults]
+        errors = [_settings_error(file, text, _key_position(text, path), message) for path, message in faults]
         raise InputError(sorted(errors, key=lambda error: error.source))
     if not isinstance(table, dict):
         return None
@@ -111,14 +114,14 @@ def read_settings(file: Path) -> LintSettings | None:
 _Fault = tuple[tuple[str, ...], str]  # the keys that lead to the fault, and the message
 
 
-def _faults(table: object) -> Iterator[_Fault]:
-    """Yield the faults of the table of settings."""
+def _table_faults(table: object) -> Iterator[_Fault]:
+    """Yield what is wrong in the table of settings: unknown settings, codes and severities, wrong types."""
     if not isinstance(table, dict):
         yield ("lint",), "expected a table of settings"
         return
     for key, value in table.items():
         if key in {"select", "ignore"}:
-            yield from _faults_of_codes((key,), value)
+            yield from _code_list_faults((key,), value)
         elif key not in {"per-file", "severity"}:
             expected = "select, ignore, per-file, severity"
             yield (key,), f"found the setting {key!r}, expected one of {expected}"
@@ -127,26 +130,29 @@ def _faults(table: object) -> Iterator[_Fault]:
         else:
             for name, setting in value.items():
                 if key == "per-file":
-                    yield from _faults_of_codes((key, name), setting)
+                    yield from _code_list_faults((key, name), setting)
                 elif name not in CATALOG:
-                    yield (key, name), unknown_code(name)
+                    yield (key, name), unknown_code_message(name)
                 elif setting not in list(Severity):
                     expected = ", ".join(repr(str(severity)) for severity in Severity)
                     yield (key, name), f"found {setting!r}, expected one of {expected}"
 
 
-def _faults_of_codes(path: tuple[str, ...], value: object) -> Iterator[_Fault]:
-    """Yield the faults of a list of codes of rules in the settings."""
+def _code_list_faults(path: tuple[str, ...], value: object) -> Iterator[_Fault]:
+    """Yield what is wrong in a list of codes, which stands at the keys ``path``."""
     if not isinstance(value, list) or not all(isinstance(code, str) for code in value):
         yield path, f'expected a list of codes such as {path[-1]} = ["near-name"]'
         return
     for code in value:
         if code not in CATALOG:
-            yield (*path, code), unknown_code(code)
+            yield (*path, code), unknown_code_message(code)
 
 
-def _position(text: str, path: tuple[str, ...]) -> tuple[int, int]:
-    """Return the line and column of the last word of a path of keys, which begins below the table."""
+def _key_position(text: str, path: tuple[str, ...]) -> tuple[int, int]:
+    """Return line and column, from 1, of the last key of a path of keys in the text of a TOML file.
+
+    The path begins below the table of settings.
+    """
     matches = [match for match in _WORD.finditer(text) if match[0][0] != "#"]
     words = [match[0].strip("\"'") for match in matches]
     table = _TABLE.split(".")[1:]
@@ -157,10 +163,12 @@ def _position(text: str, path: tuple[str, ...]) -> tuple[int, int]:
 
 
 def _line_and_column(text: str, offset: int) -> tuple[int, int]:
+    """Return the line and column, from 1, of the character at an offset from 0."""
     before = text[:offset].replace("\r\n", "\n")
     return before.count("\n") + 1, len(before) - before.rfind("\n")
 
 
-def _error(file: Path, text: str, position: tuple[int, int], message: str) -> Diagnostic:
+def _settings_error(file: Path, text: str, position: tuple[int, int], message: str) -> Diagnostic:
+    """Return the error about a line and column of the settings file."""
     excerpt = split_lines(text)[position[0] - 1]
     return Diagnostic(Severity.ERROR, "settings", message, Source(str(file), *position), excerpt)

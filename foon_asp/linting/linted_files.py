@@ -1,4 +1,4 @@
-"""The files that are linted together, read as far as they can be read."""
+"""The files that are linted together. What cannot be read in them is left out."""
 
 import re
 from collections.abc import Iterable, Mapping
@@ -24,27 +24,34 @@ _LINE_BREAK = re.compile(r"[\r\n]")
 
 
 def with_tables(paths: Iterable[Path], files: Iterable[Path]) -> list[Path]:
-    """Return ``files``, and the tables (rates, utensils and others) of those ``paths`` that are folders."""
+    """Return ``files``, and then the tables in the folders among ``paths``, each file once.
+
+    Tables are files with a name such as ``motion.txt`` (rates) or ``utensils.txt``.
+    """
     folders = [path for path in paths if path.is_dir()]
     tables = [file for folder in folders for file in sorted(folder.rglob("*.txt")) if file.name in TABLES]
     return list(dict.fromkeys([*files, *tables]))
 
 
 class Copy(NamedTuple):
-    """A copy of a unit: the number of its sheet, the index of its first line, and counts of its nodes."""
+    """A copy of a unit in a file.
+
+    ``sheet`` is the number of its sheet, ``first_index`` the index of its first line. ``inputs`` and
+    ``outputs`` are the numbers of nodes that it lists.
+    """
 
     sheet: int
-    at: int
+    first_index: int
     inputs: int
     outputs: int
 
 
 class LintedFiles:
-    """All sheets, the network of their units, the tables beside networks, and the remarks of the reader.
+    """The files that are linted together: their sheets, their tables, and the network of all their units.
 
-    ``copies[u]`` are the copies of unit ``u`` of the network, in the order read. Errors do not end the
-    reading of a file: lines that cannot be understood are left out. ``contents`` are the bytes of files that
-    are not to be read from disk.
+    ``copies[u]`` are the copies of unit ``u`` of the network, in the order read. ``remarks`` are those of the
+    reader. An error does not end the reading of a file: lines that cannot be understood are left out.
+    ``contents`` are the bytes of files that are not to be read from disk.
     """
 
     def __init__(self, files: Iterable[Path], contents: Mapping[Path, bytes] = MappingProxyType({})) -> None:
@@ -61,21 +68,24 @@ class LintedFiles:
                 text = self.reader.text(file, self._contents.get(file))
                 self.tables.append(Sheet(str(file), split_lines(text), self.reader))
             else:
-                self._read(file)
+                self._read_file(file)
         self.network: Network = self._builder.build()
         self.remarks += self.reader.diagnostics
 
     @cached_property
     def copies_by_sheet(self) -> list[list[tuple[Copy, int]]]:
-        """The copies of units in each sheet, in the order of the sheet, each with the id of its unit."""
+        """For each sheet, the copies of units in it, in their order, each with the id of its unit."""
         by_sheet: list[list[tuple[Copy, int]]] = [[] for _ in self.sheets]
         for unit, copies in enumerate(self.copies):
             for copy in copies:
                 by_sheet[copy.sheet].append((copy, unit))
         return [sorted(copies) for copies in by_sheet]
 
-    def _read(self, file: Path) -> None:
-        """Read a file as a sheet or a table, and collect the remarks of the reader."""
+    def _read_file(self, file: Path) -> None:
+        """Read a file as a sheet, and add its units to the network.
+
+        A kitchen or a list of goals has no units; its entries are added to the sheet.
+        """
         text = self.reader.text(file, self._contents.get(file))
         lines = split_lines(text)
         format_ = format_of(text, str(file))
@@ -91,31 +101,35 @@ class LintedFiles:
             ]
         elif "# From:" in text:  # units of a merged file name the places that they come from
             for unit in self.reader.listed_units(text, str(file)):
-                self._add(unit.motion.motion, unit.sides, unit.inputs[0].source.line - 1)
+                self._add_unit(unit.motion.motion, unit.sides, unit.inputs[0].source.line - 1)
         else:
             for motion, inputs, outputs, sources, _ in self.reader.units(text, str(file)):
-                self._add(motion, (inputs, outputs), sources[0].line - 1)
+                self._add_unit(motion, (inputs, outputs), sources[0].line - 1)
 
     def _read_json(self, text: str, file: Path, format_: Format, source_lines: list[str]) -> None:
-        """Read a JSON file as the equivalent lines of FOON text."""
+        """Read a JSON file as a sheet of equivalent lines of FOON text, and add its units to the network.
+
+        ``source_lines`` are the lines of the file itself.
+        """
         lines: list[str] = []
         sources: list[Source] = []
         sheet = Sheet(str(file), lines, self.reader, sources, source_lines=source_lines)
         self.sheets.append(sheet)
 
-        def write(parsed: Iterable[Line], source: Source, *extra: str) -> None:
-            texts = [*map(_written, parsed), *extra]
+        def append_lines(parsed: Iterable[Line], source: Source, *extra: str) -> None:
+            """Append lines of FOON text to the sheet, all with one place in the JSON file."""
+            texts = [*map(_write_on_one_line, parsed), *extra]
             lines.extend(texts)
             sources.extend([source] * len(texts))
 
         if not format_.lists_objects(text):
             for unit in self.reader.listed_units(text, str(file)):
-                self._add(unit.motion.motion, unit.sides, len(lines))
+                self._add_unit(unit.motion.motion, unit.sides, len(lines))
                 inputs, outputs = (
                     [line for block in blocks for line in block.lines]
                     for blocks in (unit.inputs, unit.outputs)
                 )
-                write([*inputs, unit.motion, *outputs], unit.motion_source, "//")
+                append_lines([*inputs, unit.motion, *outputs], unit.motion_source, "//")
             return
         elements = JsonList(text, file)
         sheet.entries = []
@@ -125,17 +139,20 @@ class LintedFiles:
             ]
             sheet.entries.append(Entry(pattern, len(lines), block.amount))
             container = [] if pattern.container is None else [f"S\tin\t[{pattern.container}]"]
-            write(block.lines, block.source, *container)
+            append_lines(block.lines, block.source, *container)
         self.remarks += elements.errors
 
-    def _add(self, motion: str, sides: tuple[list[ObjectNode], list[ObjectNode]], index: int) -> None:
-        """Add a unit of the current sheet to the network, and record this copy of it."""
+    def _add_unit(self, motion: str, sides: tuple[list[ObjectNode], list[ObjectNode]], index: int) -> None:
+        """Add a unit of the last sheet to the network, and record this copy of it.
+
+        ``sides`` are its inputs and outputs, ``index`` is that of its first line.
+        """
         unit = self._builder.add(motion, *sides)
         if unit == len(self.copies):
             self.copies.append([])
         self.copies[unit].append(Copy(len(self.sheets) - 1, index, *map(len, sides)))
 
 
-def _written(line: Line) -> str:
-    """Write a line read from JSON, whose names may hold line breaks, on one line."""
+def _write_on_one_line(line: Line) -> str:
+    """Write a line read from JSON as FOON text; line breaks in its names become blanks."""
     return _LINE_BREAK.sub(" ", write_line(line))

@@ -1,4 +1,4 @@
-"""All findings about files that belong together."""
+"""The linter: all findings of all rules about files that belong together."""
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -23,21 +23,28 @@ def lint(
     ``contents`` are the bytes of files that are not to be read from disk. Findings that a ``# noqa`` comment
     silences are left out.
 
-    Names are compared over all files, and with those of a ``vocabulary`` or of the bundled one; the units of
-    all files are one network. The severity of a finding is that of its rule; ``fix`` is the mended line where
-    mending changes nothing of what is understood. Raises :class:`foon_asp.errors.UserError` for a file that
-    cannot be opened.
+    The units of all files form one network. Names are compared over all files, and with those of a file
+    ``vocabulary``, or of the bundled one for ``None``. The severity of a finding is that of its rule. ``fix``
+    is the mended line where mending does not change what is read. Raises :class:`foon_asp.errors.UserError`
+    for a file that cannot be opened.
     """
     return lint_context(Context(LintedFiles(files, contents), vocabulary))
 
 
 def lint_context(context: Context) -> list[Diagnostic]:
-    """Return the findings about files that were read, as :func:`lint` does."""
+    """Return the findings about files that were read; they are sorted and silenced as in :func:`lint`.
+
+    Adds the findings of all rules but ``noqa`` to those of the context.
+    """
     for rule in CATALOG.values():
         if rule.code != _ABOUT_FINDINGS:
             context.findings += rule.findings(context)
     findings = [*unsilenced(context), *CATALOG[_ABOUT_FINDINGS].findings(context)]
     order = {sheet.file: number for number, sheet in enumerate([*context.sheets, *context.files.tables])}
-    return sorted(
-        findings, key=lambda f: (order.get(f.source.file, 0), f.source.line, f.source.column, f.code)
-    )
+
+    def sort_key(finding: Diagnostic) -> tuple[int, int, int, str]:
+        """Return the position of the file of a finding, its line, its column, and its code."""
+        source = finding.source
+        return order.get(source.file, 0), source.line, source.column, finding.code
+
+    return sorted(findings, key=sort_key)

@@ -1,4 +1,4 @@
-"""Mending of files: fixes and renames of findings applied."""
+"""Mending of files: the fixes and renames of findings are applied."""
 
 import re
 from codecs import BOM_UTF8
@@ -12,20 +12,23 @@ _LINE = re.compile(rb"([^\r\n]*)(\r\n|\r|\n|\Z)")
 
 
 def is_mendable(finding: Diagnostic, unsafe: bool = False) -> bool:
-    """Whether a finding has a safe fix, which does not change what is read; if ``unsafe``, any fix."""
+    """Whether a finding has a safe fix, which does not change what is read; with ``unsafe``, any fix.
+
+    Renames are never safe.
+    """
     if finding.rename is not None:
         return unsafe
     return finding.fix is not None and (unsafe or not finding.unsafe)
 
 
-def mended(content: bytes, findings: Iterable[Diagnostic], unsafe: bool = False) -> bytes:
+def mend(content: bytes, findings: Iterable[Diagnostic], unsafe: bool = False) -> bytes:
     """Return the bytes of a file with the fixes of findings applied.
 
-    Fixes that change what is read, and renames in the whole file, are applied only if ``unsafe``.
+    With ``unsafe``, fixes that change what is read and renames in the whole file are applied, too.
 
-    All other bytes stay: line ends, a byte order mark, lines without a fix, and lines that were changed since
-    they were linted. A ``//`` that is added after the last unit gets the line end of the line before it or,
-    if that has none, of the first line.
+    All other bytes stay: line ends, a byte order mark, and lines without a fix. A line that is not as it was
+    when it was linted stays, too. A ``//`` that is added after the last unit gets the line end of the line
+    before it or, if that has none, of the first line.
     """
     fixes: dict[int, tuple[bytes, bytes]] = {}
     separated: set[int] = set()

@@ -1,4 +1,4 @@
-"""Names: typing errors, and objects that are never there."""
+"""Lint rules about names: typing errors, and names in brackets that are never objects."""
 
 import re
 from collections.abc import Iterator
@@ -13,31 +13,32 @@ from foon_asp.text.line import StateLine
 
 
 @rule("near-name", WARNING, "two names that differ by a likely typing error")
-def near_name(context: Context) -> Iterator[Diagnostic]:
+def find_near_names(context: Context) -> Iterator[Diagnostic]:
     """Two names of one kind are probably meant to be the same.
 
-    The kinds are objects with containers and ingredients, states, motions, and words of relations. Names that
-    differ only in doubled letters, capitals, spaces or hyphens are reported however often they occur; others
-    are reported if a single letter is missing, added, changed, or swapped with the next, and one of them is
-    rare, not in the vocabulary, or never made or never taken. Singular and plural, `cube` and `cubed` (but
-    not `gratd`), digits, and different first letters do not count as slips. Each pair is reported once in
-    each file, at the rarer name, which need not be the wrong one.
+    The kinds are objects (with containers and ingredients), states, motions, and words of relations. Names
+    that differ only in doubled letters, capitals, spaces or hyphens are reported however often they occur.
+    Names that differ in a single letter are reported if one of them is rare, not in the vocabulary, or never
+    made or never taken. The letter is missing, added, changed, or swapped with the next. Singular and plural,
+    endings of verbs (`cube` and `cubed`), digits, and different first letters do not count as slips; `gratd`
+    for `grated` does. Each pair is reported once in each file, at the rarer name, which need not be the wrong
+    one.
     """
     for kind, pairs in context.near_names.items():
         for name, meant in pairs:
-            yield from _near_findings(context, kind, name, meant)
+            yield from _near_name_findings(context, kind, name, meant)
 
 
-def _near_findings(context: Context, kind: Kind, name: str, meant: str) -> Iterator[Diagnostic]:
-    """Yield a finding in each sheet about a name that is probably another one."""
+def _near_name_findings(context: Context, kind: Kind, name: str, meant: str) -> Iterator[Diagnostic]:
+    """Yield a finding for each sheet with ``name``, which is probably ``meant`` misspelt."""
     names, words = context.names, context.vocabulary.words
     counts = names.counts[kind]
     is_slip = words.issuperset(words_of(meant)) and not words.issuperset(words_of(name))
     # two names that stand equally often: which one is wrong?
     rename = Rename(kind, name, meant) if counts[meant] > counts[name] or is_slip else None
     roles = ""
-    if kind is Kind.OBJECT and (name in names.objects) != (meant in names.objects):
-        unlisted = name if meant in names.objects else meant
+    if kind is Kind.OBJECT and (name in names.object_counts) != (meant in names.object_counts):
+        unlisted = name if meant in names.object_counts else meant
         roles = f", and {unlisted!r} is never an object of its own"
     for sheet, index, count in names.by_sheet(kind, name):
         others = "" if count == counts[name] else f" ({times(count)} in this file)"
@@ -49,14 +50,17 @@ def _near_findings(context: Context, kind: Kind, name: str, meant: str) -> Itera
 
 
 @rule("misspelt", WARNING, "a word that is nearly one of the vocabulary")
-def misspelt(context: Context) -> Iterator[Diagnostic]:
-    """A word that is not in the vocabulary differs from one of it by one letter, as typing errors do.
+def find_misspelt_words(context: Context) -> Iterator[Diagnostic]:
+    """A word that is not in the vocabulary differs by one letter from a word of the vocabulary.
 
-    If the right name stands in the files, too, this is a `near-name`.
+    If the right name stands in the files, too, the finding is a `near-name`.
     """
     for kind, counts in context.names.counts.items():
         for name in counts:
-            if (slip := context.vocabulary.slip(kind, name)) and (kind, name) not in context.paired_names:
+            if (slip := context.vocabulary.find_slip(kind, name)) and (
+                kind,
+                name,
+            ) not in context.paired_names:
                 word, meant = slip
                 message = f"{word!r} in the {kind} {name!r} is no word that is known; is it {meant!r}?"
                 corrected = re.sub(rf"(?<![^\W\d_]){word}(?![^\W\d_])", meant, name)
@@ -68,30 +72,36 @@ def misspelt(context: Context) -> Iterator[Diagnostic]:
 
 
 @rule("unknown-container", NOTE, "an object in [ ] that is never an object line")
-def unknown_container(context: Context) -> Iterator[Diagnostic]:
-    """No unit takes or makes the container, and it may have another name as an object.
+def find_unknown_containers(context: Context) -> Iterator[Diagnostic]:
+    """No unit takes or makes the container as an object; it may have another name as an object.
 
-    Where no other name is like it, it is reported only if the vocabulary does not have its words. It is
-    reported once for all files, where it first occurs.
+    If no object has a similar name, the container is reported only if the vocabulary does not have its words.
+    It is reported once for all files, where it first occurs.
     """
-    return _unknown(context, Relation, "stands in [ ]", "no unit takes or makes it")
+    return _unlisted_name_findings(context, Relation, "stands in [ ]", "no unit takes or makes it")
 
 
 @rule("unknown-ingredient", WARNING, "an ingredient in { } that is never an object line")
-def unknown_ingredient(context: Context) -> Iterator[Diagnostic]:
-    """No unit can have put it there, and it may have another name as an object.
+def find_unknown_ingredients(context: Context) -> Iterator[Diagnostic]:
+    """No unit takes or makes the ingredient as an object; it may have another name as an object.
 
-    Where no other name is like it, it is reported only if the vocabulary does not have its words. It is
-    reported once for all files, where it first occurs.
+    If no object has a similar name, the ingredient is reported only if the vocabulary does not have its
+    words. It is reported once for all files, where it first occurs.
     """
-    return _unknown(context, Contents, "is an ingredient", "no unit adds it")
+    return _unlisted_name_findings(context, Contents, "is an ingredient", "no unit adds it")
 
 
-def _unknown(context: Context, bracket: Bracket, role: str, advice: str) -> Iterator[Diagnostic]:
-    """Yield findings about bracketed names that no unit takes or makes as an object."""
+def _unlisted_name_findings(
+    context: Context, bracket: Bracket, role: str, advice: str
+) -> Iterator[Diagnostic]:
+    """Yield a finding for each name in a kind of bracket that is never an object of a unit.
+
+    ``role`` and ``advice`` are parts of the messages. Names that are reported as `near-name` or `misspelt`
+    are skipped.
+    """
     names, vocabulary = context.names, context.vocabulary
     for name, mentions in names.mentions[Kind.OBJECT].items():
-        if name in names.objects or (Kind.OBJECT, name) in context.paired_names:
+        if name in names.object_counts or (Kind.OBJECT, name) in context.paired_names:
             continue
         bracketed = [
             mention
@@ -100,15 +110,17 @@ def _unknown(context: Context, bracket: Bracket, role: str, advice: str) -> Iter
             and isinstance(mention.line.attribute, bracket)
             and context.sheets[mention.sheet].entries is None
         ]
-        if not bracketed or vocabulary.slip(Kind.OBJECT, name):
+        if not bracketed or vocabulary.find_slip(Kind.OBJECT, name):
             continue
-        alike = " or ".join(map(repr, names.objects_alike(name)))
+        alike = " or ".join(map(repr, names.similar_labels(name)))
         if not alike and all(word in vocabulary.words for word in name.lower().replace("-", " ").split()):
             continue
-        first = min(bracketed, key=lambda mention: (mention.sheet, mention.first))
+        first = min(bracketed, key=lambda mention: (mention.sheet, mention.first_index))
         sheets = len({mention.sheet for mention in bracketed})
-        often = times(sum(mention.often for mention in bracketed)) + (
+        how_often = times(sum(mention.occurrences for mention in bracketed)) + (
             f" in {sheets} files" if sheets > 1 else ""
         )
-        message = f"{name!r} {role} {often}, and is never an object; {f'is it {alike}?' if alike else advice}"
-        yield context.sheets[first.sheet].finding(message, first.first, name)
+        message = (
+            f"{name!r} {role} {how_often}, and is never an object; {f'is it {alike}?' if alike else advice}"
+        )
+        yield context.sheets[first.sheet].finding(message, first.first_index, name)

@@ -1,4 +1,4 @@
-"""The names in the files that are linted together, and their places."""
+"""The names in the files that are linted together, with the lines that mention them."""
 
 from collections.abc import Iterator
 from functools import cached_property
@@ -13,45 +13,53 @@ Kind = NameKind
 
 
 def is_of_another_network(unknown: int, total: int) -> bool:
-    """Return whether a list or table is probably for another network: of ``total`` names, most are unknown.
+    """Whether a list or table is probably for another network, as most of its names are unknown.
 
-    Up to ten unknown names are probably slips, which are reported one by one.
+    ``unknown`` of its ``total`` names are unknown. False for up to ten unknown names: these are probably
+    slips, which are reported one by one.
     """
     return unknown > 10 and 2 * unknown > total
 
 
 class Mention(NamedTuple):
-    """A distinct line with a name in a sheet: the index of its first copy, and the number of copies."""
+    """A line with a name.
+
+    ``sheet`` is the number of the sheet. Equal lines of a sheet are one mention: ``first_index`` is the index
+    of the first of them, ``occurrences`` is how many there are.
+    """
 
     sheet: int
     line: Line
-    first: int
-    often: int
+    first_index: int
+    occurrences: int
 
 
 class Names:
-    """Every name of every kind with its mentions, in order, and their number."""
+    """Every name in the files, by its kind.
+
+    ``mentions`` are the lines with each name, in order. ``counts`` are the numbers of lines with each name.
+    """
 
     def __init__(self, files: LintedFiles) -> None:
-        """Collect the mentions of every name in the files, and count them."""
+        """Collect and count the mentions of every name in the files."""
         self.files = files
         self.network = files.network
         self.mentions: dict[Kind, dict[str, list[Mention]]] = {kind: {} for kind in Kind}
         self.counts: dict[Kind, dict[str, int]] = {kind: {} for kind in Kind}
-        self.objects: dict[str, int] = {}
+        self.object_counts: dict[str, int] = {}
         """The number of object lines with each label."""
         for number, sheet in enumerate(files.sheets):
-            for line, index, often in sheet.distinct_lines:
-                mention = Mention(number, line, index, often)
+            for line, index, occurrences in sheet.distinct_lines:
+                mention = Mention(number, line, index, occurrences)
                 for kind, name, _ in dict.fromkeys(line_names(line)):
                     self.mentions[kind].setdefault(name, []).append(mention)
-                    self.counts[kind][name] = self.counts[kind].get(name, 0) + often
+                    self.counts[kind][name] = self.counts[kind].get(name, 0) + occurrences
                 if isinstance(line, ObjectLine):
-                    self.objects[line.label] = self.objects.get(line.label, 0) + often
+                    self.object_counts[line.label] = self.object_counts.get(line.label, 0) + occurrences
 
     @cached_property
-    def loose(self) -> dict[Kind, set[str]]:
-        """Names by kind that are missing among the inputs, or among the outputs, of all units."""
+    def one_sided(self) -> dict[Kind, set[str]]:
+        """By kind, the names that never stand among the inputs of units, or never among the outputs."""
         network = self.network
         input_names, output_names = (
             {
@@ -61,42 +69,47 @@ class Names:
             }
             for nodes_by_unit in (network.inputs, network.outputs)
         )
-        both = input_names & output_names
+        two_sided = input_names & output_names
         return {
-            kind: {name for name in names if (kind, name) not in both} for kind, names in self.counts.items()
+            kind: {name for name in names if (kind, name) not in two_sided}
+            for kind, names in self.counts.items()
         }
 
-    def objects_alike(self, name: str) -> list[str]:
-        """Return labels on object lines that a name may be meant for, the most frequent first.
+    def similar_labels(self, name: str) -> list[str]:
+        """Return labels of object lines that a name may stand for, the most frequent first.
 
-        These are the name in singular or plural, or else up to three labels that end with its words.
+        These are the name in the singular or plural. If there are none, up to three labels that end with the
+        words of the name.
         """
         singular = _singular(name)
-        alike = self._by_ending.get(singular, [])
+        alike = self._labels_by_ending.get(singular, [])
         return [label for label in alike if _singular(label) == singular] or alike[:3]
 
     @cached_property
-    def _by_ending(self) -> dict[str, list[str]]:
-        """Labels by their last one to four words in the singular, and by all of their words."""
+    def _labels_by_ending(self) -> dict[str, list[str]]:
+        """Labels by their endings of one to four words, and by all of their words; keys are in the singular.
+
+        The labels with an ending are in order, the most frequent first.
+        """
         endings: dict[str, list[str]] = {}
-        for label in sorted(self.objects, key=lambda label: (-self.objects[label], label)):
+        for label in sorted(self.object_counts, key=lambda label: (-self.object_counts[label], label)):
             words = _singular(label).split(" ")
             for start in {0, *range(max(1, len(words) - 4), len(words))}:
                 endings.setdefault(" ".join(words[start:]), []).append(label)
         return endings
 
     def by_sheet(self, kind: Kind, name: str) -> Iterator[tuple[Sheet, int, int]]:
-        """Yield each sheet with a name, the index of the first line with it, and the number of mentions."""
+        """Yield each sheet with a name, the index of its first line with it, and the number of such lines."""
         by_sheet: dict[int, tuple[int, int]] = {}
-        for sheet, _, index, often in self.mentions[kind][name]:
+        for sheet, _, index, occurrences in self.mentions[kind][name]:
             first, total = by_sheet.get(sheet, (index, 0))
-            by_sheet[sheet] = min(first, index), total + often
+            by_sheet[sheet] = min(first, index), total + occurrences
         for sheet, first_and_total in by_sheet.items():
             yield self.files.sheets[sheet], *first_and_total
 
 
 def _names_in(node: ObjectNode) -> Iterator[tuple[Kind, str]]:
-    """Yield each name in a node with its kind."""
+    """Yield all names in a node, each after its kind."""
     yield Kind.OBJECT, node.label
     yield from ((Kind.STATE, state) for state in node.states)
     for word, related_object in node.relations:
@@ -111,4 +124,5 @@ def times(count: int) -> str:
 
 
 def _singular(name: str) -> str:
+    """Return a name without a final s; a name that ends in ss stays."""
     return name[:-1] if name[-1:] == "s" and name[-2:] != "ss" else name

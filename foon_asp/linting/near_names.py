@@ -1,4 +1,4 @@
-"""Pairs of names that are one name with a typing error, found by deletion neighbourhoods."""
+"""Pairs of similar names, one of which is probably a typing error of the other."""
 
 import re
 from collections.abc import Collection, Container, Iterable, Iterator, Mapping
@@ -11,14 +11,14 @@ _VERB_ENDING = re.compile(r"(?:e?[sdr]|[ey])$")  # juice, juiced; flakes, flaked
 
 
 class _Slips(NamedTuple):
-    """The limits of frequency and length for a name to count as a slip for another name.
+    """The limits of frequency and length for a name to count as a slip: a typing error of another name.
 
-    ``rare``, ``very_rare``: the greatest number of mentions of a slip.
-    ``ratio``, ``high_ratio``, ``highest_ratio``: the least ratio of mentions of the other name to those of
-    the slip.
-    ``short``, ``medium``, ``long``: the least number of letters of the shorter word. Shorter words are mostly
-    different words (off and of, bell and bel). With lower limits, more slips are found, and more words are
-    wrongly reported.
+    ``rare``, ``very_rare``: the greatest numbers of mentions of a slip.
+    ``ratio``, ``high_ratio``, ``highest_ratio``: how many times as often the other name must be mentioned, at
+    least.
+    ``short``, ``medium``, ``long``: the least numbers of letters of the shorter word. Shorter words are
+    mostly different words (off and of, bell and bel). With lower limits, more slips are found, and more words
+    are wrongly reported.
     ``compared``: how many of the names that share all letters but one are compared, the most frequent first.
     ``name_letters``: the greatest number of letters of a name; longer texts are no names, and slow to
     compare.
@@ -43,59 +43,65 @@ def near_names(
     counts: dict[str, int],
     verbs: bool = False,
     known_words: Collection[str] = (),
-    loose: Container[str] = (),
+    one_sided: Container[str] = (),
 ) -> Iterator[tuple[str, str]]:
-    """Yield pairs of names of one kind: the rarer one, and the one that may be meant.
+    """Yield pairs of names of one kind: the rarer one, and the one that is probably meant.
 
     Names that only differ in doubled letters, capitals, blanks or hyphens are a pair at any frequency
-    (``drinking glas``, ``hashbrown``). A rare name and a much more frequent name are a pair if one letter
-    after the first of a word is missing, added, changed or swapped (``baking try``). Grammatical endings
-    (egg, eggs) and different digits are no slips. A rare name is in one pair at most.
+    (``drinking glas``, ``hashbrown``). A rare name and a much more frequent name are a pair if one letter of
+    a word is missing, added, changed or swapped (``baking try``). The first letter of the word must be equal.
+    Grammatical endings (egg, eggs) and different digits are no slips. A rare name is in one pair at most.
 
-    Rare names are looked up among the frequent names by deletion neighbourhood: the texts that lack one of
-    their letters. So not all pairs are compared.
+    Two names are compared only if their deletion neighbourhoods overlap. The deletion neighbourhood of a name
+    is the name and all texts that lack one of its letters.
 
     Parameters:
         counts: The number of mentions of each name.
         verbs: Whether the names are verbs; cube and cubed are then no slips either.
         known_words: Words that are spelt correctly. Two known words are different words. An unknown word
             similar to a known word is a slip at any frequency.
-        loose: Names that are never made or never used. A loose name similar to a name that is not loose is a
-            slip at any frequency.
+        one_sided: Names that are never made or never used. Such a name is a slip at any frequency if a
+            similar name is both made and used.
     """
     paired: set[str] = set()
-    for rare, meant in _spelt_two_ways(counts, known_words):
+    for rare, meant in _spelling_variants(counts, known_words):
         paired.update((rare, meant))
         yield rare, meant
     rare_names = [
         name
         for name, count in counts.items()
-        if name not in paired and (count <= _SLIPS.rare or name in loose or _unknown(name, known_words))
+        if name not in paired
+        and (count <= _SLIPS.rare or name in one_sided or _has_unknown_word(name, known_words))
     ]
     if not rare_names:
         return
     frequent: dict[str, list[str]] = {}
     for name in sorted(counts, key=lambda name: (-counts[name], name)):
-        if counts[name] < _SLIPS.ratio and name in loose and _unknown(name, known_words):
+        if counts[name] < _SLIPS.ratio and name in one_sided and _has_unknown_word(name, known_words):
             continue
-        for shortened in _without_a_letter(name):
+        for shortened in _deletion_neighbourhood(name):
             sharing = frequent.setdefault(shortened, [])
             if len(sharing) < _SLIPS.compared:
                 sharing.append(name)
     for name in rare_names:
         candidates = {
-            c for shortened in _without_a_letter(name) for c in frequent.get(shortened, ())
+            candidate
+            for shortened in _deletion_neighbourhood(name)
+            for candidate in frequent.get(shortened, ())
         }.difference({name})
         ordered = sorted(candidates, key=lambda other: (-counts[other], other))
         meant_name = next(
-            (other for other in ordered if _is_slip(name, other, counts, verbs, known_words, loose)), None
+            (other for other in ordered if _is_slip(name, other, counts, verbs, known_words, one_sided)), None
         )
         if meant_name is not None:
             yield name, meant_name
 
 
-def _spelt_two_ways(counts: dict[str, int], known_words: Collection[str]) -> Iterator[tuple[str, str]]:
-    """Yield pairs that are equal but for doubled letters, capitals and blanks, the rarer name first."""
+def _spelling_variants(counts: dict[str, int], known_words: Collection[str]) -> Iterator[tuple[str, str]]:
+    """Yield pairs of names that differ only in doubled letters, capitals and blanks.
+
+    The second name is the usual one: it has only known words, or else it is the most frequent.
+    """
     spellings: dict[str, list[str]] = {}
     for name in counts:
         if len(name) <= _SLIPS.name_letters:
@@ -103,29 +109,32 @@ def _spelt_two_ways(counts: dict[str, int], known_words: Collection[str]) -> Ite
     for skeleton, names in spellings.items():
         if len(names) < 2:
             continue
-        usual = max(names, key=lambda name: (not _unknown(name, known_words), counts[name]))
+        usual = max(names, key=lambda name: (not _has_unknown_word(name, known_words), counts[name]))
         for name in names:
             if name != usual and (len(skeleton) >= _SLIPS.long or joined(name) == joined(usual)):
                 yield name, usual
 
 
-def _without_a_letter(name: str) -> Iterable[str]:
-    """Return the deletion neighbourhood of a name: itself, and the texts without one of its letters."""
+def _deletion_neighbourhood(name: str) -> Iterable[str]:
+    """Return a name and all texts that lack one of its letters; nothing for a name that is too long."""
     if len(name) > _SLIPS.name_letters:
         return ()
     return {name, *(name[:position] + name[position + 1 :] for position in range(len(name)))}
 
 
 def near_word(word: str, deletions: Mapping[str, Iterable[str]], verbs: bool) -> str | None:
-    """Return the known word for which an unknown one is likely a slip, else ``None``.
+    """Return the known word that is probably meant by an unknown word, else ``None``.
 
-    ``deletions`` is the :func:`deletion_index` of the known words.
+    ``deletions`` is the :func:`deletion_index` of the known words. With ``verbs``, endings of verbs are no
+    slips.
     """
     if not _SLIPS.medium <= len(word) <= _SLIPS.name_letters:
         return None
     if word + "ed" in deletions:
         return word + "ed"
-    candidates = {other for shortened in _without_a_letter(word) for other in deletions.get(shortened, ())}
+    candidates = {
+        other for shortened in _deletion_neighbourhood(word) for other in deletions.get(shortened, ())
+    }
     # a changed letter is least likely: most such words are different words
     ordered = sorted(
         candidates, key=lambda other: (len(other) == len(word) and sorted(other) != sorted(word), other)
@@ -134,22 +143,29 @@ def near_word(word: str, deletions: Mapping[str, Iterable[str]], verbs: bool) ->
 
 
 def deletion_index(words: Iterable[str]) -> dict[str, list[str]]:
-    """Return an index of words by themselves and by the texts that lack one of their letters."""
+    """Return the words by each text in their deletion neighbourhoods.
+
+    The neighbourhood of a word is the word and all texts that lack one of its letters. Short words are left
+    out.
+    """
     deletions: dict[str, list[str]] = {}
     for word in words:
         if len(word) >= _SLIPS.medium:
-            for shortened in _without_a_letter(word):
+            for shortened in _deletion_neighbourhood(word):
                 deletions.setdefault(shortened, []).append(word)
     return deletions
 
 
-def _unknown(name: str, known_words: Collection[str]) -> bool:
-    """Whether a name has a word that is not known; false where no words are known."""
+def _has_unknown_word(name: str, known_words: Collection[str]) -> bool:
+    """Whether a name has a word that is not known; false if ``known_words`` is empty."""
     return bool(known_words) and any(word.isalpha() and word not in known_words for word in name.split(" "))
 
 
 def _differ_by_a_slip(word: str, other: str, verbs: bool) -> bool:
-    """Whether words differ by a letter behind the first, and not by a grammatical ending."""
+    """Whether two words differ by one letter after the first, and not only in their grammatical ending.
+
+    The letter is missing, added, changed or swapped.
+    """
     ending = _VERB_ENDING if verbs else _PLURAL_ENDING
     is_grammar = ending.sub("", word) == ending.sub("", other)
     is_cut = word[-1:] == "d" and other == f"{word[:-1]}ed"  # gratd
@@ -162,9 +178,12 @@ def _is_slip(
     counts: dict[str, int],
     verbs: bool,
     known_words: Collection[str],
-    loose: Container[str],
+    one_sided: Container[str],
 ) -> bool:
-    """Whether a rare name is likely a slip for a frequent one with almost the same letters."""
+    """Whether a rare name is probably a slip of a frequent one, from which it differs in one word.
+
+    The parameters are those of :func:`near_names`.
+    """
     words, others = rare.split(" "), frequent.split(" ")
     differing = [(a, b) for a, b in zip(words, others, strict=False) if a != b]
     if len(words) != len(others) or len(differing) != 1:
@@ -174,14 +193,19 @@ def _is_slip(
         return False
     shortest = min(len(word), len(other))
     if known_words and (
-        word in known_words or other in known_words or (rare in loose and frequent not in loose)
+        word in known_words or other in known_words or (rare in one_sided and frequent not in one_sided)
     ):
         return word not in known_words and shortest >= _SLIPS.short
-    return counts[rare] <= _SLIPS.rare and _is_rare_beside(word, other, counts[rare], counts[frequent])
+    return counts[rare] <= _SLIPS.rare and _is_rare_enough(word, other, counts[rare], counts[frequent])
 
 
-def _is_rare_beside(word: str, other: str, rare: int, frequent: int) -> bool:
-    """Whether a word is so much rarer than a similar word that it is probably a slip."""
+def _is_rare_enough(word: str, other: str, rare: int, frequent: int) -> bool:
+    """Whether a word is so much rarer than a similar word that it is probably a slip.
+
+    ``rare`` and ``frequent`` are the numbers of mentions of the names with these words. The ratio that is
+    needed depends on the length of the words and on their difference: swapped letters, a changed letter, or a
+    missing one.
+    """
     # Short words, and words with another letter, are mostly words of their own: dip, drip; batter, butter.
     shortest, ratio = min(len(word), len(other)), frequent / rare
     if frequent < _SLIPS.ratio:

@@ -13,60 +13,66 @@ _COMMENT = re.compile(r"#\s*noqa\b\s*(?P<colon>:?)(?P<codes>.*)", re.IGNORECASE)
 
 
 class _Comment(NamedTuple):
-    """A comment: its index, the number of the line that it is about, and its codes, empty for all codes."""
+    """A ``# noqa`` comment.
 
-    at: int
+    ``comment_index`` is its index in the lines of the sheet. ``line`` is the number, from 1, of the line that
+    it is about. ``codes`` are the codes that it silences; empty for all codes.
+    """
+
+    comment_index: int
     line: int
     codes: tuple[str, ...]
 
     def silences(self, finding: Diagnostic) -> bool:
-        """Whether a finding in the same file is left out."""
+        """Whether the comment silences a finding of the same file."""
         return finding.source.line == self.line and (not self.codes or finding.code in self.codes)
 
 
-def silencing(code: str) -> str:
-    """Return the comment that silences a code on the next line."""
+def silencing_comment(code: str) -> str:
+    """Return the comment that silences a code on the next line: ``# noqa: near-name``."""
     return f"# noqa: {code}"
 
 
 def unsilenced(context: Context) -> Iterator[Diagnostic]:
-    """Yield the findings that no comment silences."""
-    comments = {sheet.file: _comments(sheet) for sheet in _commented(context)}
+    """Yield the findings of the context that no comment silences."""
+    comments = {sheet.file: _noqa_comments(sheet) for sheet in _commented_sheets(context)}
     for finding in context.findings:
         if not any(comment.silences(finding) for comment in comments.get(finding.source.file, ())):
             yield finding
 
 
 @rule("noqa", WARNING, "a noqa comment that silences nothing")
-def noqa(context: Context) -> Iterator[Diagnostic]:
-    """The finding that it silenced is gone, or the code is misspelt.
+def find_useless_comments(context: Context) -> Iterator[Diagnostic]:
+    """The comment silences nothing: the finding that it silenced is gone, or its code is misspelt.
 
-    A comment is about the next line that is neither blank nor a comment, and about findings whose place is
-    that line.
+    A comment is about the next line that is neither blank nor a comment. It silences findings at that line.
     """
-    for sheet in _commented(context):
+    for sheet in _commented_sheets(context):
         sheet_findings = [finding for finding in context.findings if finding.source.file == sheet.file]
-        for comment in _comments(sheet):
+        for comment in _noqa_comments(sheet):
             for code in comment.codes:
                 if code not in RULES:
                     message = f"there is no code {code!r}; this comment does not silence it"
-                    yield sheet.finding(message, comment.at, code)
+                    yield sheet.finding(message, comment.comment_index, code)
             known_codes = sorted(RULES.keys() & comment.codes)
             if (known_codes or not comment.codes) and not any(map(comment.silences, sheet_findings)):
                 silenced = f"no {' or '.join(known_codes)}" if known_codes else "nothing"
                 message = f"there is {silenced} to silence on line {comment.line}; leave the comment out"
-                yield sheet.finding(message, comment.at)
+                yield sheet.finding(message, comment.comment_index)
 
 
-def _commented(context: Context) -> Iterator[Sheet]:
-    """Yield the sheets and tables that can have comments; JSON has none."""
+def _commented_sheets(context: Context) -> Iterator[Sheet]:
+    """Yield the sheets and tables that have noqa comments."""
     for sheet in (*context.sheets, *context.files.tables):
         if any(line.startswith("#") and _COMMENT.match(line) for line in sheet.lines):
             yield sheet
 
 
-def _comments(sheet: Sheet) -> list[_Comment]:
-    """Return the comments of a sheet; comments after the last content are about the last line."""
+def _noqa_comments(sheet: Sheet) -> list[_Comment]:
+    """Return the noqa comments of a sheet, in order.
+
+    Comments below the last line with content are about the last line of the sheet.
+    """
     comments: list[_Comment] = []
     following = len(sheet.lines)
     for index in range(len(sheet.lines) - 1, -1, -1):

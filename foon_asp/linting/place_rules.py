@@ -1,4 +1,4 @@
-"""Rules about places: objects in containers that do not contain them, or that are not there."""
+"""Lint rules about places: objects in containers that do not contain them, or that are not in the unit."""
 
 from collections.abc import Collection, Iterator
 
@@ -9,23 +9,26 @@ from foon_asp.network import ObjectNode
 from foon_asp.text.diagnostics import Diagnostic
 
 _PLACES = {"in", "on"}
-Faults = Iterator[tuple[ObjectNode, str]]
+FaultyNodes = Iterator[tuple[ObjectNode, str]]
 """The faulty nodes of a side of a unit, each with the message."""
 
 
 @rule("unheld", WARNING, "an object in something that contains other things, and not it")
-def unheld(context: Context) -> Iterator[Diagnostic]:
-    """The object is in a container whose contents on this side of the unit do not have it.
+def find_unheld_objects(context: Context) -> Iterator[Diagnostic]:
+    """The object is in a container, but is not among the contents of the container on this side of the unit.
 
-    If it is in another one of the same name, that one is missing here.
+    If the object is in another container of the same name, that container is missing on this side.
     """
     for side in context.sides:
         for node, message in unheld_nodes(side, context.habits):
-            yield context.at_node(context.files.copies[side.unit][0], side.number, node, message)
+            yield context.finding_at_node(context.files.copies[side.unit][0], side.number, node, message)
 
 
-def unheld_nodes(side: Side, habits: Habits) -> Faults:
-    """Yield each object in a container whose contents do not list it, at most one for a container."""
+def unheld_nodes(side: Side, habits: Habits) -> FaultyNodes:
+    """Yield each food that is in a container whose contents do not list it, with the message.
+
+    A container with several such foods is skipped, and so is one whose label is not unique on this side.
+    """
     for holder in side.nodes:
         contents = content_names(holder)
         if not contents or holder.label in habits.ingredients:
@@ -56,10 +59,11 @@ def unheld_nodes(side: Side, habits: Habits) -> Faults:
     WARNING,
     "an object in something that the unit has not, or in nothing, while something else contains it",
 )
-def other_place(context: Context) -> Iterator[Diagnostic]:
-    """The place of the object is not in the unit, and something else in the unit contains the object.
+def find_objects_in_other_places(context: Context) -> Iterator[Diagnostic]:
+    """The object is in a place that is not in the unit, and something else in the unit contains the object.
 
-    Or no place is said of it, where the files mostly say of what a container contains that it is in it.
+    Also reported is an object without a place that a container in the unit contains. It is reported only if
+    the files mostly state for objects among contents that they are in their container.
     """
     objects = context.network.objects
     labels = {node.label for node in objects}
@@ -70,13 +74,16 @@ def other_place(context: Context) -> Iterator[Diagnostic]:
     for side in context.sides:
         misplaced = list(misplaced_nodes(side, labels, context.habits))
         if is_usual:
-            misplaced += _unplaced(side, places, context.habits)
+            misplaced += _unplaced_foods(side, places, context.habits)
         for node, message in misplaced:
-            yield context.at_node(context.files.copies[side.unit][0], side.number, node, message)
+            yield context.finding_at_node(context.files.copies[side.unit][0], side.number, node, message)
 
 
-def misplaced_nodes(side: Side, labels: Collection[str], habits: Habits) -> Faults:
-    """Yield the objects in or on something absent from the unit, where something else contains them."""
+def misplaced_nodes(side: Side, labels: Collection[str], habits: Habits) -> FaultyNodes:
+    """Yield the nodes in or on an object that this side does not list, if another node contains them.
+
+    With each node comes the message. ``labels`` are those of all nodes of the network.
+    """
     labels_of_side = {node.label for node in side.nodes}
     for node in side.nodes:
         for word, related_object in node.relations:
@@ -104,7 +111,10 @@ def misplaced_nodes(side: Side, labels: Collection[str], habits: Habits) -> Faul
 
 
 def _places_are_usual(context: Context) -> bool:
-    """Whether contents of a container are stated to be in or on it more than twice as often as not."""
+    """Whether the files mostly state for an object among contents that it is in or on the container.
+
+    That is, more than twice as often as they state no relation for it.
+    """
     placed = unplaced = 0
     for side in context.sides:
         for holder in side.nodes:
@@ -115,11 +125,11 @@ def _places_are_usual(context: Context) -> bool:
     return placed > 2 * unplaced
 
 
-def _unplaced(side: Side, places: Collection[str], habits: Habits) -> Faults:
-    """Yield the foods without a stated place that exactly one place contains.
+def _unplaced_foods(side: Side, places: Collection[str], habits: Habits) -> FaultyNodes:
+    """Yield each food without a stated place that exactly one node of this side contains, with the message.
 
-    A food is skipped where it is the only content and the other side of the unit has it in that place: then
-    the unit puts it there.
+    ``places`` are the labels that may be places. A food is skipped if it is the only content, and the other
+    side of the unit has it in that place: then the unit puts it there.
     """
     for node in side.nodes:
         if node.relations or node.contents or node.label not in habits.foods:
@@ -137,8 +147,11 @@ def _unplaced(side: Side, places: Collection[str], habits: Habits) -> Faults:
             yield node, f"{holder!r} contains {node.label!r}, which is in no place here"
 
 
-def only_after(side: Side) -> Faults:
-    """Yield the inputs that are in or on an object which only the outputs list."""
+def inputs_placed_in_outputs(side: Side) -> FaultyNodes:
+    """Yield each node in or on an object that only the other side lists, with the beginning of a message.
+
+    Called with the inputs of a unit. Each such object is reported once.
+    """
     own_labels, other_labels = ({node.label for node in nodes} for nodes in (side.nodes, side.others))
     for node in side.nodes:
         for word, related_object in node.relations:

@@ -1,4 +1,4 @@
-"""Rules whose findings are remarks of the reader on files and lines."""
+"""Lint rules whose findings are remarks of the reader on files and lines."""
 
 from collections.abc import Iterator
 
@@ -9,88 +9,91 @@ from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.line import ObjectLine
 
 
-def _remarked(code: str, severity: Severity, meaning: str, explanation: str) -> None:
-    """Register a rule whose findings are the remarks of the reader with the rule's code."""
+def _register_reader_rule(code: str, severity: Severity, meaning: str, explanation: str) -> None:
+    """Register a rule whose findings are the remarks of the reader that have the rule's code.
 
-    def find(context: Context) -> list[Diagnostic]:
+    ``explanation`` is the text for users.
+    """
+
+    def remarks_with_code(context: Context) -> list[Diagnostic]:
         return context.remarks.get(code, [])
 
-    find.__doc__ = explanation
-    rule(code, severity, meaning)(find)
+    remarks_with_code.__doc__ = explanation
+    rule(code, severity, meaning)(remarks_with_code)
 
 
-_remarked(
+_register_reader_rule(
     "encoding",
     ERROR,
     "the file is not UTF-8 text",
     "Text must be UTF-8, with or without a byte order mark. Save the file as UTF-8.",
 )
-_remarked(
+_register_reader_rule(
     "json",
     ERROR,
     "JSON that is no network, kitchen or list of goals",
     "The place is that of the unit or entry that cannot be read; the message says what is expected there. "
     "The other units are still linted.",
 )
-_remarked(
+_register_reader_rule(
     "json-value",
     WARNING,
     "a value in JSON that units have no place for",
     "The value has no counterpart in FOON text. The unit is read without it.",
 )
-_remarked(
+_register_reader_rule(
     "syntax",
     ERROR,
     "a line that is not understood",
     "The line is left out; if it is an object line, the states below it are left out, too. Lines begin with "
     "`O`, `S`, `M` or `//`, or with `#` for comments.",
 )
-_remarked(
+_register_reader_rule(
     "state-without-object",
     ERROR,
     "a state line with no object line above it",
     "A state belongs to the object line above it, which is missing here.",
 )
-_remarked(
+_register_reader_rule(
     "second-motion",
     ERROR,
     "two motions in one unit",
     "Usually a `//` between two units is missing.",
 )
-_remarked(
+_register_reader_rule(
     "no-motion",
     ERROR,
     "a unit without a motion",
     "The motion line is missing, or there is a `//` too many. An incomplete unit is left out of the network. "
     "A file without any motion is read as a kitchen or a list of goals.",
 )
-_remarked(
+_register_reader_rule(
     "no-inputs",
     ERROR,
     "a unit without input objects",
     "A motion needs something to act on. An incomplete unit is left out of the network.",
 )
-_remarked(
+_register_reader_rule(
     "no-outputs",
     ERROR,
     "a unit without output objects",
     "A unit that makes nothing is of no use to any task tree. What became of its inputs?",
 )
-_remarked(
+_register_reader_rule(
     "missing-separator",
     WARNING,
     "the last unit is not closed by //",
     "If another file were appended to this one, its first unit would run into the last one here. `--fix` "
     "adds the line.",
 )
-_remarked(
+_register_reader_rule(
     "outer-space",
     WARNING,
     "blanks around a name or at the end of a line",
     "Spaces around a name or an ingredient, or at the end of a line, are not part of it. `--fix` removes "
     "them.",
 )
-_remarked(
+_register_reader_rule(
     "bracket",
     WARNING,
     "a bracket that is missing, open, or closed by one of another kind",
@@ -98,27 +101,27 @@ _remarked(
     "brackets of two kinds, as in `in→{bowl]`, a line stays as it is where a place is probably meant and the "
     "reader takes it for a list.",
 )
-_remarked(
+_register_reader_rule(
     "contents-bracket",
     WARNING,
     "contents in [ ] instead of { }",
     "`[ ]` names the one object that this object is in, on or with. A list is contents, and so is whatever "
     "an object `contains`. `--fix` writes braces.",
 )
-_remarked(
+_register_reader_rule(
     "empty-relation",
     WARNING,
     "nothing in [ ]",
     "Without an object, the word is read as a state. `--fix` removes the brackets; if an object was "
     "forgotten, add it first.",
 )
-_remarked(
+_register_reader_rule(
     "empty-ingredient",
     WARNING,
     "a comma with no ingredient before or after it",
     "There is a comma too many. `--fix` removes it; if an ingredient was forgotten, add it first.",
 )
-_remarked(
+_register_reader_rule(
     "repeated-ingredient",
     WARNING,
     "an ingredient listed twice in one { }",
@@ -126,25 +129,25 @@ _remarked(
     "which therefore differs from the node with a single entry: a kitchen that has one does not have the "
     "other.",
 )
-_remarked(
+_register_reader_rule(
     "empty-field",
     WARNING,
     "a tab with nothing after it",
     "An empty field has no meaning. `--fix` removes it.",
 )
-_remarked(
+_register_reader_rule(
     "motion-flag",
     WARNING,
     "a motion flag that is not 0 or 1",
     "`1` means in motion, `0` not in motion. `--fix` writes `0` for `00`; anything else stays.",
 )
-_remarked(
+_register_reader_rule(
     "unknown-field",
     WARNING,
     "something after a motion flag that is neither a category nor !",
     "After the motion flag there may be a recipe category, which is a number, or the goal mark `!`.",
 )
-_remarked(
+_register_reader_rule(
     "time",
     WARNING,
     "something that is not a valid time",
@@ -155,20 +158,21 @@ _remarked(
 
 
 @rule("space-for-tab", WARNING, "a space instead of a tab")
-def space_for_tab(context: Context) -> Iterator[Diagnostic]:
+def find_spaces_for_tabs(context: Context) -> Iterator[Diagnostic]:
     """The letter, the name, the brackets and the motion flag are separated by tabs.
 
-    The space is read as a tab, and `--fix` replaces it. Only a flag behind a space is read as a part of the
-    name; it is reported if other lines have flags, or if the rest is a name, too.
+    A space in place of such a tab is read as a tab, and `--fix` replaces it. Only a motion flag after a space
+    is read as a part of the name. It is reported if other lines have flags, or if the text before the flag is
+    a name elsewhere.
     """
     yield from context.remarks.get("space-for-tab", ())
     for sheet in context.sheets:
         if sheet.entries is None:
-            yield from _flags_behind_a_space(sheet)
+            yield from _flag_after_space_findings(sheet)
 
 
-def _flags_behind_a_space(sheet: Sheet) -> Iterator[Diagnostic]:
-    """Yield findings about motion flags after a space, which are read as a part of the name."""
+def _flag_after_space_findings(sheet: Sheet) -> Iterator[Diagnostic]:
+    """Yield a finding for each name of a sheet that ends in a space and a probable motion flag, 0 or 1."""
     labels = {line.label: line.fields for line, _, _ in sheet.distinct_lines if isinstance(line, ObjectLine)}
     flagged = any(labels.values())
     for line, index, _ in sheet.distinct_lines:

@@ -1,4 +1,4 @@
-"""The remarks of the reader, with the fixes that are beyond doubt."""
+"""The remarks of the reader, with the fixes that are certain."""
 
 from foon_asp.linting.linted_files import LintedFiles
 from foon_asp.linting.vocabulary import Vocabulary
@@ -9,7 +9,7 @@ from foon_asp.text.reader import FoonReader
 
 
 def remarks_by_code(files: LintedFiles, vocabulary: Vocabulary) -> dict[str, list[Diagnostic]]:
-    """Return the remarks of the reader by code, without fixes that are doubtful or repair nothing.
+    """Return the remarks of the reader by code; fixes that are doubtful or repair nothing are removed.
 
     A fix rewrites a whole line. So if one remark on a line is doubtful, no remark on this line keeps its fix.
     """
@@ -24,10 +24,10 @@ def remarks_by_code(files: LintedFiles, vocabulary: Vocabulary) -> dict[str, lis
 
 
 def _is_doubtful(remark: Diagnostic, vocabulary: Vocabulary, reader: FoonReader) -> bool:
-    """Whether a remark is about a mixed pair such as ``[a}``, and the reader may have guessed the wrong kind.
+    """Whether the reader may have guessed the wrong kind of bracket for a mixed pair such as ``[a}``.
 
-    Braces are certain for a list, and after the word ``contains``. Any other guess is doubtful, unless the
-    vocabulary usually has this kind of bracket after the word.
+    False for other remarks. Braces are certain for a list, and after the word ``contains``. Any other guess
+    is doubtful, unless the vocabulary usually has this kind of bracket after the word.
     """
     if remark.code != "bracket" or "wrong bracket" not in remark.message:
         return False
@@ -41,7 +41,11 @@ def _is_doubtful(remark: Diagnostic, vocabulary: Vocabulary, reader: FoonReader)
 
 
 def _mending_fix(remark: Diagnostic, reader: FoonReader) -> str | None:
-    """Return the mended line, unless the reader would make the same remark on it."""
+    """Return the fix of a remark, or ``None`` if it has none that repairs the line.
+
+    A fix does not repair a line if the reader makes the same remark on the fixed line. The fix of a missing
+    separator is the line with ``//`` below it.
+    """
     if remark.code == "missing-separator":
         return f"{remark.excerpt}\n//"
     if remark.fix is None or remark.fix == "//":

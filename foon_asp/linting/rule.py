@@ -1,4 +1,4 @@
-"""Rules of linting, and their registration by a decorator."""
+"""Lint rules, and the decorator that registers them."""
 
 import inspect
 from collections.abc import Callable, Iterable, Iterator
@@ -12,7 +12,11 @@ Finder = Callable[[Context], Iterable[Diagnostic]]
 
 
 class Rule(NamedTuple):
-    """A code, its severity, its meaning in one line, and the function that yields its findings."""
+    """A lint rule.
+
+    ``meaning`` is one line for users. ``find`` yields the findings; their code and severity are those of the
+    rule.
+    """
 
     code: str
     severity: Severity
@@ -21,11 +25,11 @@ class Rule(NamedTuple):
 
     @property
     def explanation(self) -> str:
-        """The explanation of the rule for users, in paragraphs: the docstring of the function."""
+        """The explanation of the rule for users, in paragraphs; it is the docstring of the function."""
         return inspect.cleandoc(self.find.__doc__ or "")
 
     def findings(self, context: Context) -> Iterator[Diagnostic]:
-        """Yield the findings of the rule, with its code and severity."""
+        """Yield the findings of the rule in the files of a context, with its code and severity."""
         for finding in self.find(context):
             yield finding._replace(code=self.code, severity=self.severity)
 
@@ -35,14 +39,14 @@ RULES: dict[str, Rule] = {}
 
 
 def rule(code: str, severity: Severity, meaning: str) -> Callable[[Finder], Finder]:
-    """Return a decorator that makes a function of a context the rule of a code.
+    """Return a decorator that registers a function as the lint rule with this code.
 
-    The docstring of the function explains the code to users: ``lint --explain`` and ``docs/lint.md`` show
-    it.
+    The docstring of the function explains the code to users: ``lint --explain`` and ``docs/lint.md`` show it.
     """
 
-    def enter(find: Finder) -> Finder:
+    def register(find: Finder) -> Finder:
+        """Add the rule to :data:`RULES`."""
         RULES[code] = Rule(code, severity, meaning, find)
         return find
 
-    return enter
+    return register

@@ -1,4 +1,4 @@
-"""Sheets: one file as lines of FOON text, whatever its format."""
+"""Sheets: the lines of one file as FOON text, whatever its format."""
 
 import json
 import re
@@ -23,37 +23,47 @@ _QUOTED = re.compile(r'"((?:[^"\\]|\\(?:["\\/bfnrt]|u[0-9a-fA-F]{4}))*+)("?)')
 
 
 class Entry(NamedTuple):
-    """An entry of a kitchen or of a list of goals, the index of its object line, and its amount."""
+    """An entry of a kitchen or of a list of goals.
+
+    ``object_index`` is the index of its object line, ``amount`` its stated amount or ``None``.
+    """
 
     pattern: NodePattern
-    at: int
+    object_index: int
     amount: int | None
 
 
 class WrittenLine(NamedTuple):
-    """A distinct line of a sheet, parsed: the index of its first copy, and the number of copies."""
+    """A line of a sheet, parsed; equal lines are one.
+
+    ``first_index`` is the index of the first of the equal lines, ``occurrences`` is how many there are.
+    """
 
     line: Line
-    first: int
-    often: int
+    first_index: int
+    occurrences: int
 
 
 class WrittenBlock(NamedTuple):
-    """An object as it is written: the index of its object line, its label, and the lines under it."""
+    """An object as it is written in a sheet.
 
-    at: int
+    ``object_index`` is the index of its object line. ``attributes`` are the states, relations and contents on
+    the lines below, each with the index of its line.
+    """
+
+    object_index: int
     label: str
     attributes: list[tuple[int, str | Relation | Contents]]
 
 
 @dataclass
 class Sheet:
-    """The lines of a file, from index 0.
+    """A file as lines of FOON text, with indices from 0.
 
-    ``lines``: the lines; for a JSON file, the equivalent lines of FOON text.
-    ``places``: for each line of a JSON file, the place in the file where its unit or entry begins, else
-    ``None``.
-    ``entries``: the objects of a kitchen or of goals; ``None`` for a network.
+    ``lines``: the lines; for a JSON file, equivalent lines of FOON text.
+    ``places``: for each line of a JSON file, the place in the file where its unit or entry begins. ``None``
+    for a file that is text.
+    ``entries``: the entries of a kitchen or of a list of goals; ``None`` for a network.
     ``source_lines``: the lines of a JSON file as they are written.
     """
 
@@ -66,27 +76,33 @@ class Sheet:
 
     @property
     def lists_goals(self) -> bool:
-        """Whether the file is a list of goals, by its name, such as ``goal_nodes.json``."""
+        """Whether the file is a list of goals: a list of objects with ``goal`` in its name."""
         return self.entries is not None and "goal" in Path(self.file).name.lower()
 
     @cached_property
     def distinct_lines(self) -> list[WrittenLine]:
-        """Every distinct line that can be parsed, in order."""
+        """All different lines that can be parsed, in order; comments and separators are left out."""
         counts, first = Counter(self.lines), dict[str, int]()
         for index, line in enumerate(self.lines):
             first.setdefault(line, index)
         return [
-            WrittenLine(parsed, first[line], often)
-            for line, often in counts.items()
+            WrittenLine(parsed, first[line], occurrences)
+            for line, occurrences in counts.items()
             if line[:1] in _LETTERS and not isinstance(parsed := self.reader.parse(line), LineError)
         ]
 
-    def blocks(self, start: int) -> Iterator[tuple[int, ObjectNode]]:
-        """Yield the object nodes of the unit from a line on, each with the index of its object line."""
+    def object_nodes(self, start: int) -> Iterator[tuple[int, ObjectNode]]:
+        """Yield the object nodes of a unit, each with the index of its object line.
+
+        ``start`` is the index of the first line of the unit.
+        """
         for block in self.written_blocks(start):
             if block is None:
                 return
-            yield block.at, node_of(block.label, (attribute for _, attribute in block.attributes))
+            yield (
+                block.object_index,
+                node_of(block.label, (attribute for _, attribute in block.attributes)),
+            )
 
     @cached_property
     def _parsed(self) -> dict[str, Line]:
@@ -95,7 +111,7 @@ class Sheet:
 
     @cached_property
     def longer_blocks(self) -> list[WrittenBlock]:
-        """The objects of the sheet as they are written, with two lines or more under them."""
+        """The objects of the sheet, as they are written, that have two attributes or more."""
         return [block for block in self.written_blocks(0) if block and len(block.attributes) > 1]
 
     def written_blocks(self, start: int) -> Iterator[WrittenBlock | None]:
@@ -118,28 +134,37 @@ class Sheet:
         if block is not None:
             yield block
 
-    def where(self, index: int, current_sheet: "Sheet | None" = None) -> str:
-        """Name a line for a message: by its number, and by its file unless that is ``current_sheet``."""
+    def line_name(self, index: int, current_sheet: "Sheet | None" = None) -> str:
+        """Return the name of a line for messages: ``line 7`` in ``current_sheet``, else with its file."""
         line = self.source_of(index).line
         return f"line {line}" if current_sheet is self else str(Source(self.file, line))
 
     def source_of(self, index: int, column: int = 1) -> Source:
-        """Return the place of a line in the file."""
+        """Return the place of a line in the file.
+
+        For JSON, this is where the unit or entry of the line begins, whatever the column.
+        """
         return self.places[index] if self.places is not None else Source(self.file, index + 1, column)
 
     def finding(self, message: str, index: int, name: str = "", column: int = 1) -> Diagnostic:
-        """Return a finding about a line, or a name or column in the line; its code is added by the rule."""
+        """Return a finding about the line at an index; the rule adds its code and severity.
+
+        The column is that of ``name`` in the line, or else ``column``, from 1.
+        """
         if self.places is not None:
-            source, line = self._in_json(index, name)
+            source, line = self._quoted_place(index, name)
         else:
             line = self.lines[index]
-            source = self.source_of(index, _column(line, name) if name else column)
+            source = self.source_of(index, _column_of_name(line, name) if name else column)
         return Diagnostic(Severity.NOTE, "", message, source, line)
 
-    def _in_json(self, index: int, name: str) -> tuple[Source, str]:
-        """Return the place and line of a quoted name in JSON, within its unit or entry."""
+    def _quoted_place(self, index: int, name: str) -> tuple[Source, str]:
+        """Find a quoted name in JSON from the unit or entry of a line on; return its place and its line.
+
+        If the name does not follow, return where the unit or entry begins, and an empty line.
+        """
         start = self.source_of(index)
-        positions = self._quoted.get(name, [])
+        positions = self._quoted_positions.get(name, [])
         number = bisect_left(positions, (start.line, start.column))
         if number == len(positions):
             return start, ""
@@ -147,8 +172,8 @@ class Sheet:
         return start._replace(line=line, column=column), self.source_lines[line - 1]
 
     @cached_property
-    def _quoted(self) -> dict[str, list[tuple[int, int]]]:
-        """The lines and columns of all quoted texts in a JSON file."""
+    def _quoted_positions(self) -> dict[str, list[tuple[int, int]]]:
+        """By quoted text, its positions in a JSON file, each a line and a column from 1."""
         positions: dict[str, list[tuple[int, int]]] = {}
         for number, line in enumerate(self.source_lines, 1):
             for match in _QUOTED.finditer(line):
@@ -161,13 +186,17 @@ class Sheet:
         return positions
 
 
-def _column(line: str, name: str) -> int:
-    """Return the column of a whole name in a line: ``rice`` is not where ``rice vinegar`` is."""
-    return _columns(line).get(name) or max(0, line.find(name, line.find("\t") + 1)) + 1
+def _column_of_name(line: str, name: str) -> int:
+    """Return the column of a name in a line, from 1.
+
+    Whole names come first: ``rice`` is not found within ``rice vinegar`` if it also stands alone.
+    """
+    return _columns_by_name(line).get(name) or max(0, line.find(name, line.find("\t") + 1)) + 1
 
 
 @lru_cache(1)  # a long list is not searched anew for each of its names
-def _columns(line: str) -> dict[str, int]:
+def _columns_by_name(line: str) -> dict[str, int]:
+    """Return the columns of all whole names in a line, from 1; of a repeated name, the first."""
     columns: dict[str, int] = {}
     for match in _SHEET_NAME.finditer(line, line.find("\t") + 1):
         columns.setdefault(match[0].strip(), match.end() - len(match[0].lstrip()) + 1)

@@ -1,4 +1,4 @@
-"""The tables beside a network: rates, utensils, durations, tools, prices."""
+"""Lint rules about the tables beside a network: rates, utensils, durations, tools, prices, amounts."""
 
 from collections.abc import Collection, Iterator
 from pathlib import Path
@@ -18,14 +18,14 @@ _RATES = "motion.txt"
 
 
 @rule("table", ERROR, "a row of a table beside the network that cannot be read")
-def table(context: Context) -> Iterator[Diagnostic]:
-    """Rates (`motion.txt`), durations, numbers of tools and prices of units are read as questions do."""
+def find_unreadable_rows(context: Context) -> Iterator[Diagnostic]:
+    """A row of rates (`motion.txt`), durations, numbers of tools or prices of units is not understood."""
     for sheet in context.files.tables:
-        yield from _faults(sheet)
+        yield from _table_errors(sheet)
 
 
-def _faults(sheet: Sheet) -> Iterator[Diagnostic]:
-    """Yield the errors with which a table cannot be read."""
+def _table_errors(sheet: Sheet) -> Iterator[Diagnostic]:
+    """Yield the errors because of which a table cannot be read; none for a table that can be read."""
     file = Path(sheet.file)
     try:
         TABLES[file.name].rows(file, "\n".join(sheet.lines))
@@ -34,18 +34,18 @@ def _faults(sheet: Sheet) -> Iterator[Diagnostic]:
 
 
 @rule("unknown-row", WARNING, "a row of a table for a name that the network has not")
-def unknown_row(context: Context) -> Iterator[Diagnostic]:
-    """The name is probably misspelt, in the table or in a network.
+def find_unknown_rows(context: Context) -> Iterator[Diagnostic]:
+    """The name of the row is probably misspelt, in the table or in a network.
 
     The tables are those of rates, durations, prices, amounts, utensils and tools. A row of amounts is also
-    reported where no unit of the motion takes, or makes, the node. Utensils that the vocabulary has are not
-    reported.
+    reported if no unit with its motion takes, or makes, its node. Utensils that the vocabulary has are not
+    reported. If most names of a table are unknown, a single finding reports them all.
     """
     for sheet in context.files.tables if len(context.network) else ():
         kind = TABLES[Path(sheet.file).name].names
         network_names = context.names.counts[kind].keys()
         known_names = context.vocabulary.names[kind] if kind is Kind.OBJECT else set()
-        rows = _rows(sheet)
+        rows = _first_rows(sheet)
         unknown = [name for name in rows if name not in network_names and name not in known_names]
         if is_of_another_network(len(unknown), len(rows)):
             message = (
@@ -55,16 +55,20 @@ def unknown_row(context: Context) -> Iterator[Diagnostic]:
             yield sheet.finding(message, rows[unknown[0]])
             continue
         if Path(sheet.file).name == "unit_amounts.txt":
-            yield from _without_unit(sheet, context, set(unknown))
+            yield from _amounts_without_unit(sheet, context, set(unknown))
         for name in unknown:
             similar_names = near_labels(name, network_names, 1)
             hint = f"; is it {similar_names[0]!r}?" if similar_names else ""
             yield sheet.finding(f"{name!r} is no {kind} of the network{hint}", rows[name])
 
 
-def _without_unit(sheet: Sheet, context: Context, unknown: Collection[str]) -> Iterator[Diagnostic]:
-    """Yield a finding for each amount of a node that no unit of its motion, a known one, takes or makes."""
-    if _any_fault(sheet):
+def _amounts_without_unit(sheet: Sheet, context: Context, unknown: Collection[str]) -> Iterator[Diagnostic]:
+    """Yield a finding for each row of amounts that fits no unit.
+
+    A row fits a unit that has its motion and, on the side that it is about, its node. Motions in ``unknown``
+    are skipped. Yields nothing for a table that cannot be read.
+    """
+    if any(_table_errors(sheet)):
         return
     rows = UNIT_AMOUNTS.rows(Path(sheet.file), "\n".join(sheet.lines))
     units = map(context.network.unit, range(len(context.network)))
@@ -74,15 +78,14 @@ def _without_unit(sheet: Sheet, context: Context, unknown: Collection[str]) -> I
             yield sheet.finding(finding.message, index)
 
 
-def _any_fault(sheet: Sheet) -> bool:
-    return next(_faults(sheet), None) is not None
-
-
 @rule("missing-rate", WARNING, "motions of the network without a success rate")
-def missing_rate(context: Context) -> Iterator[Diagnostic]:
-    """Without a rate for each motion there is no success, and asking for it is an error."""
+def find_missing_rates(context: Context) -> Iterator[Diagnostic]:
+    """Each motion of the network needs a rate in `motion.txt`.
+
+    If one is missing, no success rate of a tree can be computed, and a question about it is an error.
+    """
     for sheet in context.files.tables:
-        rows = _rows(sheet)
+        rows = _first_rows(sheet)
         missing = [motion for motion in dict.fromkeys(context.network.motions) if motion not in rows]
         if missing and Path(sheet.file).name == _RATES:
             shown = ", ".join(map(repr, missing[:3])) + (", ..." if len(missing) > 3 else "")
@@ -90,9 +93,9 @@ def missing_rate(context: Context) -> Iterator[Diagnostic]:
             yield sheet.finding(message, max(rows.values(), default=0))
 
 
-def _rows(sheet: Sheet) -> dict[str, int]:
-    """Return the first row of each name, without rows that cannot be read."""
-    bad = {fault.source.line for fault in _faults(sheet)}
+def _first_rows(sheet: Sheet) -> dict[str, int]:
+    """Return by name the index of its first row in a table; rows that cannot be read are left out."""
+    bad = {fault.source.line for fault in _table_errors(sheet)}
     rows: dict[str, int] = {}
     for index, line in enumerate(sheet.lines):
         name = line.partition("\t")[0].partition(";")[0].strip()

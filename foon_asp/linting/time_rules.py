@@ -1,4 +1,4 @@
-"""Times: steps that end before they begin, or come before what they use is made."""
+"""Lint rules about times: steps that end before they begin, or come before what they use is made."""
 
 import re
 from bisect import bisect_right
@@ -20,7 +20,7 @@ _LATER, _MUCH_LATER = 2, 4  # times as late as the latest time of another form, 
 
 
 class _Clock(NamedTuple):
-    """A time in seconds, its column, and how it is written."""
+    """A time: its seconds from 0:00, its column from 1, and its text, such as ``1:05``."""
 
     seconds: int
     column: int
@@ -28,7 +28,7 @@ class _Clock(NamedTuple):
 
     @classmethod
     def of(cls, match: re.Match[str], group: int = 0) -> "_Clock":
-        """Read the time in a group of a match."""
+        """Return the time that a group of a match has, ``m:ss`` or ``h:mm:ss``."""
         seconds = 0
         for number in match[group].split(":"):
             seconds = 60 * seconds + int(number)
@@ -36,35 +36,40 @@ class _Clock(NamedTuple):
 
 
 class _Step(NamedTuple):
-    """A unit with its times: the line of its motion, and pairs of a beginning and an end."""
+    """A unit with times in one sheet.
+
+    ``unit`` is its id, ``motion`` the index of its motion line. ``spans`` are pairs of a start and an end.
+    """
 
     unit: int
     motion: int
     spans: list[tuple[_Clock, _Clock]]
 
     @property
-    def first(self) -> _Clock:
+    def earliest_start(self) -> _Clock:
+        """The earliest of the starts."""
         return min(start for start, _ in self.spans)
 
     @property
-    def last(self) -> _Clock:
+    def latest_end(self) -> _Clock:
+        """The latest of the ends."""
         return max(end for _, end in self.spans)
 
 
 def _timed_sheets(context: Context) -> Iterator[tuple[Sheet, list[_Step], dict[int, tuple[str, int]]]]:
-    """Yield each sheet with times, its steps with times, and the messages on unlikely times.
-
-    The messages are those of :func:`_odd_times`, by the line of the motion.
-    """
+    """Yield each sheet with times, its steps with times, and the result of :func:`_odd_times` about them."""
     for sheet, copies in zip(context.sheets, context.files.copies_by_sheet, strict=True):
-        steps = list(_steps(sheet, copies))
+        steps = list(_timed_steps(sheet, copies))
         if steps:
             yield sheet, steps, _odd_times(steps)
 
 
-def _steps(sheet: Sheet, copies: list[tuple[Copy, int]]) -> Iterator[_Step]:
-    """Yield the units of a sheet that have times."""
-    starts = [copy.at for copy, _ in copies]
+def _timed_steps(sheet: Sheet, copies: list[tuple[Copy, int]]) -> Iterator[_Step]:
+    """Yield the units of a sheet that have times, in the order of the sheet.
+
+    ``copies`` are the copies of units in the sheet, each with the id of its unit.
+    """
+    starts = [copy.first_index for copy, _ in copies]
     for index, text in enumerate(sheet.lines):
         if text[:1] == "M" and ":" in text and isinstance(sheet.reader.parse(text), MotionLine):
             spans = _spans(text)
@@ -74,7 +79,10 @@ def _steps(sheet: Sheet, copies: list[tuple[Copy, int]]) -> Iterator[_Step]:
 
 
 def _spans(text: str) -> list[tuple[_Clock, _Clock]]:
-    """Return the pairs of beginning and end after a motion: in two fields, or in one with ``-`` between."""
+    """Return the spans of time on a motion line, as pairs of a start and an end.
+
+    They are two fields, such as ``0:12`` and ``0:34``, or one field, such as ``<0:12-0:34,0:40-0:44>``.
+    """
     start = text.find("\t", text.find("\t") + 1)
     spans = [(_Clock.of(match, 1), _Clock.of(match, 2)) for match in _SPAN.finditer(text, start)]
     clocks = [_Clock.of(match) for match in _CLOCK_TIME.finditer(text, start)]
@@ -82,11 +90,11 @@ def _spans(text: str) -> list[tuple[_Clock, _Clock]]:
 
 
 @rule("time-value", WARNING, "a time that is hardly meant: too many seconds, hours, an end before its start")
-def time_value(context: Context) -> Iterator[Diagnostic]:
-    """A step ends before it begins or lasts long beside others, or a time has more than 59 seconds.
+def find_unlikely_times(context: Context) -> Iterator[Diagnostic]:
+    """A step ends before it begins or lasts much longer than others, or a time has more than 59 seconds.
 
-    Or there is an hour among minutes, or `1:38:50` where other times of the file are `m:ss`: then the last
-    number is usually a fraction of a second, and the time is read as hours.
+    Also reported is a time of hours where most times of the file are minutes, and `1:38:50` where other times
+    are `m:ss`. There the last number is usually a fraction of a second, and the time is read as hours.
     """
     for sheet, _, odd in _timed_sheets(context):
         for motion, (message, column) in odd.items():
@@ -94,15 +102,18 @@ def time_value(context: Context) -> Iterator[Diagnostic]:
 
 
 def _odd_times(steps: list[_Step]) -> dict[int, tuple[str, int]]:
-    """Return for each line with an unlikely time a message, and the column that it is about."""
+    """Return the unlikely times by the index of their motion line: a message and a column from 1.
+
+    Of several unlikely times on a line, the first is returned.
+    """
     clocks = [clock for step in steps for span in step.spans for clock in span]
     usual = median(clock.seconds for clock in clocks)
     has_hours = 4 * sum(clock.text.count(":") == 2 for clock in clocks) > len(clocks)
     latest = max((clock.seconds for clock in clocks if clock.text.count(":") == 1), default=0)
     length = median(max(0, end.seconds - start.seconds) for step in steps for start, end in step.spans)
 
-    def odd_clock(clock: _Clock) -> str:
-        """Return the message about an unlikely time, or an empty text."""
+    def clock_fault(clock: _Clock) -> str:
+        """Return the message about an unlikely time; empty for a likely one."""
         parts = clock.text.split(":")
         if any(int(number) >= _MINUTE for number in parts[1:]):
             return f"{clock.text!r} has more than 59 seconds or minutes"
@@ -116,8 +127,8 @@ def _odd_times(steps: list[_Step]) -> dict[int, tuple[str, int]]:
             return f"{clock.text!r} is after hours, most times here within minutes"
         return ""
 
-    def odd_span(start: _Clock, end: _Clock) -> str:
-        """Return the message about an unlikely span of time, or an empty text."""
+    def span_fault(start: _Clock, end: _Clock) -> str:
+        """Return the message about an unlikely span of time; empty for a likely one."""
         if end.seconds < start.seconds:
             return f"the step ends at {end.text}, before it begins at {start.text}"
         if end.seconds - start.seconds >= max(_LONG, 20 * length):
@@ -127,7 +138,7 @@ def _odd_times(steps: list[_Step]) -> dict[int, tuple[str, int]]:
     odd_times: dict[int, tuple[str, int]] = {}
     for step in steps:
         for start, end in step.spans:
-            faults = ((odd_clock(start), start), (odd_clock(end), end), (odd_span(start, end), end))
+            faults = ((clock_fault(start), start), (clock_fault(end), end), (span_fault(start, end), end))
             for message, clock in faults:
                 if message:
                     odd_times.setdefault(step.motion, (message, clock.column))
@@ -135,10 +146,10 @@ def _odd_times(steps: list[_Step]) -> dict[int, tuple[str, int]]:
 
 
 @rule("time-order", WARNING, "a step before the one that makes what it uses")
-def time_order(context: Context) -> Iterator[Diagnostic]:
-    """The step ends before the one begins that stands above it and makes what it uses.
+def find_steps_out_of_order(context: Context) -> Iterator[Diagnostic]:
+    """A step uses what a step above it makes, but ends before that step begins.
 
-    One of the times, or the order of the steps, is wrong.
+    One of the times is wrong, or the order of the steps.
     """
     network = context.network
     for sheet, steps, odd in _timed_sheets(context):
@@ -146,16 +157,17 @@ def time_order(context: Context) -> Iterator[Diagnostic]:
         for step in (step for step in steps if step.motion not in odd):
             inputs = network.inputs[step.unit]
             seconds, node = max(
-                ((makers[node].first.seconds, node) for node in inputs if node in makers),
+                ((makers[node].earliest_start.seconds, node) for node in inputs if node in makers),
                 default=(0, 0),
             )
-            if seconds > step.last.seconds:
+            if seconds > step.latest_end.seconds:
                 maker = makers[node]
+                line = sheet.line_name(maker.motion, sheet)
                 message = (
-                    f"the step ends at {step.last.text}, and uses {str(network.objects[node])!r}, which "
-                    f"{network.motions[maker.unit]!r} ({sheet.where(maker.motion, sheet)}) begins to make at "
-                    f"{maker.first.text}; is one of the times wrong?"
+                    f"the step ends at {step.latest_end.text}, and uses {str(network.objects[node])!r}, "
+                    f"which {network.motions[maker.unit]!r} ({line}) begins to make at "
+                    f"{maker.earliest_start.text}; is one of the times wrong?"
                 )
-                yield sheet.finding(message, step.motion, column=step.first.column)
+                yield sheet.finding(message, step.motion, column=step.earliest_start.column)
             for node in set(network.outputs[step.unit]).difference(inputs):
-                makers[node] = min(makers.get(node, step), step, key=lambda maker: maker.first)
+                makers[node] = min(makers.get(node, step), step, key=lambda maker: maker.earliest_start)

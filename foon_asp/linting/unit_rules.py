@@ -1,4 +1,4 @@
-"""Units and the objects in them: listed twice, changed by nothing, in two places at once."""
+"""Lint rules about units and their objects: listed twice, changed by nothing, in two places at once."""
 
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -18,8 +18,8 @@ _PLACES = {"in", "on", "inside", "under", "below", "at", "into", "onto", "on top
 
 
 @rule("no-effect", WARNING, "a unit whose outputs are its inputs")
-def no_effect(context: Context) -> Iterator[Diagnostic]:
-    """Nothing is made, so no task tree needs the unit. Usually a state is missing in the outputs."""
+def find_units_without_effect(context: Context) -> Iterator[Diagnostic]:
+    """The unit makes nothing, so no task tree needs it. Usually a state is missing in the outputs."""
     network = context.network
     for motion, inputs, outputs, copies in zip(
         network.motions, network.inputs, network.outputs, context.files.copies, strict=True
@@ -27,15 +27,15 @@ def no_effect(context: Context) -> Iterator[Diagnostic]:
         if outputs and len(inputs) == len(outputs) and set(inputs) == set(outputs):
             message = f"the outputs of the unit {motion!r} are its inputs; say what {motion!r} changes, or "
             for copy in copies:
-                yield context.at_unit(copy, message + "leave it out")
+                yield context.finding_at_unit(copy, message + "leave it out")
 
 
 @rule("duplicate-unit", WARNING, "a unit that the file already contains")
-def duplicate_unit(context: Context) -> Iterator[Diagnostic]:
-    """Motion, inputs and outputs are the same, but for the order of lines and states, ids, flags and times.
+def find_duplicate_units(context: Context) -> Iterator[Diagnostic]:
+    """Two units of a file have the same motion, inputs and outputs.
 
-    A universal FOON has every unit once; `foon-asp merge` takes care of that. That several recipes have a
-    unit is as it should be.
+    The order of lines and states, ids, flags and times do not count. A universal FOON has every unit once;
+    `foon-asp merge` takes care of that. A unit may be in several recipes.
     """
     for motion, copies in zip(context.network.motions, context.files.copies, strict=True):
         firsts: dict[int, Copy] = {}
@@ -43,20 +43,21 @@ def duplicate_unit(context: Context) -> Iterator[Diagnostic]:
             sheet = context.sheets[copy.sheet]
             first = firsts.setdefault(copy.sheet, copy)
             if first is not copy:
+                line = sheet.line_name(first.first_index, sheet)
                 message = (
-                    f"the unit {motion!r} is already on {sheet.where(first.at, sheet)}, with the "
-                    "same inputs and outputs; one is enough"
+                    f"the unit {motion!r} is already on {line}, with the same inputs and outputs; "
+                    "one is enough"
                 )
-                yield context.at_unit(copy, message)
+                yield context.finding_at_unit(copy, message)
 
 
 @rule("repeated-object", WARNING, "an object node listed twice on one side of a unit, or a state of it")
-def repeated_object(context: Context) -> Iterator[Diagnostic]:
-    """The inputs of a unit are a set, and so are its outputs and the states of an object: each counts once.
+def find_repeated_objects(context: Context) -> Iterator[Diagnostic]:
+    """Inputs and outputs of a unit, and states of an object, are sets: what stands twice counts once.
 
-    Two eggs are two nodes only if they differ, for example in where they are; how many are taken is said by a
-    table (`unit_amounts.txt`). Often a state line is missing under one of the two. In JSON and neutral lines,
-    a node that is listed twice is meant twice.
+    Two eggs are two nodes only if they differ, for example in their places. A table (`unit_amounts.txt`) says
+    how many are taken. Often a state line is missing under one of the two. In JSON and neutral lines, a node
+    that is listed twice is meant twice.
     """
     network = context.network
     for unit, copies in enumerate(context.files.copies):
@@ -68,11 +69,11 @@ def repeated_object(context: Context) -> Iterator[Diagnostic]:
     for sheet in context.sheets:
         for label, _, state, indices in _clashes(sheet, eq):
             message = f"{str(state)!r} is given twice for the object {label!r}; one line is enough"
-            yield _once(sheet, message, indices)
+            yield _first_line_finding(sheet, message, indices)
 
 
 def _repeated_nodes(context: Context, copy: Copy) -> Iterator[Diagnostic]:
-    """Yield a finding for each node that a copy of a unit lists twice on one side."""
+    """Yield a finding for each node that one side of a copy of a unit has already listed."""
     sheet = context.sheets[copy.sheet]
     for side, blocks in zip(("inputs", "outputs"), context.node_lines(copy), strict=True):
         firsts: dict[object, int] = {}
@@ -80,16 +81,16 @@ def _repeated_nodes(context: Context, copy: Copy) -> Iterator[Diagnostic]:
             first = firsts.setdefault(node, index)
             if first != index:
                 message = f"{str(node)!r} is among the {side} of the unit already, on "
-                message += f"{sheet.where(first, sheet)}; it counts once"
+                message += f"{sheet.line_name(first, sheet)}; it counts once"
                 yield sheet.finding(message, index, node.label)
 
 
 @rule("second-relation", NOTE, "two places, or two relations or lists by one word, under one object")
-def second_relation(context: Context) -> Iterator[Diagnostic]:
+def find_second_relations(context: Context) -> Iterator[Diagnostic]:
     """An object can be in two relations, such as `on [tray]` and `covered [foil]`, but not in two places.
 
-    Nor in two relations or with two lists by one word: when it is moved, the old place has to be removed,
-    and of contents one line has all.
+    It cannot have two relations by one word, or two lists of contents by one word either. When an object is
+    moved, its old place has to be removed. All contents belong on one line.
     """
     for sheet in context.sheets:
         labels = {
@@ -102,13 +103,17 @@ def second_relation(context: Context) -> Iterator[Diagnostic]:
             else:
                 message = f"{label!r} is {str(second)!r} besides {str(first)!r}; both count: if one is "
                 message += "outdated, take it out"
-            yield _once(sheet, message, indices)
+            yield _first_line_finding(sheet, message, indices)
 
 
 def _clashes(
     sheet: Sheet, is_clash: Callable[[_Attribute, _Attribute], bool]
 ) -> Iterator[tuple[str, _Attribute, _Attribute, list[int]]]:
-    """Yield each label with two clashing attributes, and the lines that have the second one."""
+    """Yield the label of an object, two clashing attributes, and the indices of lines with the second one.
+
+    Each label with its two attributes is yielded once. ``is_clash`` compares an earlier with a later
+    attribute of one object.
+    """
     lines_by_clash: dict[tuple[str, _Attribute, _Attribute], list[int]] = {}
     for block in sheet.longer_blocks:
         for number, (index, second) in enumerate(block.attributes):
@@ -120,14 +125,18 @@ def _clashes(
         yield label, first, second, indices
 
 
-def _once(sheet: Sheet, message: str, indices: list[int]) -> Diagnostic:
-    """Return a finding about the first of several lines, with their number."""
+def _first_line_finding(sheet: Sheet, message: str, indices: list[int]) -> Diagnostic:
+    """Return a finding about the first of the lines at ``indices``; the message says how many there are."""
     count = f" ({times(len(indices))} in this file)" if len(indices) > 1 else ""
     return sheet.finding(message + count, indices[0])
 
 
 def _exclude_each_other(labels: set[str], first: _Attribute, second: _Attribute) -> bool:
-    """Whether two attributes exclude each other: both have the same word, or both are places."""
+    """Whether two attributes exclude each other: both have the same word, or both are places.
+
+    Places are relations such as ``in`` or ``on`` to objects with one of ``labels``. Equal attributes do not
+    exclude each other, nor do a relation and contents.
+    """
     if isinstance(first, Contents) and isinstance(second, Contents):
         return first.word == second.word and first != second
     if not isinstance(first, Relation) or not isinstance(second, Relation) or first == second:

@@ -27,13 +27,14 @@ _Row = tuple[str, str, Sequence[int]]
 
 
 class Vocabulary:
-    """Names by kind, each with its numbers; the numbers of several rows for one name are added up.
+    """Known names by kind, with numbers.
 
-    The numbers of a relation's word are how often it has each bracket; the numbers of a motion are its habit.
+    A word of relations has two numbers: on how many lines each kind of bracket follows it. A motion has its
+    :class:`Habit`. Other names have no numbers. The numbers of several rows for one name are added up.
     """
 
     def __init__(self, rows: Iterable[_Row] = ()) -> None:
-        """Collect rows: a kind, a name of this kind, and its numbers."""
+        """Collect rows of a kind, a name of this kind, and its numbers."""
         self.numbers: dict[str, dict[str, Sequence[int]]] = {kind: {} for kind in _NUMBERS}
         for kind, name, numbers in rows:
             by_name = self.numbers[kind]
@@ -43,9 +44,9 @@ class Vocabulary:
 
     @classmethod
     def of(cls, names: Names, habits: Habits) -> "Vocabulary":
-        """Collect the vocabulary of files.
+        """Collect the names and habits of linted files.
 
-        Utensils are objects that others are in or on, and those in tables.
+        Utensils are objects that others are in or on, and the names in ``utensils.txt``.
         """
         rows: list[_Row] = [
             (kind, name, ()) for kind in Kind if kind is not Kind.WORD for name in names.mentions[kind]
@@ -54,41 +55,42 @@ class Vocabulary:
             if Path(table.file).name == _UTENSILS_FILE:
                 rows += [(UTENSIL, line.strip(), ()) for line in table.lines if line.strip()[:1] not in "#"]
         for word, mentions in names.mentions[Kind.WORD].items():
-            for line, often in ((mention.line, mention.often) for mention in mentions):
+            for line, occurrences in ((mention.line, mention.occurrences) for mention in mentions):
                 if isinstance(line, StateLine) and not line.remarks and not isinstance(line.attribute, str):
-                    rows.append((_BRACKETS[type(line.attribute)], word, [often]))
-                    if isinstance(line.attribute, Relation) and line.attribute.object in names.objects:
+                    rows.append((_BRACKETS[type(line.attribute)], word, [occurrences]))
+                    if isinstance(line.attribute, Relation) and line.attribute.object in names.object_counts:
                         rows.append((UTENSIL, line.attribute.object, ()))
-        return cls([*rows, *((HABIT, motion, habit) for motion, habit in habits.of_units())])
+        return cls([*rows, *((HABIT, motion, habit) for motion, habit in habits.habits_of_units())])
 
-    def plus(self, other: "Vocabulary") -> "Vocabulary":
-        """Return the union of this vocabulary and another one."""
+    def union(self, other: "Vocabulary") -> "Vocabulary":
+        """Return a vocabulary with the names of both; the numbers of common names are added up."""
         return Vocabulary([*self._rows(), *other._rows()])
 
     def _rows(self) -> Iterator[_Row]:
+        """Yield all names as rows, as :meth:`__init__` takes them."""
         for kind, by_name in self.numbers.items():
             yield from ((kind, name, numbers) for name, numbers in by_name.items())
 
     @property
     def utensils(self) -> AbstractSet[str]:
-        """Labels of objects that other objects are in or on."""
+        """The labels of utensils."""
         return self.numbers[UTENSIL].keys()
 
     @cached_property
     def names(self) -> dict[Kind, AbstractSet[str]]:
-        """The names of each kind."""
+        """The names of each kind; those of objects include utensils, containers and ingredients."""
         names = {kind: self.numbers[kind].keys() for kind in (Kind.STATE, Kind.MOTION)}
         words = {word for kind in _BRACKETS.values() for word in self.numbers[kind]}
         return {**names, Kind.WORD: words, Kind.OBJECT: self.numbers[Kind.OBJECT].keys() | self.utensils}
 
     @cached_property
     def words(self) -> frozenset[str]:
-        """Every word of every name."""
+        """Every word of every name, as :func:`words_of` returns them."""
         return frozenset(word for names in self.names.values() for name in names for word in words_of(name))
 
     @cached_property
     def _deletion_indexes(self) -> dict[Kind, dict[str, list[str]]]:
-        """The deletion index of the words of each kind."""
+        """The :func:`deletion_index` of the words in the names of each kind."""
         indexes = {}
         for kind in Kind:
             kinds = (Kind.STATE, Kind.MOTION) if kind in {Kind.STATE, Kind.MOTION} else (kind,)
@@ -97,8 +99,11 @@ class Vocabulary:
             indexes[kind] = deletion_index(words | opposites)
         return indexes
 
-    def slip(self, kind: Kind, name: str) -> tuple[str, str] | None:
-        """Return an unknown word of a name and the known word probably meant, else ``None``."""
+    def find_slip(self, kind: Kind, name: str) -> tuple[str, str] | None:
+        """Return the first unknown word of a name that is probably a slip, and the known word that is meant.
+
+        ``None`` if the name is known, or has no such word.
+        """
         if name in self.names[kind]:
             return None
         for word in words_of(name):
@@ -109,11 +114,14 @@ class Vocabulary:
         return None
 
     def habit(self, motion: str) -> Habit:
-        """Return the habit of the units with a motion."""
+        """Return the habit of the units with a motion; all counts are 0 for an unknown motion."""
         return Habit(*self.numbers[HABIT].get(motion, ()))
 
     def brackets(self, word: str) -> dict[Bracket, int]:
-        """Return how often a word stands with each bracket, the more frequent one first."""
+        """Return on how many lines each kind of bracket follows a word, the more frequent kind first.
+
+        A kind of bracket that never follows the word is left out.
+        """
         counts = {
             bracket: self.numbers[kind][word][0]
             for bracket, kind in _BRACKETS.items()
@@ -122,33 +130,42 @@ class Vocabulary:
         return dict(sorted(counts.items(), key=lambda entry: -entry[1]))
 
     def usual_bracket(self, word: str) -> Bracket | None:
-        """Return the bracket that a word has nearly always, or ``None``.
+        """Return the kind of bracket that nearly always follows a word, or ``None``.
 
-        That is in three lines or more, and ten times as often as the other bracket.
+        It follows the word on at least three lines, and ten times as often as the other kind.
         """
-        for bracket, often in self.brackets(word).items():
-            others = sum(self.brackets(word).values()) - often
-            return bracket if often >= max(3, 10 * others) else None
+        for bracket, occurrences in self.brackets(word).items():
+            others = sum(self.brackets(word).values()) - occurrences
+            return bracket if occurrences >= max(3, 10 * others) else None
         return None
 
     def text(self) -> str:
-        """Write a vocabulary, as :func:`read_vocabulary` reads it."""
+        """Return the vocabulary as the text of a file that :func:`read_vocabulary` reads."""
         rows = [(kind, "\t".join(map(str, (name, *numbers)))) for kind, name, numbers in self._rows()]
         return "".join(f"{kind}\t{row}\n" for kind, row in sorted(rows))
 
 
 def words_of(name: str) -> Iterator[str]:
-    """Yield the words of a name that are made of letters alone, small and without accents."""
+    """Yield the words of a name in small letters, without accents; hyphens separate words.
+
+    Words with other characters than letters are left out.
+    """
     if not name.isascii():
-        name = "".join(c for c in unicodedata.normalize("NFD", name) if not unicodedata.combining(c))
+        name = "".join(
+            letter for letter in unicodedata.normalize("NFD", name) if not unicodedata.combining(letter)
+        )
     return (word for word in name.lower().replace("-", " ").split(" ") if word.isalpha())
 
 
 def read_vocabulary(file: Path) -> Vocabulary:
-    """Read ``kind⇥name`` lines with numbers behind; raises :class:`InputError` for a line of another form."""
+    """Read a vocabulary: lines of a kind, a name and its numbers, separated by tabs.
+
+    Raises :class:`InputError` for a line of another form.
+    """
     rows: list[_Row] = []
 
-    def read(kind: str, row: str, _: object) -> None:
+    def read_row(kind: str, row: str, _: object) -> None:
+        """Add a line, of which ``row`` is the text after the kind, to ``rows``."""
         if kind not in _NUMBERS:
             raise LineError(1, repr(kind), tuple(_NUMBERS))
         name, *numbers = row.split("\t")
@@ -159,5 +176,5 @@ def read_vocabulary(file: Path) -> Vocabulary:
             raise LineError(len(kind) + 2, repr(row), (expected if _NUMBERS[kind] else "a name alone",))
         rows.append((kind, name, list(map(int, numbers))))
 
-    read_rows(file, "vocabulary", "a name", read)
+    read_rows(file, "vocabulary", "a name", read_row)
     return Vocabulary(rows)

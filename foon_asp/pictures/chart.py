@@ -1,4 +1,4 @@
-"""Charts drawn by matplotlib: the style that all share, and the files, SVG or PNG."""
+"""Charts drawn by matplotlib: their common style, and writing them as SVG or PNG."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -45,17 +45,16 @@ _MATPLOTLIB_STYLE: dict[Any, Any] = {  # by the names that matplotlib has for it
 
 
 def check_suffix(file: Path) -> None:
-    """Raise :class:`UserError` for a file whose suffix is neither .svg nor .png."""
+    """Raise :class:`UserError` unless the suffix of a file is .svg or .png, in small letters or capitals."""
     if file.suffix.lower() not in _SUFFIXES:
         raise UserError(f"{file}: the name of a chart ends in {' or '.join(_SUFFIXES)}")
 
 
 def write_chart(file: Path, title: str, height: float, draw: "Callable[[Figure, Axes], None]") -> None:
-    """Write a chart as SVG or PNG, by the file's suffix; ``draw`` fills the figure, of a height in inches.
+    """Write a chart to a file, as SVG or PNG by its suffix; ``draw`` fills the figure and its axes.
 
-    The file is written completely or not at all.
-
-    Raises :class:`UserError` for another suffix, and where matplotlib is not installed.
+    ``height`` is in inches. The file is written completely or not at all. Raises :class:`UserError` for
+    another suffix, and if matplotlib is not installed.
     """
     check_suffix(file)
     picture = BytesIO()
@@ -69,24 +68,23 @@ def write_chart(file: Path, title: str, height: float, draw: "Callable[[Figure, 
 
 @contextmanager
 def new_figure(width: float, height: float, **options: Any) -> "Iterator[Figure]":
-    """Yield a figure of a size in inches, in our style; the user's settings of matplotlib do not change.
+    """Yield a new figure of a size in inches, in the style of all charts.
 
-    Raises :class:`UserError` where matplotlib is not installed.
+    The user's own settings of matplotlib do not change. Raises :class:`UserError` if matplotlib is not
+    installed.
     """
     try:
         # Slow to import, and not installed by everyone.
         import matplotlib as mpl  # noqa: PLC0415
         from matplotlib.figure import Figure  # noqa: PLC0415
     except ImportError as error:
-        raise UserError(
-            f"a picture needs more packages ({error}): pip install 'foon-asp[pictures]'"
-        ) from None
+        raise missing_package_error(error) from None
     with mpl.rc_context():
         mpl.rcdefaults()
         mpl.rcParams.update(_MATPLOTLIB_STYLE)
         yield Figure((width, height), **options)
 
 
-def missing(error: object) -> UserError:
-    """Return the error that a picture needs a package that is not installed, with how to install it."""
+def missing_package_error(error: object) -> UserError:
+    """Return the error that a picture needs a package which is not installed, and how to install it."""
     return UserError(f"a picture needs more packages ({error}): pip install 'foon-asp[pictures]'")

@@ -1,4 +1,4 @@
-"""Box plot of a comparison: for each search, the units of its trees divided by the proved optimum."""
+"""Box plot of a comparison of searches: the units of their trees divided by those of the optimum."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -21,21 +21,24 @@ _POINT_COLORS = {Verdict.AS_LISTED: _BLUE, Verdict.REORDERED: "#BFDCEC", Verdict
 
 
 def write_comparison_chart(comparisons: Sequence[Comparison], conditions: str, file: Path) -> None:
-    """Write the chart, with a box for each search, as SVG or PNG by the file's suffix.
+    """Write the chart, with a box for each search, as SVG or PNG by the suffix of the file.
 
     The points of a box are the goals for which the search found a tree and the optimum is proved.
     ``conditions`` (container rule and level) are part of the title. Raises :class:`UserError` as
-    :func:`foon_asp.pictures.chart.write_chart`.
+    :func:`foon_asp.pictures.chart.write_chart` does.
     """
     title = (
         f"Functional units of retrieved task trees over the optimum: {counted(len(comparisons), 'goal')} "
         f"({conditions})"
     )
-    write_chart(file, title, 4.2, lambda figure, axes: _draw(comparisons, figure, axes))
+    write_chart(file, title, 4.2, lambda figure, axes: _draw_boxes(comparisons, figure, axes))
 
 
-def _draw(comparisons: Sequence[Comparison], figure: "Figure", axes: "Axes") -> None:
-    """Draw the box and the points of each search, over a label with its statistics."""
+def _draw_boxes(comparisons: Sequence[Comparison], figure: "Figure", axes: "Axes") -> None:
+    """Draw the box and the points of each search; below it stand its name and statistics.
+
+    The figure gets wider for many searches.
+    """
     trees: dict[str, list[tuple[float, Verdict]]] = {}
     for comparison in comparisons:
         for judged in comparison.searches:
@@ -66,7 +69,7 @@ def _draw(comparisons: Sequence[Comparison], figure: "Figure", axes: "Axes") -> 
         offsets = [2 * (number * 0.6180339887 % 1) - 1 for number in range(len(points))]
         xs = [position + 0.32 * offset for offset in offsets]
         colors = [_POINT_COLORS[verdict] for verdict in verdicts]
-        _scatter(axes, xs, ratios, colors)
+        _draw_points(axes, xs, ratios, colors)
     figure.set_size_inches(max(figure.get_figwidth(), len(trees)), figure.get_figheight())
     axes.set_xlim(-0.6, len(trees) - 0.4)
     axes.set_xticks(range(len(trees)), labels)
@@ -74,15 +77,15 @@ def _draw(comparisons: Sequence[Comparison], figure: "Figure", axes: "Axes") -> 
     axes.axhline(1, color="black", linewidth=1, zorder=1)
     axes.set_ylabel("units / units of the optimum")
     for verdict, color in _POINT_COLORS.items():
-        _scatter(axes, [], [], [color], str(verdict))
+        _draw_points(axes, [], [], [color], str(verdict))
     axes.plot([], [], color="black", linewidth=1, label="optimum")
     axes.plot([], [], color=_ORANGE, linewidth=2, label="median")
     axes.plot([], [], "D", color=_ORANGE, label="mean")
     figure.legend(loc="outside lower center", ncols=3)
 
 
-def _scatter(
+def _draw_points(
     axes: "Axes", xs: Sequence[float], ys: Sequence[float], colors: Sequence[str], label: str | None = None
 ) -> None:
-    """Draw points with an outline."""
+    """Draw points with an outline, in their colors; ``label`` is their name in the legend."""
     axes.scatter(xs, ys, 14, colors, edgecolors=_BLUE, linewidths=0.7, label=label)

@@ -40,18 +40,21 @@ _POINT_DEFAULTS = f"""\
 
 
 def dot_text(drawing: Drawing) -> str:
-    """Return a drawing as DOT, from top to bottom; the graph of a large network as by :func:`graph_text`."""
+    """Return a drawing in DOT, from top to bottom.
+
+    A network of more than :data:`BOXED_UNITS` units is drawn by :func:`graph_text`.
+    """
     if drawing.graph and drawing.units > BOXED_UNITS:
         return graph_text(drawing)
-    labels = (_node(box, (*box.head, *box.details), _ROLE_ATTRIBUTES[box.role]) for box in drawing.boxes)
-    return _text(drawing, _BOX_DEFAULTS, [*_legend(drawing), *labels])
+    labels = (_node_line(box, (*box.head, *box.details), _ROLE_ATTRIBUTES[box.role]) for box in drawing.boxes)
+    return _digraph_text(drawing, _BOX_DEFAULTS, [*_legend_lines(drawing), *labels])
 
 
 def graph_text(drawing: Drawing, max_names: int = 24) -> str:
-    """Return a network in DOT as squares and circles, for a force-directed layout.
+    """Return the drawing of a network in DOT, with motions as squares and object nodes as circles.
 
-    The full text of a node is its tooltip. Only the ``max_names`` object nodes of the highest degree show
-    their names, since more names would overlap.
+    It is for a force-directed layout. The full text of a node is its tooltip. Only the ``max_names`` object
+    nodes of the highest degree show their names, since more names would overlap.
     """
     degrees = Counter(name for arrow in drawing.arrows for name in arrow)
     objects = [box for box in drawing.boxes if box.node is not None]
@@ -63,33 +66,35 @@ def graph_text(drawing: Drawing, max_names: int = 24) -> str:
         colors = _ROLE_ATTRIBUTES[box.role].partition(", penwidth")[0]
         attributes = f"{colors}, fontsize=24, fontcolor=black, style=filled"
         shape = "circle" if box.node else "square"
-        tooltip = _quoted(["; ".join((*box.head, *box.details))])
-        lines.append(_node(box, label, f"{attributes}, shape={shape}, tooltip={tooltip}"))
-    return _text(drawing, _POINT_DEFAULTS, lines)
+        tooltip = _quoted_lines(["; ".join((*box.head, *box.details))])
+        lines.append(_node_line(box, label, f"{attributes}, shape={shape}, tooltip={tooltip}"))
+    return _digraph_text(drawing, _POINT_DEFAULTS, lines)
 
 
-def _text(drawing: Drawing, defaults: str, nodes: Iterable[str]) -> str:
-    caption = _quoted([line for text in drawing.caption for line in wrap(text, width=90)])
+def _digraph_text(drawing: Drawing, defaults: str, nodes: Iterable[str]) -> str:
+    """Return a graph in DOT: the caption of a drawing, lines of ``nodes``, and the arrows of the drawing."""
+    caption = _quoted_lines([line for text in drawing.caption for line in wrap(text, width=90)])
     arrows = (f"  {tail} -> {head}" for tail, head in drawing.arrows)
     return "\n".join(("digraph foon {", defaults, f"  label={caption}", *nodes, *arrows, "}\n"))
 
 
-def _legend(drawing: Drawing) -> Iterator[str]:
-    """Return the lines of a legend: a framed sample of every role in the drawing."""
+def _legend_lines(drawing: Drawing) -> Iterator[str]:
+    """Yield the lines of a legend: a frame with a sample of every role in the drawing."""
     roles = {box.role for box in drawing.boxes}
     yield '  subgraph cluster_legend {\n    label="" color="#bdbdbd"'
     for number, role in enumerate(Role):
         if role in roles:
-            yield "  " + _node(Box(f"legend{number}", role, role), (role,), _ROLE_ATTRIBUTES[role])
+            yield "  " + _node_line(Box(f"legend{number}", role, role), (role,), _ROLE_ATTRIBUTES[role])
     yield "  }"
 
 
-def _node(box: Box, label: Sequence[str], attributes: str) -> str:
+def _node_line(box: Box, label: Sequence[str], attributes: str) -> str:
+    """Return the line of a box in DOT; its class is its role and the number of its head lines."""
     class_ = f"{box.role.replace(' ', '-')} head{len(box.head)}"
-    return f'  {box.name} [label={_quoted(label)}, class="{class_}", {attributes}]'
+    return f'  {box.name} [label={_quoted_lines(label)}, class="{class_}", {attributes}]'
 
 
-def _quoted(lines: Sequence[str]) -> str:
-    r"""Return lines as a quoted string that Graphviz shows literally, without escapes or entities in them."""
+def _quoted_lines(lines: Sequence[str]) -> str:
+    """Return lines as a quoted string of DOT, which Graphviz shows as they are, with line breaks between."""
     plain = (line.replace("\\", r"\\").replace('"', r"\"").replace("&", "&amp;") for line in lines)
     return '"' + r"\n".join(plain) + '"'

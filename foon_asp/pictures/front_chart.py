@@ -1,4 +1,4 @@
-"""Chart of a Pareto front: one objective over another, as a step function between the points."""
+"""Chart of a Pareto front: one objective over another, with a step function through the points."""
 
 from fractions import Fraction
 from itertools import accumulate
@@ -16,10 +16,13 @@ if TYPE_CHECKING:
 _MARKERS = "osD^vPX"
 
 
-class Plotted(NamedTuple):
-    """A front: the labels of the goals, its conditions (container rule and level), objectives and points.
+class PlottedFront(NamedTuple):
+    """A Pareto front to be drawn.
 
-    A point is its costs by each objective. ``complete`` says that the front has no other points.
+    ``goals``: the labels of the goals, as text.
+    ``conditions``: container rule and level, as text.
+    ``points``: the costs of each tree by each of the ``objectives``.
+    ``complete``: whether the front has no other points.
     """
 
     goals: str
@@ -29,13 +32,13 @@ class Plotted(NamedTuple):
     complete: bool
 
 
-def write_front_chart(front: Plotted, file: Path) -> None:
-    """Write the chart of a front with at least one point, as SVG or PNG by the file's suffix.
+def write_front_chart(front: PlottedFront, file: Path) -> None:
+    """Write the chart of a front with at least one point, as SVG or PNG by the suffix of the file.
 
     Two objectives are the axes, ``success`` on the vertical one. Of three objectives, the additive one with
-    the fewest values makes a series for each value. The points of a series have this value; its line is the
-    front of all points with at most this value. An incomplete front has no lines, since a line claims that no
-    tree is beyond it. Raises :class:`UserError` as :func:`foon_asp.pictures.chart.write_chart`.
+    the fewest values makes a series of points for each value. The line of a series is the front of all points
+    with at most its value. An incomplete front has no lines, since a line claims that no tree is beyond it.
+    Raises :class:`UserError` as :func:`foon_asp.pictures.chart.write_chart` does.
     """
     columns = dict(zip(front.objectives, zip(*front.points, strict=True), strict=True))
     additive = [objective for objective in front.objectives if not multiplies(objective)]
@@ -54,6 +57,7 @@ def write_front_chart(front: Plotted, file: Path) -> None:
         title += "\nstopped at a limit: points may be missing"
 
     def draw(figure: "Figure", axes: "Axes") -> None:
+        """Draw the axes, the points and lines of all series, and a legend or the labels of points."""
         from matplotlib.ticker import MaxNLocator  # noqa: PLC0415 (slow to import, and not installed by everyone)
 
         axes.set_xlabel(x.row.words)

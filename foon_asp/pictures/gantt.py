@@ -1,4 +1,4 @@
-"""Gantt: a schedule with a title, and the text of its times."""
+"""A schedule as rows of a Gantt chart, and times as text."""
 
 from fractions import Fraction
 from typing import NamedTuple
@@ -7,7 +7,7 @@ from foon_asp.results.timed_step import TimedStep
 
 
 class Gantt(NamedTuple):
-    """The steps of a schedule under a title, and its makespan in seconds."""
+    """A schedule under a title: its steps as ``rows``, and its makespan in seconds."""
 
     title: str
     rows: tuple[TimedStep, ...]
@@ -15,12 +15,12 @@ class Gantt(NamedTuple):
 
     @property
     def in_order(self) -> list[TimedStep]:
-        """The steps, ordered by their starts."""
+        """The steps, by start, then by end, then by step."""
         return sorted(self.rows, key=lambda row: (row.start, row.end, row.step))
 
 
 def time_text(seconds: Fraction) -> str:
-    """Return a time as ``M:SS``, or ``H:MM:SS`` from an hour on, with at most three decimals."""
+    """Return seconds as ``M:SS``, or ``H:MM:SS`` from an hour on, with at most three decimals."""
     whole_seconds, milliseconds = divmod(round(seconds * 1000), 1000)
     total_minutes, second = divmod(whole_seconds, 60)
     hour, minute = divmod(total_minutes, 60)

@@ -1,4 +1,4 @@
-"""Gantt chart of a schedule: a bar for each step, in the colour of its agent."""
+"""Gantt chart of a schedule: a bar for each step, in the color of its agent."""
 
 from fractions import Fraction
 from pathlib import Path
@@ -19,20 +19,23 @@ _TICK_SECONDS = (1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 
 
 
 def write_gantt(gantt: Gantt, file: Path) -> None:
-    """Write the chart of a schedule with at least one step, as SVG or PNG by the file's suffix.
+    """Write the chart of a schedule with at least one step, as SVG or PNG by the suffix of the file.
 
-    Raises :class:`UserError` as :func:`foon_asp.pictures.chart.write_chart`.
+    Raises :class:`UserError` as :func:`foon_asp.pictures.chart.write_chart` does.
     """
     write_chart(
         file,
         gantt.title,
         len(gantt.rows) * _ROW_INCHES + _MARGIN_INCHES,
-        lambda figure, axes: _draw(gantt, figure, axes),
+        lambda figure, axes: _draw_bars(gantt, figure, axes),
     )
 
 
-def _draw(gantt: Gantt, figure: "Figure", axes: "Axes") -> None:
-    """Draw the bars of a schedule, the first step on top."""
+def _draw_bars(gantt: Gantt, figure: "Figure", axes: "Axes") -> None:
+    """Draw a bar for each step, the first step on top.
+
+    Each agent has a color; steps without an agent are hatched.
+    """
     rows = gantt.in_order
     agents = sorted({row.agent for row in rows}, key=lambda agent: (agent is None, agent))
     for agent in agents:
@@ -45,14 +48,18 @@ def _draw(gantt: Gantt, figure: "Figure", axes: "Axes") -> None:
     axes.grid(visible=False, axis="y")
     axes.set_yticks(range(len(rows)), [f"{row.name}  {row.step}" for row in rows])
     axes.set_ylim(len(rows) - 0.4, -0.6)
-    times = _ticks(gantt.makespan)
+    times = _tick_times(gantt.makespan)
     axes.set_xticks([float(time) for time in times], list(map(time_text, times)))
     axes.set_xlim(0, float(gantt.makespan))
     figure.legend(loc="outside lower center", ncols=6)
 
 
-def _ticks(makespan: Fraction) -> list[Fraction]:
-    """Return the ticks of the time axis, in seconds."""
+def _tick_times(makespan: Fraction) -> list[Fraction]:
+    """Return the times of the ticks on the axis, in seconds: at most nine.
+
+    Their interval is a round number of seconds, minutes, hours or days. It is a quarter of a makespan of up
+    to 2 seconds.
+    """
     min_interval = makespan / 8  # more labels would overlap
     days = Fraction(86400 * (min_interval // 86400 + 1))
     interval = next((Fraction(seconds) for seconds in _TICK_SECONDS if seconds >= min_interval), days)

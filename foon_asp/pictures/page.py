@@ -1,4 +1,4 @@
-"""A self-contained page of HTML: data, scripts and styles in one file, which makes no requests.
+"""A self-contained HTML page: data, scripts and styles are in one file, which makes no requests.
 
 The folder ``web`` has the parts of the page. The content security policy of the page allows only its scripts
 and styles, by their digests, so that no name in the data is ever executed as code.
@@ -32,7 +32,11 @@ _SCRIPTS = (
 
 
 class Page(NamedTuple):
-    """A page: its title, a text for browsers without scripts, and the data that it shows."""
+    """A page of HTML.
+
+    ``title`` is its title, ``text`` is shown by browsers without scripts, and ``data`` is what its scripts
+    show.
+    """
 
     title: str
     text: str
@@ -40,13 +44,17 @@ class Page(NamedTuple):
 
     def html(self) -> str:
         """Return the page as a complete HTML document."""
-        light, picture, dark, page = (web(f"{name}.css") for name in ("light", "picture", "dark", "page"))
-        script = '"use strict";\n(() => {\n' + "\n".join(web(f"{name}.js") for name in _SCRIPTS) + "})();\n"
+        light, picture, dark, page = (
+            web_text(f"{name}.css") for name in ("light", "picture", "dark", "page")
+        )
+        script = (
+            '"use strict";\n(() => {\n' + "\n".join(web_text(f"{name}.js") for name in _SCRIPTS) + "})();\n"
+        )
         styles = {"light": light, "picture": picture, "page": dark + page}
-        return web("page.html").format(
-            title=html.escape(_visible(self.title)),
-            text=html.escape(_visible(self.text)),
-            data=in_script(self.data),
+        return web_text("page.html").format(
+            title=html.escape(_replace_unsafe(self.title)),
+            text=html.escape(_replace_unsafe(self.text)),
+            data=script_json(self.data),
             scripts=digest(script),
             styles=" ".join(map(digest, styles.values())),
             style="\n".join(f'<style id="{name}">{text}</style>' for name, text in styles.items()),
@@ -54,11 +62,11 @@ class Page(NamedTuple):
         )
 
     def write(self, file: str | Path) -> None:
-        """Write the page into a file; raises :class:`UserError` if it cannot be written."""
+        """Write the page to a file; raises :class:`UserError` if it cannot be written."""
         write_whole(Path(file), utf_8(self.html()))
 
     def frame(self) -> str:
-        """Return HTML that shows the page inside another one, in a sandboxed frame."""
+        """Return HTML that shows the page within another page, in a sandboxed frame."""
         return (
             '<iframe sandbox="allow-scripts allow-downloads allow-modals" title="task tree" '
             f'style="width:100%;height:640px;border:1px solid #ccc" srcdoc="{html.escape(self.html())}">'
@@ -68,24 +76,28 @@ class Page(NamedTuple):
     def _repr_mimebundle_(
         self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
     ) -> dict[str, str]:
-        """Return the MIME bundle that a notebook shows."""
+        """Return the MIME bundle by which a notebook shows the page; the parameters are ignored."""
         return {"text/plain": f"<Page: {self.title}>", "text/html": self.frame()}
 
 
-def web(name: str, folder: Path = WEB) -> str:
-    """Return the text of a file of the folder ``web``."""
+def web_text(name: str, folder: Path = WEB) -> str:
+    """Return the text of a file in the folder ``web``, or in another folder."""
     return (folder / name).read_text(encoding="utf-8")
 
 
 def digest(text: str) -> str:
-    """Return the digest of a script or style in the syntax of a content security policy."""
+    """Return the SHA-256 digest of a script or style, as a content security policy states it."""
     return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 
 
-def in_script(data: Json) -> str:
-    """Return data as JSON that can stand in a script: ``<`` is escaped, so that no ``</script>`` ends it."""
+def script_json(data: Json) -> str:
+    """Return data as JSON that can stand in a script.
+
+    ``<`` is escaped, so that no ``</script>`` in the data ends the script.
+    """
     return json_line(data).replace("<", "\\u003c")
 
 
-def _visible(text: str) -> str:
+def _replace_unsafe(text: str) -> str:
+    """Return a text in which invisible and misleading characters are replaced."""
     return UNSAFE.sub("\ufffd", text)

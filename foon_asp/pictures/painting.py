@@ -1,4 +1,4 @@
-"""A drawing as PNG or PDF: laid out by Graphviz, painted by matplotlib."""
+"""Drawings as PNG or PDF, with the layout of Graphviz, painted by matplotlib."""
 
 from collections.abc import Iterable
 from io import BytesIO
@@ -6,24 +6,24 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from foon_asp.pictures.chart import new_figure
 from foon_asp.pictures.drawing import Drawing
-from foon_asp.pictures.graphviz import layout
+from foon_asp.pictures.graphviz import layout_json
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def painted(drawing: Drawing, form: Literal["png", "pdf"]) -> bytes:
-    """Return a drawing as PNG or PDF, with the font of matplotlib.
+def paint(drawing: Drawing, form: Literal["png", "pdf"]) -> bytes:
+    """Return the bytes of a drawing as PNG or PDF, in the font of matplotlib.
 
-    Raises :class:`UserError` for a drawing that is too large, and without Graphviz or matplotlib.
+    Raises :class:`UserError` for a drawing that is too large, and if Graphviz or matplotlib is not installed.
     """
-    graph = layout(drawing)
+    graph = layout_json(drawing)
     _, _, width, height = map(float, graph["bb"].split(","))
     picture = BytesIO()
     with new_figure(width / 72, height / 72) as figure:
         axes = figure.add_axes((0, 0, 1, 1), xlim=(0, width), ylim=(0, height))
         axes.set_axis_off()
-        _paint(axes, [graph, *graph.get("edges", []), *graph.get("objects", [])])
+        _paint_elements(axes, [graph, *graph.get("edges", []), *graph.get("objects", [])])
         # more dots per inch are sharper in print, and larger files; viewers refuse more than 40 million dots
         dpi = min(144, 72 * (40e6 / width / height) ** 0.5)
         metadata = {"CreationDate": None} if form == "pdf" else None
@@ -31,8 +31,11 @@ def painted(drawing: Drawing, form: Literal["png", "pdf"]) -> bytes:
     return picture.getvalue()
 
 
-def _paint(axes: "Axes", elements: Iterable[dict[str, Any]]) -> None:
-    """Paint the drawing operations of elements of a graph, as Graphviz' output format xdot defines them."""
+def _paint_elements(axes: "Axes", elements: Iterable[dict[str, Any]]) -> None:
+    """Paint elements of a graph on axes, by the drawing operations in Graphviz' JSON of the graph.
+
+    Operations are those of Graphviz' output format xdot.
+    """
     from matplotlib.patches import Circle, PathPatch, Polygon  # noqa: PLC0415 (slow to import)
     from matplotlib.path import Path  # noqa: PLC0415
 

@@ -1,4 +1,4 @@
-"""Drawings of plans, task trees and networks, with a caption that says whether they execute."""
+"""Drawings of plans, task trees and networks; the caption says whether a plan or tree executes."""
 
 from collections.abc import Collection, Iterable, Sequence
 
@@ -10,7 +10,11 @@ from foon_asp.proof.simulation import Verdict, simulate
 
 
 def plan_drawing(problem: Problem, units: Sequence[FunctionalUnit], caption: str = "") -> Drawing:
-    """Return the drawing of a plan in which items are used up; the default caption says whether it runs."""
+    """Return the drawing of a plan in which items are used up, with a caption below its title.
+
+    If ``caption`` is empty, the line says whether the plan executes, under which conditions, and how many
+    units it has.
+    """
     replay = replay_for(problem, units)
     sources = [{copy.node: copy.made for copy in (*step.gone, *step.stayed)} for step in replay.steps]
     sources += [{} for _ in units[len(sources) :]]
@@ -20,7 +24,7 @@ def plan_drawing(problem: Problem, units: Sequence[FunctionalUnit], caption: str
     runs = "runs" if replay.shortage is None else f"does not run for want of {replay.shortage.node}"
     caption = caption or f"{runs} ({problem.conditions}), {counted(len(units), 'unit')}"
     kitchen.update(filter(problem.at_hand, goal_sources))
-    captions = f"Plan for {_joined(goal_sources)}", caption
+    captions = f"Plan for {_join_names(goal_sources)}", caption
     return draw_plan(units, sources, goal_sources, kitchen, captions)
 
 
@@ -33,9 +37,10 @@ def tree_drawing(
     network: Network,
     claim: Iterable[str] = (),
 ) -> Drawing:
-    """Return the drawing of a tree; its caption is ``claim``, lines that say what is proved about the tree.
+    """Return the drawing of a task tree, with a caption below its title.
 
-    Without a claim, the units are numbered in an executable order if one exists, and the caption says so.
+    ``claim`` are the lines of the caption, which say what is proved about the tree. Without them, the caption
+    says whether the tree executes, and units are numbered in an executable order, if one exists.
     """
     units, lines = tree.units, [*claim]
     if not lines:
@@ -48,7 +53,7 @@ def tree_drawing(
             Verdict.NEVER: "does not execute; numbered as listed",
         }[simulation.verdict]
         lines = [f"{verdict} ({conditions(containers, network.level)}), {counted(len(units), 'unit')}"]
-    title = f"Task tree for {_joined(goals)}" if goals else "Task tree"
+    title = f"Task tree for {_join_names(goals)}" if goals else "Task tree"
     add_effects = [given_outputs(unit, containers, utensils, network) for unit in units]
     return draw_tree(units, kitchen, goals, (title, *lines), add_effects)
 
@@ -60,11 +65,15 @@ def network_drawing(
     goals: Iterable[int],
     caption: Iterable[str],
 ) -> Drawing:
-    """Return the drawing of units of a network as a graph; units, kitchen items and goals are ids."""
+    """Return the drawing of units of a network as a graph.
+
+    Units, kitchen items and goals are ids in ``network``; boxes have the ids of units in the whole network.
+    """
     objects = network.objects
     numbered = ((network.unit_number(unit), network.unit(unit)) for unit in units)
     return draw_network(numbered, {objects[o] for o in kitchen}, {objects[o] for o in goals}, caption)
 
 
-def _joined(nodes: Iterable[object]) -> str:
+def _join_names(nodes: Iterable[object]) -> str:
+    """Return the names of nodes in one text, with plus signs between them."""
     return " + ".join(map(str, nodes))

@@ -1,8 +1,8 @@
-"""A whole network as a page shows it, with coordinates for each unit and object node."""
+"""A whole network as the page shows it, with coordinates for each unit and object node."""
 
 from typing import Self
 
-from foon_asp.pictures.graphviz import coordinates
+from foon_asp.pictures.graphviz import network_coordinates
 from foon_asp.pictures.tree_drawing import network_drawing
 from foon_asp.problem import Problem, reach
 from foon_asp.results.values import Mention, Node, Value
@@ -25,7 +25,7 @@ class WholeNetwork(Value, frozen=True):
     """A whole network.
 
     Attributes:
-        places: Of units, then of objects: x and y of each.
+        places: The coordinates x and y of each unit, and then of each object.
         kitchen: The positions of available objects.
         reachable: The positions of objects that are available or can be made.
         possible: The positions of units that can be done with these.
@@ -40,15 +40,16 @@ class WholeNetwork(Value, frozen=True):
 
     @classmethod
     def of(cls, problem: Problem) -> Self:
-        """Return the network of a problem, laid out by Graphviz.
+        """Return the whole network of a problem, with coordinates that Graphviz computes.
 
-        Raises :class:`UserError` for a network that is too large for a layout, and without Graphviz.
+        Raises :class:`UserError` for a network that is too large for a layout, and if Graphviz is not
+        installed.
         """
         network = problem.network
         reached = reach(problem)
         objects, units = range(len(network.objects)), range(len(network))
         drawing = network_drawing(network, units, (), (), ())
-        by_name = coordinates(drawing)
+        by_name = network_coordinates(drawing)
         positions = {box.unit if box.node is None else box.node: by_name[box.name] for box in drawing.boxes}
         pairs = [positions[network.unit_number(u)] for u in units]
         pairs += [positions.get(node, (0, 0)) for node in network.objects]  # some nodes are in no unit

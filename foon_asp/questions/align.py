@@ -87,7 +87,7 @@ class Aligned(Result, frozen=True, kw_only=True, tag=schema_name("align")):
     """The units of the recipe in the words of the network."""
 
     def foon(self) -> str:
-        """Return the recipe as FOON text, in which nodes that differ in a word are written as in the network."""
+        """Return the recipe as FOON text, where nodes that differ in a word are as in the network."""
         return write_units(self.aligned_units, ["In the words of another network"])
 
     def show(self) -> Iterator[Block]:

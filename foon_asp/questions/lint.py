@@ -14,7 +14,7 @@ from foon_asp.dataset.paths import File, as_path
 from foon_asp.errors import UserError
 from foon_asp.linting import linter
 from foon_asp.linting.baseline import read_baseline
-from foon_asp.linting.catalog import CATALOG, unknown_code
+from foon_asp.linting.catalog import CATALOG, unknown_code_message
 from foon_asp.linting.finding import Finding, SeverityCounts
 from foon_asp.linting.lint_settings import find_settings
 from foon_asp.linting.linted_files import with_tables
@@ -194,7 +194,7 @@ def find_findings(
     """
     for code in (*select, *ignore):
         if code not in CATALOG:
-            raise UserError(unknown_code(code))
+            raise UserError(unknown_code_message(code))
     files = linted_files(paths, contents)
     if not files:
         raise UserError("name the files to lint")
@@ -203,10 +203,10 @@ def find_findings(
         settings = dataclasses.replace(settings, select=tuple(select), ignore=())
     settings = dataclasses.replace(settings, ignore=(*settings.ignore, *ignore))
     baselined = None if baseline is None else read_baseline(baseline)
-    findings = settings.applied(linter.lint(files, contents, vocabulary))
+    findings = settings.apply(linter.lint(files, contents, vocabulary))
     if baseline is None or baselined is None:
         return Findings(files, findings)
-    new, gone = baselined.compared(baseline, findings)
+    new, gone = baselined.compare_with(baseline, findings)
     return Findings(files, new, len(findings) - len(new), gone)
 
 

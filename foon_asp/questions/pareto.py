@@ -197,12 +197,12 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
             NothingToDrawError: if there is no point.
             UserError: for another file name, or if the packages of ``foon-asp[pictures]`` are missing.
         """
-        from foon_asp.pictures.front_chart import Plotted, write_front_chart  # noqa: PLC0415
+        from foon_asp.pictures.front_chart import PlottedFront, write_front_chart  # noqa: PLC0415
 
         if not self.points:
             raise NothingToDrawError("there is no point to draw")
         goals = " + ".join(goal.label for goal in self.goals)
-        plotted = Plotted(goals, self.conditions, self.objectives, self.values, self.complete)
+        plotted = PlottedFront(goals, self.conditions, self.objectives, self.values, self.complete)
         write_front_chart(plotted, Path(file))
 
 

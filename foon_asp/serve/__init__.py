@@ -1,1 +1,1 @@
-"""A local web page that asks questions interactively: its server, its requests and their protection."""
+"""A local web page that asks questions interactively: its server, its requests and its protection."""

@@ -1,4 +1,4 @@
-"""Connections of browsers, with a limit on the time that they wait for a request, and on their number."""
+"""Connections of browsers, with limits on their number and on the time that they wait for a request."""
 
 import asyncio
 from typing import Any, ClassVar
@@ -7,13 +7,14 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 
 
 class Connection(H11Protocol):  # type: ignore[misc]
-    """A connection that closes when no complete request arrives in time, and when too many wait.
+    """A connection that closes when no complete request arrives in time, and when too many connections wait.
 
     So no program that opens connections and sends nothing, or half of a request, locks the owner out.
-    ``waiting_since`` is a time of the event loop, in seconds.
 
-    ``request_seconds``: for a request to arrive completely; fewer refuse slow browsers.
-    ``max_waiting``: connections that wait at once; a browser has six.
+    ``request_seconds``: the time limit for a request to arrive completely; with fewer, slow browsers are
+    refused.
+    ``max_waiting``: the greatest number of connections that wait at once; a browser has six.
+    ``waiting_since``: the time when the wait began, in seconds of the event loop.
     """
 
     request_seconds: ClassVar[float] = 10.0
@@ -23,50 +24,52 @@ class Connection(H11Protocol):  # type: ignore[misc]
     _timer: asyncio.TimerHandle | None = None
 
     def connection_made(self, transport: Any) -> None:
-        """Wait for the first request; of too many waiting connections, the longest waiting one is closed."""
+        """Wait for the first request. If too many connections wait, close the one that waits longest."""
         super().connection_made(transport)
         self._start_timer()
         connections = (other for other in self.connections if isinstance(other, Connection))
         waiting = [connection for connection in connections if connection.waits]
         if len(waiting) > self.max_waiting:
-            min(waiting, key=lambda connection: connection.waiting_since).end()
+            min(waiting, key=lambda connection: connection.waiting_since).abort()
 
     def data_received(self, data: bytes) -> None:
-        """Receive a part of a request; a complete one stops the timer."""
+        """Receive a part of a request; stop the timer once the request is complete."""
         super().data_received(data)
         if not self.waits:
             self._stop_timer()
 
     def on_response_complete(self) -> None:
-        """Wait for the next request."""
+        """Wait for the next request, if the connection stays open."""
         super().on_response_complete()
         if self.waits:
             self._start_timer()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Stop the timer."""
+        """Stop the timer of a connection that was closed."""
         self._stop_timer()
         super().connection_lost(exc)
 
     @property
     def waits(self) -> bool:
-        """Whether the connection waits for a request, or for more of one."""
+        """Whether the connection waits for a request, or for the rest of one."""
         cycle = self.cycle
         return not self.transport.is_closing() and (
             cycle is None or cycle.response_complete or cycle.more_body
         )
 
-    def end(self) -> None:
+    def abort(self) -> None:
         """Close the connection at once."""
         self._stop_timer()
         self.transport.abort()
 
     def _start_timer(self) -> None:
+        """Close the connection after ``request_seconds`` from now, unless the timer is stopped before."""
         self._stop_timer()
         self.waiting_since = self.loop.time()
-        self._timer = self.loop.call_later(self.request_seconds, self.end)
+        self._timer = self.loop.call_later(self.request_seconds, self.abort)
 
     def _stop_timer(self) -> None:
+        """Stop the timer, if it is running."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None

@@ -1,4 +1,4 @@
-"""Desk: it answers the questions of the page, one at a time; a new question cancels the current one."""
+"""The desk: it answers the questions of the page, one at a time; a new question cancels the current one."""
 
 import threading
 from collections.abc import Callable
@@ -18,67 +18,71 @@ from foon_asp.questions.regret import regret_of
 from foon_asp.questions.view import PagePart, View, pages
 from foon_asp.results.figure_text import bound_text, costs_text
 from foon_asp.rules.passed_constraint import Constraint, RuleText, find_constraint
-from foon_asp.serve.form import Form, Without
+from foon_asp.serve.form import Form, RegretForm
 from foon_asp.text.diagnostics import InputError
 from foon_asp.text.json_value import Json
 from foon_asp.text.node_lookup import entry_names, nodes_beginning
 
-Tell = Callable[[Json], object]
+SendEvent = Callable[[Json], object]
 """Sends an event to the browser."""
 Rules = tuple[Constraint, ...]
 
 
 class _EventReporter(Reporter):
-    """A reporter that sends events to the browser; it stops reporting progress after the first page.
+    """A reporter that sends events to the browser.
 
-    The progress of further answers, such as alternatives, would be taken for that of the first.
+    It sends no progress after the first page. The progress of further answers, such as alternatives, would be
+    taken for that of the first.
     """
 
-    def __init__(self, tell: Tell) -> None:
-        self._tell, self._answered = tell, False
+    def __init__(self, send_event: SendEvent) -> None:
+        self._send_event, self._answered = send_event, False
 
     def event(self, event: Json) -> None:
-        """Send an event; of kind ``progress`` only before the first page."""
+        """Send an event, unless its kind is ``progress`` and a page was sent."""
         self._answered = self._answered or event["kind"] == "page"
         if event["kind"] != "progress" or not self._answered:
-            self._tell(event)
+            self._send_event(event)
 
     def warning(self, message: str) -> None:
         """Send a warning."""
         self.event({"kind": "warning", "text": message})
 
     def tree(self, costs: Costs) -> None:
-        """Send the costs of a new incumbent."""
+        """Send the costs of a new incumbent as progress."""
         self.event({"kind": "progress", "text": f"found a tree: {costs_text(costs)}"})
 
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
-        """Send a new lower bound."""
+        """Send a new lower bound as progress."""
         self.event({"kind": "progress", "text": bound_text(objective, bound)})
 
     def step(self, word: str, done: int, total: int) -> None:
-        """Send the number of finished parts of a question."""
+        """Send as progress that ``done`` of ``total`` parts of a question are finished."""
         self.event({"kind": "progress", "text": f"{word}: {done} of {total}"})
 
 
 class Desk:
-    """The questions about one set of data; ``first`` is the question that the page opens with.
+    """The side of the server that answers the questions of the page, one after the other.
 
-    Limits (seconds, bytes) are for each question. Rules and encodings of ``settings`` hold for all questions,
-    and the stock of ``used_up`` for those in which items are used up. Answers are sent as events:
-    ``progress`` and ``warning`` with a text, ``page`` with the number of a page, ``without`` with a text,
-    ``error`` with a text and, for rules, positions in their text.
+    All questions are about one set of data. Answers are sent as events. Events of kind ``progress``,
+    ``warning`` and ``without`` have a text, and those of kind ``page`` have the number of a page. Those of
+    kind ``error`` have a text and, for rules, positions in their text.
+
+    ``opening_form`` is the question that the page shows when it opens. Limits are for each question, in
+    seconds and bytes; ``None`` means no limit. Rules and encodings of ``settings`` hold for all questions.
+    The stock of ``used_up`` holds for questions in which items are used up.
     """
 
     def __init__(
         self,
         foon: Foon,
-        first: Form,
+        opening_form: Form,
         time_limit: float | None = None,
         memory_limit: int | None = None,
         settings: Settings | None = None,
         used_up: UsedUp | None = None,
     ) -> None:
-        self._foon, self._first = foon, first
+        self._foon, self._opening_form = foon, opening_form
         self._limits = time_limit, memory_limit
         settings = settings or Settings()
         self._settings = settings._replace(constraints=tuple(map(find_constraint, settings.constraints)))
@@ -86,24 +90,28 @@ class Desk:
         self._page_rules = f"rule {rule_texts + 1}"  # the name of the page's rules in messages
         self._used_up = used_up or UsedUp()
         self._lock = threading.Lock()
-        self._token = Cancel()
-        self._pages: dict[int, tuple[View, Rules]] = {}
-        self._number = 0
+        self._current_token = Cancel()
+        self._kept_pages: dict[int, tuple[View, Rules]] = {}
+        self._last_page_number = 0
 
-    def start(self) -> Json:
-        """Return the data of the page when it opens: names to complete, objectives, and fixed conditions."""
+    def opening_data(self) -> Json:
+        """Return the data with which the page opens, by the names that its script reads.
+
+        These are the names to complete, the kitchen, the objectives, the conditions that are fixed, and the
+        first form.
+        """
         dataset = self._foon.dataset
         return {
             "goals": [*entry_names(dataset.listed, dataset.names)],
             "kitchen": sorted(str(dataset.names.node(o)) for o in dataset.kitchen),
             "objectives": [*Objective, *dataset.measures],
             "beside": [*PagePart],
-            "always": self._always(),
-            "first": msgspec.to_builtins(self._first),
+            "always": self._fixed_conditions(),
+            "first": msgspec.to_builtins(self._opening_form),
         }
 
-    def _always(self) -> list[str]:
-        """Return the conditions of all questions in words; files by their names, without folders."""
+    def _fixed_conditions(self) -> list[str]:
+        """Return in words the conditions that hold for all questions; of files, only the names."""
         settings, stays_of, stock = self._settings, self._used_up.told, self._used_up.stock
         rules = (rule.name if isinstance(rule, Path) else str(rule) for rule in settings.constraints)
         encodings = [] if settings.encodings is None else [f"encodings: {settings.encodings.name}"]
@@ -112,48 +120,58 @@ class Desk:
             f"{'stays' if stays else 'goes'}: {name}" for name, stays in stays_of.items()
         ]
 
-    def names(self, start: str) -> list[str]:
+    def names_beginning(self, start: str) -> list[str]:
         """Return up to 30 object nodes whose names begin with ``start``, in one-line notation."""
         names = self._foon.dataset.names
         return [str(names.node(o)) for o in nodes_beginning(start, names, 30)]
 
     def page(self, number: int) -> str | None:
-        """Return the HTML of a page by its number; ``None`` where it is no longer kept."""
-        entry = self._pages.get(number)
+        """Return the HTML of the page with a number, or ``None`` if the page is no longer kept."""
+        entry = self._kept_pages.get(number)
         return None if entry is None else entry[0].html()
 
     def cancel(self) -> None:
         """Cancel the current question; it ends with its incumbent."""
-        self._token.cancel()
+        self._current_token.cancel()
 
-    def next(self) -> Cancel:
-        """Cancel the current question, and return the token that cancels the next one."""
-        self._token.cancel()
-        self._token = Cancel()
-        return self._token
+    def next_token(self) -> Cancel:
+        """Cancel the current question, and return the token by which :meth:`cancel` cancels the next one."""
+        self._current_token.cancel()
+        self._current_token = Cancel()
+        return self._current_token
 
-    def ask(self, form: Form, token: Cancel, tell: Tell) -> None:
-        """Answer a question with pages; ``tell`` receives an event for each, and for progress and errors."""
+    def answer_form(self, form: Form, token: Cancel, send_event: SendEvent) -> None:
+        """Answer the question of a form with pages, once the question before it has ended.
+
+        ``token`` cancels the question. ``send_event`` receives an event for each page, for progress, and for
+        an error.
+        """
 
         def answer(deadline: Deadline, _: _EventReporter) -> None:
+            """Compute the pages, keep each, and send its number."""
             if not form.goals:
                 raise UserError("name a goal")
             if not form.objectives:
                 raise UserError("name an objective: what is best")
             with deadline.watched("reading", late=True):
-                problem = self._problem(form)
+                problem = self._problem_of(form)
             chosen = chosen_objectives(problem, form.objectives)
             rules = (*self._settings.constraints, *([RuleText(form.rules)] if form.rules.strip() else []))
             settings = self._settings._replace(constraints=rules, deadline=deadline)
             named = {"constraints": rules, "constants": settings.constants, "encodings": settings.encodings}
             for page in pages(problem, chosen, settings, form.beside, named):
                 assert page.answer is not None
-                tell({"kind": "page", "number": self._keep(page, rules), "text": page.answer.claim})
+                send_event(
+                    {"kind": "page", "number": self._keep_page(page, rules), "text": page.answer.claim}
+                )
 
-        self._run(answer, token, tell)
+        self._run_question(answer, token, send_event)
 
-    def _problem(self, form: Form) -> Problem:
-        """Return the problem of a form, over the data with its changes to the kitchen."""
+    def _problem_of(self, form: Form) -> Problem:
+        """Return the problem of a form, with the changes that the form makes to the kitchen.
+
+        If items are used up, the stock of the desk counts, too.
+        """
         foon = self._foon.vary(adding=form.adding, without=form.without)
         stock = stays = None
         if form.items != "lasting":
@@ -164,11 +182,16 @@ class Desk:
             *form.goals, containers=form.containers, items=form.items, stock=stock, stays=stays
         )
 
-    def without(self, form: Without, token: Cancel, tell: Tell) -> None:
-        """Send the regret of a unit or kitchen item: how much worse the optimum is without it."""
+    def answer_regret(self, form: RegretForm, token: Cancel, send_event: SendEvent) -> None:
+        """Send the regret of a unit or kitchen item: how much worse the optimum is without it.
+
+        The tree on the page of the form has to be proved optimal. ``token`` and ``send_event`` are as for
+        :meth:`answer_form`.
+        """
 
         def answer(deadline: Deadline, reporter: _EventReporter) -> None:
-            view, rules = self._pages.get(form.page, (None, ()))
+            """Compute the regret, and send it as a text."""
+            view, rules = self._kept_pages.get(form.page, (None, ()))
             if view is None or view.answer is None:
                 raise UserError("this page is no longer kept: ask again")
             best, network = view.answer, view.answer.problem.network
@@ -186,18 +209,26 @@ class Desk:
                 text += f"; the best is then {costs_text(regret.costs, best.objectives)}"
             reporter.event({"kind": "without", "text": text})
 
-        self._run(answer, token, tell)
+        self._run_question(answer, token, send_event)
 
-    def _keep(self, page: View, rules: Rules) -> int:
-        """Keep a page, and its problem in memory, instead of the fourth before it; return its number."""
-        self._number += 1
-        self._pages[self._number] = page, rules
-        self._pages.pop(self._number - 4, None)
-        return self._number
+    def _keep_page(self, page: View, rules: Rules) -> int:
+        """Keep a page with its rules, and return its number.
 
-    def _run(self, answer: Callable[[Deadline, _EventReporter], None], token: Cancel, tell: Tell) -> None:
-        """Answer a question once the one before has ended; any error becomes an event."""
-        positions, reporter = [], _EventReporter(tell)
+        Only the last four pages are kept, since each holds its problem in memory.
+        """
+        self._last_page_number += 1
+        self._kept_pages[self._last_page_number] = page, rules
+        self._kept_pages.pop(self._last_page_number - 4, None)
+        return self._last_page_number
+
+    def _run_question(
+        self, answer: Callable[[Deadline, _EventReporter], None], token: Cancel, send_event: SendEvent
+    ) -> None:
+        """Call ``answer`` with a deadline and a reporter, once the question before it has ended.
+
+        Any error is sent as an event.
+        """
+        positions, reporter = [], _EventReporter(send_event)
         try:
             with self._lock, stoppable(None, token, "asking") as cancelled:
                 deadline = Deadline(*self._limits, within=cancelled)

@@ -1,4 +1,4 @@
-"""The questions of the page, read from JSON; for security, none of their fields is a path of a file."""
+"""The forms by which the page asks. For security, none of their fields is the path of a file."""
 
 from typing import Any, TypeVar
 
@@ -16,8 +16,9 @@ Question = TypeVar("Question", bound=msgspec.Struct)
 class Form(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A question for the best tree.
 
-    ``adding`` and ``without`` are kitchen items to add and to remove, ``rules`` is text of rules, and
-    ``beside`` are further answers that the page shows.
+    ``containers`` is the container rule. ``items`` says whether items are lasting or used up. ``adding`` and
+    ``without`` are kitchen items to add and to remove. ``rules`` is the text of rules. ``beside`` are further
+    answers that the page shows.
     """
 
     goals: Names = ()
@@ -30,29 +31,32 @@ class Form(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     beside: tuple[PagePart, ...] = ()
 
 
-class Without(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A question for the optimum of the answer ``page`` without one ``unit``, or one kitchen ``item``."""
+class RegretForm(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A question for the optimum without one unit or one kitchen item of the tree on ``page``.
+
+    ``unit`` is an id in the whole network, ``item`` a node in one-line notation; one of the two is given.
+    """
 
     page: int
     unit: int | None = None
     item: str | None = None
 
     def __post_init__(self) -> None:
-        """Raise :class:`ValueError` for a unit and an item, or for neither."""
+        """Raise :class:`ValueError` unless exactly one of unit and item is given."""
         if (self.unit is None) == (self.item is None):
             raise ValueError("expected a unit or an item")
 
 
 def read_question(text: bytes, kind: type[Question]) -> Question:
-    """Return a question of a kind, read from JSON; raises :class:`UserError` for invalid text."""
+    """Return the form that JSON text states, of type ``kind``; raises :class:`UserError` for invalid text."""
     try:
-        return msgspec.convert(read_json(text, _object), kind)
+        return msgspec.convert(read_json(text, _object_without_repeats), kind)
     except ValueError as error:
         raise UserError(f"found what is no question: {error}") from None
 
 
-def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Return an object of JSON; raises :class:`ValueError` where it has a key twice."""
+def _object_without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Return an object of JSON from its pairs; raises :class:`ValueError` if it has a key twice."""
     value = dict(pairs)
     if len(value) < len(pairs):
         raise ValueError("a key stands twice in one object")

@@ -1,4 +1,4 @@
-"""The web server: it listens on the loopback interface only, at an address with a secret token."""
+"""The web server. It listens on the loopback interface only, at an address with a secret token."""
 
 import secrets
 import socket
@@ -8,18 +8,21 @@ import uvicorn
 
 from foon_asp.serve.connection import Connection
 from foon_asp.serve.desk import Desk
-from foon_asp.serve.site import site
+from foon_asp.serve.site import web_application
 
 
-def serve(desk: Desk, ready: Callable[[str], object]) -> None:
-    """Serve a desk until ctrl-C; ``ready`` is called with the address once the server accepts connections."""
+def serve_desk(desk: Desk, ready: Callable[[str], object]) -> None:
+    """Serve the page of a desk until ctrl-C, and then cancel the current question.
+
+    ``ready`` is called with the address once the server accepts connections.
+    """
     token = secrets.token_urlsafe(24)
     with socket.socket() as listener:
         listener.bind(("127.0.0.1", 0))
         listener.listen()
         port = listener.getsockname()[1]
         config = uvicorn.Config(
-            site(desk, token, port),
+            web_application(desk, token, port),
             http=Connection,
             backlog=128,  # connections that may wait to be accepted
             access_log=False,  # it would have the token

@@ -21,9 +21,9 @@ from starlette.routing import Route
 from foon_asp.daemon_thread import DaemonThread
 from foon_asp.deadline import Cancel
 from foon_asp.errors import UserError
-from foon_asp.pictures.page import digest, in_script, web
-from foon_asp.serve.desk import Desk, Tell
-from foon_asp.serve.form import Form, Without, read_question
+from foon_asp.pictures.page import digest, script_json, web_text
+from foon_asp.serve.desk import Desk, SendEvent
+from foon_asp.serve.form import Form, RegretForm, read_question
 from foon_asp.text.json_value import Json, json_line
 
 Asgi = Callable[[Any, Any, Any], Any]
@@ -40,52 +40,71 @@ _HEADERS = {
 }
 
 
-def site(desk: Desk, token: str, port: int) -> Asgi:
-    """Return the web application of a desk, for requests with the token, to this port of this machine."""
+def web_application(desk: Desk, token: str, port: int) -> Asgi:
+    """Return the web application of a desk.
+
+    It answers requests that have the token and come from a page of this machine at ``port``. It refuses all
+    others.
+    """
 
     def open_page(_: Request) -> Response:
-        page, policy = _asking_page(desk.start())
+        """Return the page with the opening form."""
+        page, policy = _question_page(desk.opening_data())
         return HTMLResponse(page, headers={"content-security-policy": policy})
 
-    def answer(request: Request) -> Response:
+    def show_page(request: Request) -> Response:
+        """Return the page with the number in the address; status 404 if it is no longer kept."""
         number = request.path_params["number"]
         page = desk.page(int(number)) if _PAGE_NUMBER.fullmatch(number) else None
         if page is None:
             return PlainTextResponse("this page is no longer kept: ask again", 404)
         return HTMLResponse(page, headers={"content-security-policy": "frame-ancestors 'self'"})
 
-    def names(request: Request) -> Response:
-        return JSONResponse(desk.names(request.query_params.get("start", "")))
+    def list_names(request: Request) -> Response:
+        """Return the names that begin with a text, as JSON."""
+        return JSONResponse(desk.names_beginning(request.query_params.get("start", "")))
 
-    async def ask(request: Request) -> Response:
-        return await _stream(request, desk, lambda body: partial(desk.ask, read_question(body, Form)))
+    async def ask_question(request: Request) -> Response:
+        """Answer the form in the body, as a stream of events."""
+        return await _stream_events(
+            request, desk, lambda body: partial(desk.answer_form, read_question(body, Form))
+        )
 
-    async def without(request: Request) -> Response:
-        return await _stream(request, desk, lambda body: partial(desk.without, read_question(body, Without)))
+    async def ask_regret(request: Request) -> Response:
+        """Answer the regret form in the body, as a stream of events."""
+        return await _stream_events(
+            request, desk, lambda body: partial(desk.answer_regret, read_question(body, RegretForm))
+        )
 
-    async def cancel(_: Request) -> Response:
+    async def cancel_question(_: Request) -> Response:
+        """Cancel the current question."""
         desk.cancel()
         return Response(status_code=204)
 
     routes = [
         Route(f"/{token}/", open_page),
-        Route(f"/{token}/page/{{number}}", answer),
-        Route(f"/{token}/names", names),
-        Route(f"/{token}/ask", ask, methods=["POST"]),
-        Route(f"/{token}/without", without, methods=["POST"]),
-        Route(f"/{token}/cancel", cancel, methods=["POST"]),
+        Route(f"/{token}/page/{{number}}", show_page),
+        Route(f"/{token}/names", list_names),
+        Route(f"/{token}/ask", ask_question, methods=["POST"]),
+        Route(f"/{token}/without", ask_regret, methods=["POST"]),
+        Route(f"/{token}/cancel", cancel_question, methods=["POST"]),
     ]
-    return _guarded(Starlette(routes=routes), token, f"127.0.0.1:{port}")
+    return _guard(Starlette(routes=routes), token, f"127.0.0.1:{port}")
 
 
-def _guarded(app: Asgi, token: str, host: str) -> Asgi:
-    """Return an application that refuses unauthorized requests, and adds security headers to responses."""
+def _guard(app: Asgi, token: str, host: str) -> Asgi:
+    """Return the application with protection: it refuses unauthorized requests, and adds security headers.
 
-    async def guarded(scope: Any, receive: Any, send: Any) -> None:
+    An authorized request names the ``token`` and the ``host``. Connections that are not HTTP are ignored.
+    """
+
+    async def answer_or_refuse(scope: Any, receive: Any, send: Any) -> None:
+        """Answer a request by ``app`` if it is authorized, else by a refusal."""
         if scope["type"] != "http":
             return
 
         async def send_with_headers(message: Any) -> None:
+            """Send a message of the response; add the security headers that it lacks."""
             if message["type"] == "http.response.start":
                 present = {name.lower() for name, _ in message["headers"]}
                 defaults = [(name.encode(), value.encode()) for name, value in _HEADERS.items()]
@@ -100,13 +119,16 @@ def _guarded(app: Asgi, token: str, host: str) -> Asgi:
         refusal = PlainTextResponse("refused", status or 200, {"connection": "close"})
         await (app if status is None else refusal)(scope, receive, send_with_headers)
 
-    return guarded
+    return answer_or_refuse
 
 
 def _refusal_status(
     method: str, path: str, headers: Mapping[str, list[str]], token: str, host: str
 ) -> int | None:
-    """Return the HTTP status with which a request is refused, or ``None`` for an authorized one."""
+    """Return the HTTP status with which a request is refused, or ``None`` for an authorized one.
+
+    ``headers`` are lists of values by names in small letters.
+    """
     if headers.get("host") != [host]:
         return 421
     origins = headers.get("origin", [])
@@ -119,10 +141,15 @@ def _refusal_status(
     return None
 
 
-async def _stream(
-    request: Request, desk: Desk, read: Callable[[bytes], Callable[[Cancel, Tell], None]]
+async def _stream_events(
+    request: Request, desk: Desk, read: Callable[[bytes], Callable[[Cancel, SendEvent], None]]
 ) -> Response:
-    """Return the events of a question as a stream of JSON Lines; a closed connection cancels the question."""
+    """Return the events of a question as a stream of JSON Lines.
+
+    ``read`` returns, from the body of the request, the function that answers the question. The question runs
+    in a thread, and is cancelled when the connection is closed. A body that is too long or no question gets
+    an error as a response.
+    """
     body = b""
     async for chunk in request.stream():
         body += chunk
@@ -133,20 +160,23 @@ async def _stream(
     except UserError as error:
         return PlainTextResponse(str(error), 400)
 
-    token = desk.next()  # before the response: once it has begun, the browser may cancel the question
+    token = desk.next_token()  # before the response: once it has begun, the browser may cancel the question
 
     async def lines() -> AsyncIterator[str]:
+        """Start the question, and yield a line for each of its events until it ends."""
         loop, queue = asyncio.get_running_loop(), asyncio.Queue[Json | None]()
 
-        def tell(event: Json | None) -> None:
+        def send_event(event: Json | None) -> None:
+            """Put an event into the queue from the thread of the question; ``None`` ends the stream."""
             with contextlib.suppress(RuntimeError):  # the server has ended
                 loop.call_soon_threadsafe(queue.put_nowait, event)
 
         def run() -> None:
+            """Answer the question, and end the stream."""
             try:
-                answer(token, tell)
+                answer(token, send_event)
             finally:
-                tell(None)
+                send_event(None)
 
         DaemonThread(run)
         try:
@@ -158,11 +188,18 @@ async def _stream(
     return StreamingResponse(lines(), media_type="application/x-ndjson")
 
 
-def _asking_page(data: Json) -> tuple[str, str]:
-    """Return the HTML of the page with the form, and its content security policy."""
-    style = "\n".join([web("light.css"), web("dark.css"), web("page.css"), web("ask.css", _WEB)])
-    script = '"use strict";\n(() => {\n' + web("element.js") + web("ask.js", _WEB) + "})();\n"
-    page = web("ask.html", _WEB).format(style=style, script=script, data=in_script(data))
+def _question_page(data: Json) -> tuple[str, str]:
+    """Return the HTML of the page that asks questions, and its content security policy."""
+    style = "\n".join(
+        [
+            web_text("light.css"),
+            web_text("dark.css"),
+            web_text("page.css"),
+            web_text("ask.css", _WEB),
+        ]
+    )
+    script = '"use strict";\n(() => {\n' + web_text("element.js") + web_text("ask.js", _WEB) + "})();\n"
+    page = web_text("ask.html", _WEB).format(style=style, script=script, data=script_json(data))
     policy = (
         f"default-src 'none'; script-src {digest(script)}; style-src {digest(style)}; connect-src 'self'; "
         "frame-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"

@@ -1,4 +1,4 @@
-"""Encoding of object nodes, names, and entries of kitchens and goals in the columns of a store."""
+"""The columns of a store: how object nodes, names, and entries of kitchens and goals are encoded in them."""
 
 import json
 from collections.abc import Iterable
@@ -13,12 +13,12 @@ from foon_asp.network import Contents, NodePattern, ObjectNode, Relation, Source
 from foon_asp.store.tuning import STORE
 from foon_asp.text.object_list import ListedObject
 
-quoted = encode_basestring_ascii
-encode = json.JSONEncoder(separators=(",", ":"), check_circular=False).encode
+json_string = encode_basestring_ascii
+encode_json = json.JSONEncoder(separators=(",", ":"), check_circular=False).encode
 
 
 class AttributeColumns(NamedTuple):
-    """The attributes of a node as JSON texts; the digests in certificates are of nodes in this form."""
+    """The attributes of a node as JSON texts. The digests in certificates are computed from this form."""
 
     states: str
     relations: str
@@ -29,50 +29,53 @@ class AttributeColumns(NamedTuple):
 def attribute_columns(
     states: frozenset[str], relations: frozenset[Relation], contents: tuple[Contents, ...]
 ) -> AttributeColumns:
-    """Return the attributes of a node as JSON."""
+    """Return the attributes of a node as JSON texts; states and relations are sorted."""
     related = ",".join(
-        [f"[{quoted(word)},{quoted(related_object)}]" for word, related_object in sorted(relations)]
+        [f"[{json_string(word)},{json_string(related_object)}]" for word, related_object in sorted(relations)]
     )
-    holdings = ",".join([f"[{quoted(word)},{listed(items)}]" for word, items in contents])
-    return AttributeColumns(listed(sorted(states)), f"[{related}]", f"[{holdings}]")
+    holdings = ",".join([f"[{json_string(word)},{json_list(items)}]" for word, items in contents])
+    return AttributeColumns(json_list(sorted(states)), f"[{related}]", f"[{holdings}]")
 
 
-def listed(texts: Iterable[str]) -> str:
-    """Return texts as a list in JSON."""
-    return f"[{','.join(map(quoted, texts))}]"
+def json_list(texts: Iterable[str]) -> str:
+    """Return texts as a list in JSON, without spaces."""
+    return f"[{','.join(map(json_string, texts))}]"
 
 
-def encoded_label(label: str) -> bytes:
+def encode_label(label: str) -> bytes:
     """Return a label in UTF-8, including lone surrogates, which labels from JSON may have."""
     return label.encode("utf-8", "surrogatepass")
 
 
-def decoded_label(name: bytes) -> str:
-    """Return the label in a column, the inverse of :func:`encoded_label`."""
+def decode_label(name: bytes) -> str:
+    """Return the label that :func:`encode_label` encoded."""
     return name.decode("utf-8", "surrogatepass")
 
 
-def decoded(text: str) -> Any:
-    """Return the value of a column in JSON; raises :class:`ValueError` or :class:`TypeError`."""
+def decode_json(text: str) -> Any:
+    """Return the value that a column states in JSON.
+
+    Raises :class:`ValueError` or :class:`TypeError` for a column that is no JSON.
+    """
     return json.loads(text)
 
 
-def listed_ids(ids: list[int]) -> str:
-    """Return ids as a list in JSON."""
+def encode_ids(ids: list[int]) -> str:
+    """Return ids as a list in JSON, without spaces: ``[3,14]``."""
     return str(ids).replace(" ", "")
 
 
-ids_of = msgspec.json.Decoder(tuple[int, ...]).decode
-"""Return the ids in a list of numbers; raises :class:`ValueError` for any other text."""
+decode_ids = msgspec.json.Decoder(tuple[int, ...]).decode
+"""Return the ids that :func:`encode_ids` encoded; raises :class:`ValueError` for any other text."""
 
 
-def node_of(label: str, states: str, relations: str, contents: str) -> ObjectNode:
-    """Return the node of a row."""
+def decode_node(label: str, states: str, relations: str, contents: str) -> ObjectNode:
+    """Return the node of a row, whose attributes are as :func:`attribute_columns` returns them."""
     return ObjectNode(
         label,
-        _states(states),
-        _NO_RELATIONS if relations == "[]" else _relations(relations),
-        () if contents == "[]" else _contents(contents),
+        _decode_states(states),
+        _NO_RELATIONS if relations == "[]" else _decode_relations(relations),
+        () if contents == "[]" else _decode_contents(contents),
     )
 
 
@@ -82,29 +85,39 @@ _NO_RELATIONS = frozenset[Relation]()
 
 
 @lru_cache(maxsize=STORE.cached_attributes)
-def _states(text: str) -> frozenset[str]:
-    return frozenset(map(_name, decoded(text)))
+def _decode_states(text: str) -> frozenset[str]:
+    """Return the states that :func:`attribute_columns` encoded."""
+    return frozenset(map(_checked_name, decode_json(text)))
 
 
 @lru_cache(maxsize=STORE.cached_attributes)
-def _relations(text: str) -> frozenset[Relation]:
-    return frozenset(Relation(_name(word), _name(related_object)) for word, related_object in decoded(text))
+def _decode_relations(text: str) -> frozenset[Relation]:
+    """Return the relations that :func:`attribute_columns` encoded."""
+    return frozenset(
+        Relation(_checked_name(word), _checked_name(related_object))
+        for word, related_object in decode_json(text)
+    )
 
 
 @lru_cache(maxsize=STORE.cached_attributes)
-def _contents(text: str) -> tuple[Contents, ...]:
-    return tuple(Contents(_name(word), tuple(map(_name, items))) for word, items in decoded(text))
+def _decode_contents(text: str) -> tuple[Contents, ...]:
+    """Return the contents that :func:`attribute_columns` encoded."""
+    return tuple(
+        Contents(_checked_name(word), tuple(map(_checked_name, items))) for word, items in decode_json(text)
+    )
 
 
-def _name(value: object) -> str:
+def _checked_name(value: object) -> str:
+    """Return a value of JSON if it is a text; raises :class:`TypeError` for any other."""
     if not isinstance(value, str):
         raise TypeError(f"found {value!r}, expected a name")
     return value
 
 
-def number_of(text: str) -> Fraction:
-    """Return an exact rate or price of less than 4,000 letters; raises :class:`ValueError` for other texts.
+def decode_number(text: str) -> Fraction:
+    """Return the rate or price that a text states, such as ``3/4``.
 
+    Raises :class:`ValueError` for other texts, negative numbers, exponents, and for 4,000 letters or more.
     Python cannot read integers of more than 4,300 digits.
     """
     number = Fraction(text if len(text) < 4000 and "e" not in text.lower() else "")
@@ -113,23 +126,25 @@ def number_of(text: str) -> Fraction:
     return number
 
 
-def entry_column(entry: ListedObject) -> str:
-    """Return an entry of a kitchen or goals file as JSON."""
+def encode_entry(entry: ListedObject) -> str:
+    """Return an entry of a kitchen or goals file as JSON, with its place and amount."""
     pattern, source, amount = entry
     parts = pattern.label, sorted(pattern.states), pattern.ingredients, pattern.container
-    return encode([*parts, sorted(pattern.relations), pattern.contents, *source[:3], amount])
+    return encode_json([*parts, sorted(pattern.relations), pattern.contents, *source[:3], amount])
 
 
-def entry_of(text: str) -> ListedObject:
-    """Return the entry in a column, the inverse of :func:`entry_column`."""
-    label, states, ingredients, container, relations, contents, file, line, column, amount = decoded(text)
+def decode_entry(text: str) -> ListedObject:
+    """Return the entry that :func:`encode_entry` encoded."""
+    label, states, ingredients, container, relations, contents, file, line, column, amount = decode_json(text)
     pattern = NodePattern(
-        _name(label),
-        frozenset(map(_name, states)),
-        tuple(map(_name, ingredients)),
-        container if container is None else _name(container),
-        frozenset(Relation(_name(word), _name(related_object)) for word, related_object in relations),
-        tuple(Contents(_name(word), tuple(map(_name, items))) for word, items in contents),
+        _checked_name(label),
+        frozenset(map(_checked_name, states)),
+        tuple(map(_checked_name, ingredients)),
+        container if container is None else _checked_name(container),
+        frozenset(
+            Relation(_checked_name(word), _checked_name(related_object)) for word, related_object in relations
+        ),
+        tuple(Contents(_checked_name(word), tuple(map(_checked_name, items))) for word, items in contents),
     )
-    source = Source(_name(file), int(line), int(column))
+    source = Source(_checked_name(file), int(line), int(column))
     return ListedObject(pattern, source, None if amount is None else int(amount))

@@ -1,4 +1,4 @@
-"""The cone of goals: the units of a network that the goals can need, read backwards step by step."""
+"""The cone of goals: the units of a network that the goals can need, read backwards from the goals."""
 
 import copy
 from collections import deque
@@ -12,22 +12,24 @@ from foon_asp.store.tuning import STORE
 
 
 class Producers(Protocol):
-    """A network that is read node by node; ids are those of the whole network."""
+    """A network that is read node by node, as needed; ids are those in the whole network."""
 
     def producers_of(self, objects: Sequence[int]) -> list[list[int]]:
-        """Return the units that make each of some nodes."""
+        """Return, for each of the nodes, the ids of the units that have it as an output."""
 
     def needs(
         self, units: Sequence[int], containers: ContainerRule, utensils: frozenset[str]
     ) -> list[list[int]]:
-        """Return for each of the units the nodes that it needs."""
+        """Return, for each of the units, the ids of the nodes that it needs under a container rule."""
 
 
 class Cone:
-    """The part read so far of the units that goals can need, by id in the whole network.
+    """The units that goals can need, as far as they were read. Ids are those in the whole network.
 
-    ``units`` are the units that were read. For each node that the goals or these units need under the
-    container rule, all producers were read, unless the node is ``available`` or ``open``.
+    ``units`` are the units that were read. ``open`` are needed nodes that are not ``available`` and whose
+    producers were not read yet. Of all other needed nodes, all producers were read, or the node is available.
+    A node is needed if it is a goal, or if a unit of the cone needs it under the container rule with its
+    ``utensils``.
     """
 
     def __init__(
@@ -38,7 +40,7 @@ class Cone:
         utensils: frozenset[str],
         available: Container[int],
     ) -> None:
-        """Start with no unit read; goals that are not ``available`` are open."""
+        """Start with no unit; the goals that are not ``available`` are open."""
         self.goals = tuple(goals)
         self.units: set[int] = set()
         self.open = {goal for goal in self.goals if goal not in available}
@@ -46,18 +48,18 @@ class Cone:
         self._network, self._available = network, available
         self._rule = containers, utensils
 
-    def copied(self) -> "Cone":
-        """Return an independent copy of the cone."""
+    def copy(self) -> "Cone":
+        """Return a copy of the cone that grows independently."""
         other = copy.copy(self)
         other.units, other.open, other._closed = set(self.units), set(self.open), set(self._closed)
         return other
 
     @uncollected()
     def grow(self, objects: Iterable[int], max_units: int | None = None) -> None:
-        """Read the producers of open nodes, then of the nodes that these producers need, breadth first.
+        """Read the units that make the open nodes among ``objects``, then the units that make their inputs.
 
-        ``objects`` are the nodes to begin with; nodes that are not open are skipped. Ends when about
-        ``max_units`` more units were read; ``None`` means no limit.
+        This continues backwards, breadth first, and stops after about ``max_units`` more units; ``None``
+        means no limit. Nodes of which all producers were read are open no more.
         """
         queue = deque(objects)
         target_size = None if max_units is None else len(self.units) + max_units

@@ -1,4 +1,4 @@
-"""The digests of a store: one of the whole file, and those of its contents for certificates."""
+"""Digests of a store: one of the whole file, and those of its contents, which certificates state."""
 
 import hashlib
 import sqlite3
@@ -7,14 +7,14 @@ from fractions import Fraction
 from itertools import islice
 from pathlib import Path
 
-from foon_asp.store.columns import decoded_label, encode, quoted
+from foon_asp.store.columns import decode_label, encode_json, json_string
 from foon_asp.store.tuning import STORE
 
 FILE_DIGEST = hashlib.sha256().digest_size  # bytes behind the last page, which SQLite ignores
 
 
 def append_digest(file: Path) -> None:
-    """Append the SHA-256 digest of a database to its file."""
+    """Append the SHA-256 digest of a database file to the file."""
     with file.open("rb+") as database:
         digest = hashlib.file_digest(database, "sha256").digest()
         database.seek(0, 2)
@@ -22,7 +22,7 @@ def append_digest(file: Path) -> None:
 
 
 def has_true_digest(file: Path) -> bool:
-    """Whether a store is unchanged since its import, by the SHA-256 digest at its end."""
+    """Whether the file of a store ends in the SHA-256 digest of all bytes before it."""
     digest, remaining, chunk_size = hashlib.sha256(), file.stat().st_size - FILE_DIGEST, 1 << 20
     with file.open("rb") as database:
         while remaining > 0 and (chunk := database.read(min(chunk_size, remaining))):
@@ -36,16 +36,18 @@ def content_digests(
     motions: Mapping[str, Fraction] | None,
     priced: Mapping[int, Fraction] | None,
 ) -> dict[str, str]:
-    """Return the digests of network, kitchen and prices, equal to :func:`foon_asp.proof.verifier.digests`.
+    """Return the SHA-256 digests of ``network``, ``kitchen`` and ``prices`` in hexadecimal, by these names.
 
-    ``motions`` are prices by motion, ``priced`` those of single units by id; ``None`` where none are known.
+    They are equal to those of :func:`foon_asp.proof.verifier.digests`. ``motions`` are the prices by motion,
+    ``priced`` those of single units by id; ``None`` if there are none.
     """
 
     def column(statement: str) -> Iterable[str]:
+        """Yield the values of the single column that a statement selects."""
         return (text for (text,) in database.execute(statement))
 
     labels = [
-        quoted(decoded_label(name)) for (name,) in database.execute("SELECT name FROM label ORDER BY id")
+        json_string(decode_label(name)) for (name,) in database.execute("SELECT name FROM label ORDER BY id")
     ]
     rows = database.execute("SELECT label, states, relations, contents FROM node ORDER BY id")
     nodes = (
@@ -60,12 +62,12 @@ def content_digests(
     )
     prices = "null"
     if motions is not None or priced is not None:
-        single = ([unit, str(price)] for unit, price in sorted((priced or {}).items()))
-        prices = encode(
-            [sorted([motion, str(price)] for motion, price in (motions or {}).items()), [*single]]
+        sorted_unit_prices = ([unit, str(price)] for unit, price in sorted((priced or {}).items()))
+        prices = encode_json(
+            [sorted([motion, str(price)] for motion, price in (motions or {}).items()), [*sorted_unit_prices]]
         )
     return {
-        "network": _digest("3", *network),
+        "network": _digest_of_lists("3", *network),
         "kitchen": hashlib.sha256(
             f"[{','.join(map(str, column('SELECT id FROM node WHERE kitchen ORDER BY id')))}]".encode()
         ).hexdigest(),
@@ -73,13 +75,17 @@ def content_digests(
     }
 
 
-def _digest(level: str, *lists: Iterable[str]) -> str:
-    """Return the SHA-256 digest of a JSON list: a level, then lists of texts that are JSON."""
+def _digest_of_lists(level: str, *lists: Iterable[str]) -> str:
+    """Return the SHA-256 digest of a list in JSON: a level, then one list for each of ``lists``.
+
+    Members of lists are JSON already. They are joined in batches, so that long lists are never in memory as
+    one text.
+    """
     digest = hashlib.sha256(f"[{level}".encode())
     for members in lists:
-        remaining = iter(members)
+        unread = iter(members)
         comma = ",["
-        while batch := [*islice(remaining, STORE.digest_texts)]:
+        while batch := [*islice(unread, STORE.digest_texts)]:
             digest.update(f"{comma}{','.join(batch)}".encode("ascii"))
             comma = ","
         digest.update(b"]" if comma == "," else b",[]")

@@ -1,4 +1,4 @@
-"""The import of files into a store, whole or not at all."""
+"""The import of files into a store. The store is written as a whole or not at all."""
 
 import contextlib
 import os
@@ -29,10 +29,11 @@ from foon_asp.text.unit_price_list import read_unit_prices
 
 
 class Imported(NamedTuple):
-    """The result of an import: ``copies`` counts the units read, ``units`` and ``objects`` the distinct ones.
+    """The result of an import.
 
-    ``left_out`` counts lines that were not understood. ``remarks`` are about motions without a success rate
-    and nodes that a unit lists twice.
+    ``copies`` is the number of units read; ``units`` and ``objects`` are the numbers of distinct units and
+    object nodes. ``left_out`` is the number of lines that were not understood. ``remarks`` are about motions
+    without a success rate and about nodes that a unit lists twice.
     """
 
     copies: int
@@ -46,8 +47,9 @@ class Imported(NamedTuple):
 def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Imported:
     """Read networks and the files beside them into a store, which replaces an older one at the end.
 
-    Raises :class:`InputError` for input that is not understood, and :class:`UserError` where the store
-    cannot be written, is being written by another process, or would replace a file that is no store.
+    With ``lenient``, lines that are not understood are left out. Raises :class:`InputError` for input that is
+    not understood. Raises :class:`UserError` if the store cannot be written, is being written by another
+    process, or would replace a file that is no store.
     """
     if store.suffix != STORE_SUFFIX:
         raise UserError(f"{store}: the name of a store ends in {STORE_SUFFIX}")
@@ -67,19 +69,19 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
     earlier_warnings = len(warnings)
     last_units: dict[int, Source] = {}
     try:
-        with _written(store) as database, uncollected():
+        with _new_database(store) as database, uncollected():
             builder = StoreBuilder(database, kitchen)
             for file in files.network:
                 if is_store(file):
                     raise UserError(f"{file}: is a store already; merge the files that it was made from")
-                last: tuple[int, Source] | None = None
+                last_unit: tuple[int, Source] | None = None
                 for motion, inputs, outputs, sources, _ in reader.file_units(file):
-                    added = builder.add(motion, inputs, outputs, sources)
-                    last = (added, sources[0]) if outputs else last
+                    unit_id = builder.add(motion, inputs, outputs, sources)
+                    last_unit = (unit_id, sources[0]) if outputs else last_unit
                     if motion in counted_motions:
                         counted_units[FunctionalUnit.of(motion, inputs, outputs)] = None
-                if last:
-                    last_units.setdefault(*last)
+                if last_unit:
+                    last_units.setdefault(*last_unit)
             reader.raise_errors(earlier_warnings)
             goals_from = ""
             if files.goals is None:
@@ -92,7 +94,7 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
                 reader.amounts.amounts_by_unit(), amount_rows, counted_units
             )
             warnings += unmatched
-            counts = builder.copies, builder.units, builder.objects
+            counts = builder.copy_count, builder.unit_count, builder.object_count
             builder.finish(
                 goals, goals_from, rates, utensils, reader.left_out, reader.repeated, amounts, stated, prices
             )
@@ -111,18 +113,22 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
 def _assumed_goals(
     reader: FoonReader, builder: StoreBuilder, last_units: Mapping[int, Source]
 ) -> tuple[list[ListedObject], str]:
-    """Return the marked goals, or if there are none the final outputs of last units; and their origin."""
+    """Return the goals that are assumed without a goals file, and the name of their origin.
+
+    They are the marked goals, or if there are none, the final outputs of ``last_units``.
+    """
     if reader.marked:
         return [goal_entry(node, source) for node, source in reader.marked.items()], MARKED
-    return builder.last_outputs(last_units), LAST
+    return builder.final_outputs(last_units), LAST
 
 
 @contextlib.contextmanager
-def _written(store: Path) -> Iterator[sqlite3.Connection]:
-    """Yield a new database; it replaces the store at a normal end, and is removed after an error.
+def _new_database(store: Path) -> Iterator[sqlite3.Connection]:
+    """Yield a new database in one transaction; at a normal end it becomes the store.
 
-    The database is a single file in the store's folder. If this process is killed, a later import replaces
-    the file.
+    It is committed, gets its digest appended, and replaces ``store``. After an error it is removed. The
+    database is a single file in the folder of the store. If this process is killed, a later import removes
+    the file. Raises :class:`UserError` if another import is writing the store.
     """
     store = Path(os.path.realpath(store))  # a link stays one
     partial = store.with_name(f".{store.name}.partial")
@@ -140,7 +146,7 @@ def _written(store: Path) -> Iterator[sqlite3.Connection]:
             "locking_mode = EXCLUSIVE",
         ):
             database.execute(f"PRAGMA {setting}")
-        _lock(database, store)
+        _begin_exclusively(database, store)
         locked = True
         yield database
         database.execute("COMMIT")
@@ -148,14 +154,14 @@ def _written(store: Path) -> Iterator[sqlite3.Connection]:
         append_digest(partial)
         with partial.open("rb+") as file:
             os.fsync(file.fileno())
-        old = None
+        replaced = None
         if store.exists():
             with store.open("rb+"):  # may it be written? Renaming asks the folder alone
-                old = store.stat()
-            copy_permissions(old, partial)
+                replaced = store.stat()
+            copy_permissions(replaced, partial)
         partial.replace(store)
-        if old is not None:
-            warn_of_replaced(store, old)
+        if replaced is not None:
+            warn_of_replaced(store, replaced)
     finally:
         database.close()
         if locked:
@@ -163,20 +169,23 @@ def _written(store: Path) -> Iterator[sqlite3.Connection]:
 
 
 def _remove_leftover(partial: Path, store: Path) -> None:
-    """Remove the partial file of a killed import; raise :class:`UserError` if another import writes it."""
+    """Remove the partial file of an import that was killed.
+
+    Raises :class:`UserError` if another import is writing the file, or if it is no file of an import.
+    """
     with partial.open("rb") as file:
-        begins = file.read(len(STORE_MAGIC))
-    if begins.strip(b"\0") and begins != STORE_MAGIC:
+        first_bytes = file.read(len(STORE_MAGIC))
+    if first_bytes.strip(b"\0") and first_bytes != STORE_MAGIC:
         raise UserError(f"{partial}: is in the way, and is not left over from an import; move or remove it")
     database = sqlite3.connect(partial, timeout=0, isolation_level=None)
     # Cut off in the middle, it may be no database any more.
     with contextlib.closing(database), contextlib.suppress(sqlite3.DatabaseError):
-        _lock(database, store)
+        _begin_exclusively(database, store)
     partial.unlink(missing_ok=True)
 
 
-def _lock(database: sqlite3.Connection, store: Path) -> None:
-    """Begin to write; raises :class:`UserError` when another process does."""
+def _begin_exclusively(database: sqlite3.Connection, store: Path) -> None:
+    """Begin a transaction that excludes other processes; raises :class:`UserError` if one is writing."""
     try:
         database.execute("BEGIN EXCLUSIVE")
     except sqlite3.OperationalError as error:

@@ -1,4 +1,4 @@
-"""The outline of a network: its units and nodes as arrays of numbers, for searches of all at once."""
+"""The outline of a store: all units and nodes as arrays of numbers, so that all are searched at once."""
 
 from collections.abc import Callable, Collection, Iterable, Sequence
 from functools import cached_property
@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from foon_asp.problem import Having, Trait
-from foon_asp.store.columns import encoded_label, quoted
+from foon_asp.store.columns import encode_label, json_string
 
 Numbers = NDArray[np.uint32]
 Mask = NDArray[np.bool_]
@@ -20,7 +20,11 @@ _LABELLED = "label = (SELECT id FROM label WHERE name = ?)"
 
 
 class Outline:
-    """The hypergraph of all units of a store as arrays; ids are those of the whole network."""
+    """The units of a store: their motions, inputs and outputs as arrays. Ids are those in the whole network.
+
+    A mask is an array of booleans, one for each unit, node or list; it stands for the set of those that are
+    true.
+    """
 
     def __init__(
         self,
@@ -30,10 +34,10 @@ class Outline:
         motions: Sequence[str],
         nodes_where: Callable[..., Collection[int]],
     ) -> None:
-        """Decode the arrays; raises :class:`LookupError` for ids that do not exist.
+        """Decode the arrays; raises :class:`LookupError` if they do not fit each other or the store.
 
         Parameters:
-            outline: The rows of the table: the name and the bytes of each array.
+            outline: The rows of the table ``outline``: the name and the bytes of each array.
             units: The number of units in the store.
             nodes: The number of nodes in the store.
             motions: The names of motions, by number.
@@ -52,63 +56,71 @@ class Outline:
 
     @cached_property
     def _consumers(self) -> "_Lists":
-        """The units that have each node as an input."""
-        return self.inputs.inverted(self._nodes)
+        """For each node, the units that have it as an input."""
+        return self.inputs.inverse(self._nodes)
 
     @cached_property
     def _producers(self) -> "_Lists":
-        """The units that have each node as an output."""
-        return self.outputs.inverted(self._nodes)
+        """For each node, the units that have it as an output."""
+        return self.outputs.inverse(self._nodes)
 
-    def nodes(self, ids: Collection[int]) -> Mask:
-        """Return the mask of nodes with these ids."""
+    def node_mask(self, ids: Collection[int]) -> Mask:
+        """Return the mask of the nodes with these ids."""
         mask = np.zeros(self._nodes, dtype=np.bool_)
         mask[np.fromiter(ids, np.int64, len(ids))] = True
         return mask
 
-    def units(self, ids: Collection[int]) -> Mask:
-        """Return the mask of units with these ids."""
+    def unit_mask(self, ids: Collection[int]) -> Mask:
+        """Return the mask of the units with these ids."""
         mask = np.zeros(len(self.motions), dtype=np.bool_)
         mask[np.fromiter(ids, np.int64, len(ids))] = True
         return mask
 
-    def labelled(self, labels: Iterable[str]) -> Mask:
+    def labelled_nodes(self, labels: Iterable[str]) -> Mask:
         """Return the mask of the nodes that have one of the labels."""
         mask = np.zeros(self._nodes, dtype=np.bool_)
         for label in labels:
-            mask |= self.nodes(self._nodes_where(_LABELLED, encoded_label(label)))
+            mask |= self.node_mask(self._nodes_where(_LABELLED, encode_label(label)))
         return mask
 
-    def named(self, word: str) -> Mask:
-        """Return the mask of the nodes whose label is a word, or that may have the word as an ingredient."""
+    def nodes_named(self, word: str) -> Mask:
+        """Return the mask of the nodes that have the word as their label or in the text of their contents.
+
+        Every node with the word as an ingredient is in it, and others may be. Masks are kept for further
+        calls.
+        """
         mask = self._named_masks.get(word)
         if mask is None:
-            holds = self.nodes(self._nodes_where("instr(contents, ?)", quoted(word)))
-            mask = self._named_masks[word] = self.labelled((word,)) | holds
+            may_contain = self.node_mask(self._nodes_where("instr(contents, ?)", json_string(word)))
+            mask = self._named_masks[word] = self.labelled_nodes((word,)) | may_contain
         return mask
 
-    def with_all(self, traits: Iterable[Trait], kitchen: Mask) -> Mask:
-        """Return the mask of the units that may have all of the traits; nodes of ``kitchen`` are not made."""
+    def units_with_traits(self, traits: Iterable[Trait], kitchen: Mask) -> Mask:
+        """Return the mask of the units that may have all of the traits.
+
+        Names are searched in the text of contents, so the mask may have further units. A node in the mask
+        ``kitchen`` does not count as made.
+        """
         mask = np.ones(len(self.motions), dtype=np.bool_)
         for having, word in traits:
             if having is Having.MOTION:
                 mask &= np.isin(self.motions, [n for n, name in enumerate(self.motion_names) if name == word])
             else:
                 lists = self.outputs if having is Having.OUTPUT else self.inputs
-                nodes = self.named(word)
+                nodes = self.nodes_named(word)
                 if having is Having.MADE:
                     nodes = nodes & ~kitchen
-                mask &= lists.any(nodes[lists.entries])
+                mask &= lists.lists_with_any(nodes[lists.entries])
         return mask
 
-    def made_by(self, units: Mask) -> Mask:
-        """Return the mask of the nodes that are outputs of the units."""
+    def nodes_made_by(self, units: Mask) -> Mask:
+        """Return the mask of the nodes that are outputs of the units in a mask."""
         mask = np.zeros(self._nodes, dtype=np.bool_)
         positions, _ = self.outputs.positions_of(np.flatnonzero(units))
         mask[self.outputs.entries[positions]] = True
         return mask
 
-    def distances(
+    def unit_distances(
         self,
         available: Mask,
         costs: NDArray[np.int64],
@@ -116,26 +128,29 @@ class Outline:
         free: Mask,
         limit: Callable[[Distances], int] | None = None,
     ) -> Distances:
-        """Return for each unit its cost plus the largest distance of its inputs (``h_max``).
+        """Return the distance of each unit: its cost plus the largest distance of its inputs (``h_max``).
 
-        The distance of ``available`` nodes and ``free`` units is 0. The cost of another unit is that of its
-        motion in ``costs``. A tree costs no less than the distance of any of its units, since only one input
-        of each unit counts. A distance above ``max_distance`` becomes :data:`FAR`; ``limit`` returns a lower
-        maximum from the distances found so far.
+        The distance of a node is the least one of its producers. The distance of ``available`` nodes and
+        ``free`` units is 0. The cost of another unit is that of its motion in ``costs``. A tree costs at
+        least the distance of each of its units.
+
+        A distance above ``max_distance`` becomes :data:`FAR`. ``limit`` is called with the distances found so
+        far, and returns a lower maximum.
         """
         node_distances = np.where(available, 0, FAR)
         distances = np.where(free, 0, FAR)
         own_costs = costs[self.motions]
-        units = np.flatnonzero(~self.inputs.any(~available[self.inputs.entries]))  # whose distances may fall
+        # units whose distances may fall
+        units = np.flatnonzero(~self.inputs.lists_with_any(~available[self.inputs.entries]))
         new_distances = own_costs[units]
         while True:
             if limit is not None:
                 max_distance = min(max_distance, limit(distances))
-            closer = (new_distances <= max_distance) & (new_distances < distances[units])
-            units = units[closer]
+            is_closer = (new_distances <= max_distance) & (new_distances < distances[units])
+            units = units[is_closer]
             if not len(units):
                 return distances
-            distances[units] = new_distances[closer]
+            distances[units] = new_distances[is_closer]
             positions, owners = self.outputs.positions_of(units)
             made = self.outputs.entries[positions]
             previous = node_distances[made]
@@ -148,20 +163,24 @@ class Outline:
             farthest = np.maximum.reduceat(needed, starts) if len(units) else needed
             new_distances = _saturating_sum(farthest, own_costs[units])
 
-    def leading_to(self, units: Mask, available: Mask, candidates: Mask) -> Mask:
-        """Return the mask of the units, and of all ``candidates`` that lead to their unavailable inputs."""
+    def units_leading_to(self, units: Mask, available: Mask, candidates: Mask) -> Mask:
+        """Return the mask of ``units`` and of the candidates through which their inputs can be made.
+
+        These are the units among ``candidates`` that produce an input which is not ``available``, the
+        candidates that produce inputs of these, and so on.
+        """
         mask = units.copy()
         new = np.flatnonzero(mask)
         while len(new):
             needed = self.inputs.entries_of_all(new)
-            makers = self._producers.entries_of_all(needed[~available[needed]])
-            new = makers[candidates[makers] & ~mask[makers]]
+            producers_of_needed = self._producers.entries_of_all(needed[~available[needed]])
+            new = producers_of_needed[candidates[producers_of_needed] & ~mask[producers_of_needed]]
             mask[new] = True
         return mask
 
 
 def _saturating_sum(distances: Distances, costs: Distances) -> Distances:
-    """Return distances plus costs; only distances that are :data:`FAR` have the sum :data:`FAR`."""
+    """Return distances plus costs; the sum is :data:`FAR` if the distance is, else less."""
     return np.where(distances < FAR, np.minimum(distances + costs, FAR - 1), FAR)
 
 
@@ -173,9 +192,10 @@ def _checked_ids(ids: Numbers, count: int) -> Numbers:
 
 
 class _Lists:
-    """Lists of numbers of different lengths in one array (compressed sparse rows).
+    """Lists of numbers of different lengths, one after the other in one array (compressed sparse rows).
 
-    ``count`` is the number of lists.
+    ``lengths`` are the lengths of the lists, ``entries`` the numbers of all lists. ``count`` is the number of
+    lists. Raises :class:`LookupError` if the lengths do not add up to the entries.
     """
 
     def __init__(self, lengths: Numbers, entries: Numbers) -> None:
@@ -187,26 +207,26 @@ class _Lists:
 
     @cached_property
     def owners(self) -> Numbers:
-        """The list that each entry is in."""
+        """For each entry, the number of the list that it is in."""
         return np.repeat(np.arange(len(self._lengths), dtype=np.uint32), self._lengths)
 
-    def any(self, entries: Mask) -> Mask:
-        """Return the mask of the lists with at least one entry in a mask of entries."""
+    def lists_with_any(self, entries: Mask) -> Mask:
+        """Return the mask of the lists of which at least one entry is in a mask of entries."""
         mask = np.zeros(len(self._lengths), dtype=np.bool_)
         mask[self.owners[np.flatnonzero(entries)]] = True
         return mask
 
     def entries_of_all(self, lists: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Return the distinct entries of some lists, ascending."""
+        """Return the distinct entries of the lists with these numbers, ascending."""
         return np.unique(self.entries[self.positions_of(lists)[0]]).astype(np.int64)
 
-    def inverted(self, size: int) -> "_Lists":
-        """Return for each number below ``size`` the lists that it is in."""
+    def inverse(self, size: int) -> "_Lists":
+        """Return for each number below ``size`` the lists that contain it."""
         counts = np.bincount(self.entries, minlength=size).astype(np.uint32)
         return _Lists(counts, self.owners[np.argsort(self.entries, kind="stable")])
 
     def positions_of(self, lists: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return the positions of all entries of some lists, and the list of each of them."""
+        """Return the positions of all entries of the lists with these numbers, and for each its list."""
         lengths = self._lengths[lists].astype(np.int64)
         owners = np.repeat(lists, lengths)
         offsets = np.repeat(np.cumsum(lengths) - lengths, lengths)

@@ -1,4 +1,4 @@
-"""The tables of a store: an SQLite database with a column for each value that is looked up."""
+"""The tables of a store, which is an SQLite database with a column for each value that is looked up."""
 
 import contextlib
 import sqlite3
@@ -55,18 +55,21 @@ _SHADOWS = {f"label_trigram_{suffix}" for suffix in ("data", "idx", "docsize", "
 
 
 def create_tables(database: sqlite3.Connection) -> None:
-    """Make the tables of a store in a new database; without FTS5, similar labels are found by a scan."""
+    """Create the tables of a store in a new database, without their indexes.
+
+    The index of trigrams is left out where SQLite lacks FTS5; then similar labels are found by a scan.
+    """
     database.execute(f"PRAGMA application_id = {APPLICATION_ID}")
     database.execute(f"PRAGMA user_version = {VERSION}")
     for statement in SCHEMA:
         if not statement.startswith("CREATE INDEX"):
             database.execute(statement)
-    if _knows_trigrams():
+    if _has_trigrams():
         database.execute(TRIGRAMS)
 
 
-def _knows_trigrams() -> bool:
-    """Whether this SQLite has FTS5 with trigrams, tried in a database in memory."""
+def _has_trigrams() -> bool:
+    """Whether this SQLite has FTS5 with trigrams; tried in a database in memory."""
     with contextlib.closing(sqlite3.connect(":memory:")) as database:
         try:
             database.execute(TRIGRAMS)
@@ -76,14 +79,17 @@ def _knows_trigrams() -> bool:
 
 
 def create_indexes(database: sqlite3.Connection) -> None:
-    """Make the indexes once the tables are filled, which is faster than updating indexes at each insert."""
+    """Create the indexes of filled tables, which is faster than updating them at each insertion."""
     for statement in SCHEMA:
         if statement.startswith("CREATE INDEX"):
             database.execute(statement)
 
 
 def check_tables(database: sqlite3.Connection) -> None:
-    """Raise :class:`ValueError` for a database with other tables, views or triggers, which can run code."""
+    """Raise :class:`ValueError` if the tables, indexes, views or triggers are not exactly those of a store.
+
+    Others could run code.
+    """
     database.execute("PRAGMA trusted_schema = OFF")
     rows = database.execute("SELECT type, name, sql FROM sqlite_master WHERE sql IS NOT NULL").fetchall()
     shadow_tables = [(kind, sql) for kind, name, sql in rows if name in _SHADOWS]

@@ -1,4 +1,4 @@
-"""The whole network of a store, read lazily."""
+"""The whole network of a store, whose units and nodes are read only when they are accessed."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ Value = TypeVar("Value")
 
 
 class _LazySequence(Sequence[Value]):
-    """A sequence by id whose values are read on access."""
+    """A sequence of ``size`` values; each access of a value calls ``read`` with its index."""
 
     def __init__(self, size: int, read: Callable[[int], Value]) -> None:
         self._ids, self._read = range(size), read
@@ -30,30 +30,35 @@ class _LazySequence(Sequence[Value]):
         return self._read(self._ids[index])
 
 
-def _lazy(size: int, read: Callable[[int], Value]) -> Any:  # stands for a tuple
+def _read_on_access(size: int, read: Callable[[int], Value]) -> Any:
+    """Return a lazy sequence, typed so that it can stand for a tuple."""
     return _LazySequence(size, read)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class TouchedNetwork(Network):
-    """The whole network of a store, whose units and nodes are read on access, one by one."""
+    """The whole network of a store; each unit and node is read when it is accessed."""
 
     store: Store = field(kw_only=True)
 
     @classmethod
     def of(cls, store: Store) -> Self:
         """Return the network of a store."""
-        nodes = _lazy(store.objects, store.node)
+        nodes = _read_on_access(store.object_count, store.node)
+
+        def part_reader(position: int) -> Callable[[int], Any]:
+            """Return the function that reads one of the :meth:`~.Store.unit_parts` of a unit."""
+            return lambda unit: store.unit_parts(unit)[position]
+
         motions, inputs, outputs, sources = [
-            _lazy(store.units, lambda unit, position=position: store.unit_parts(unit)[position])  # type: ignore[misc]
-            for position in range(4)
+            _read_on_access(store.unit_count, part_reader(position)) for position in range(4)
         ]
         return cls(nodes, motions, inputs, outputs, sources, {}, {}, store=store)
 
     @cached_property
     def producers(self) -> Any:
-        """For each object node, the units that have it as an output, in order."""
-        return _lazy(self.store.objects, self.store.producers)
+        """For each object node, the ids of the units that have it as an output, in order."""
+        return _read_on_access(self.store.object_count, self.store.producers)
 
     @cached_property
     def different_motions(self) -> frozenset[str]:

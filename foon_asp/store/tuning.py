@@ -1,10 +1,10 @@
-"""Numbers that steer how stores are written and read; none of them changes what is stored or answered."""
+"""Numbers that steer how stores are written and read. None of them changes a result."""
 
 from typing import NamedTuple
 
 
 class StoreTuning(NamedTuple):
-    """Sizes of batches and caches of this room.
+    """Sizes of batches and caches.
 
     ``rows_per_write``: rows of one table that are kept in memory until they are written.
     ``cached_nodes``: recent nodes whose ids an import keeps in memory, since copies are mostly close
@@ -12,8 +12,8 @@ class StoreTuning(NamedTuple):
     ``cached_attributes``: distinct lists of states, relations or contents that are kept in memory after
     reading.
     ``digest_texts``: texts that are joined before they are added to a digest.
-    ``cone_nodes``: nodes whose producers one query reads; a cone may read the producers of up to as many
-    nodes without need.
+    ``cone_nodes``: nodes whose producers one query reads; a cone reads the producers of up to as many nodes
+    too many.
     ``compared_labels``: labels that share the rarest trigrams with a wanted one, which are compared in full.
     """
 

@@ -1,4 +1,4 @@
-"""Lower bounds on the cost of trees with a unit of a store, for all units at once."""
+"""Lower bounds on the cost of trees that have a certain unit, for all units of a store at once."""
 
 import math
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -16,10 +16,13 @@ _SCALE = 2**40  # of logarithms of success rates, which are whole numbers
 class UnitDistances:
     """The distances of all units of a network: lower bounds on the cost of a tree that has the unit.
 
-    ``kitchen`` is the mask of the available nodes, ``skipped`` the mask of nodes that units do not need.
-    Costs are units, or negative logarithms of success rates if the objective is ``success``, rounded down.
-    The distance of a unit is its cost plus the largest distance of its inputs, where the distance of a node
-    is the least of its producers (``h_max`` of Bonet and Geffner, Artificial Intelligence 129, 2001).
+    The distance of a unit is its cost plus the largest distance of its inputs. The distance of a node is the
+    least one of its producers (``h_max`` of Bonet and Geffner, Artificial Intelligence 129, 2001). It is 0
+    for nodes in the mask ``kitchen``, which are available, and in the mask ``skipped``, which units do not
+    need.
+
+    The cost of a unit is 1. If ``objective`` is ``success`` and there are ``rates``, it is the negative
+    logarithm of the unit's rate, scaled to an integer and rounded down.
     """
 
     def __init__(
@@ -30,7 +33,7 @@ class UnitDistances:
         rates: Mapping[str, Fraction] | None,
         objective: Objective,
     ) -> None:
-        """Compute the cost of a unit of each motion."""
+        """Compute the cost of a unit for each motion."""
         self._outline, self._kitchen, self._available = outline, kitchen, kitchen | skipped
         motions = outline.motion_names
         costs, self._step = [1] * len(motions), 1  # the unit of ``max_steps``
@@ -41,30 +44,31 @@ class UnitDistances:
             self._step = _SCALE // 8
         self._costs: NDArray[np.int64] = np.array(costs, dtype=np.int64)
 
-    def matching(self, rows: Iterable[Iterable[Trait]]) -> Mask:
-        """Return the mask of the units that may have all traits of a row, for at least one of the rows."""
+    def units_matching(self, rows: Iterable[Iterable[Trait]]) -> Mask:
+        """Return the mask of the units that may have all traits of at least one row of traits."""
         matching = np.zeros(len(self._outline.motions), dtype=np.bool_)
         for row in {tuple(row) for row in rows}:
-            matching |= self._outline.with_all(row, self._kitchen)
+            matching |= self._outline.units_with_traits(row, self._kitchen)
         return matching
 
-    def nearest(
+    def nearest_units(
         self, kinds: Sequence[Mask], executed: Collection[int], max_units: int, max_steps: int
     ) -> tuple[list[int], list[int]]:
         """Return the nearest units of each kind with the units that lead to them, and the least distances.
 
-        ``executed`` are units that cost nothing. Of each kind, at most ``max_units`` units are chosen. Their
-        distances exceed the least distance, or the greatest of several kinds, by at most
-        ``max_steps`` steps. The least distance of a kind is :data:`FAR` where none of its units can be
-        reached.
+        ``kinds`` are masks of units. ``executed`` are the ids of units that cost nothing. Of each kind, at
+        most ``max_units`` units are chosen. Their distances are at most ``max_steps`` steps above the
+        greatest of the kinds' least distances. A step is the cost of a unit, or a fixed part of a logarithm.
+
+        The first list has the ids of all chosen units and of units that lead to them. The second list has the
+        least distance of each kind, or :data:`FAR` if none of its units can be reached.
         """
-        free_units, surplus = self._outline.units(executed), max_steps * self._step
-
+        free_units, surplus = self._outline.unit_mask(executed), max_steps * self._step
         unit_ids = [np.flatnonzero(kind) for kind in kinds]
-
         nonempty = [ids for ids in unit_ids if len(ids)]
 
         def least_distances(distances: Distances, unit_ids: Sequence[NDArray[np.int64]]) -> list[int]:
+            """Return the least distance in each array of unit ids; :data:`FAR` for an empty one."""
             return [int(distances[ids].min(initial=FAR)) for ids in unit_ids]
 
         distances = self._distances(
@@ -74,23 +78,26 @@ class UnitDistances:
         for ids in unit_ids:
             chosen[ids[np.argsort(distances[ids], kind="stable")[:max_units]]] = True
         reachable = distances < FAR
-        units = self._outline.leading_to(chosen & reachable, self._kitchen, reachable & ~free_units)
+        units = self._outline.units_leading_to(chosen & reachable, self._kitchen, reachable & ~free_units)
         return np.flatnonzero(units).tolist(), least_distances(distances, unit_ids)
 
-    def relevant(self, kinds: Sequence[Mask] | None, executed: Collection[int], max_cost: int) -> list[int]:
-        """Return the units within a distance of ``max_cost`` that are of some kind or lead to such units.
+    def relevant_units(
+        self, kinds: Sequence[Mask] | None, executed: Collection[int], max_cost: int
+    ) -> list[int]:
+        """Return the ids of the units that may be in a cheap enough tree with a unit of some kind.
 
-        ``executed`` are units that cost nothing; they are not returned. ``None`` as ``kinds`` means all
-        units.
+        These are the units of the ``kinds`` with a distance of at most ``max_cost``, and units with such a
+        distance that lead to them. ``kinds`` are masks of units; ``None`` means that all units count.
+        ``executed`` are the ids of units that cost nothing; they are not returned.
         """
         if max_cost < int(self._costs.min(initial=FAR)):
             return []
-        free_units = self._outline.units(executed)
+        free_units = self._outline.unit_mask(executed)
         reachable = self._distances(free_units, max_cost, None) < FAR
         units = reachable
         if kinds is not None:  # also units that lead to executed ones, which may be reached in another way
             matching = np.logical_or.reduce([np.zeros_like(free_units), *kinds])
-            units = self._outline.leading_to(matching & reachable, self._kitchen, reachable)
+            units = self._outline.units_leading_to(matching & reachable, self._kitchen, reachable)
         units = units & ~free_units
         ids: list[int] = np.flatnonzero(units).tolist()
         return ids
@@ -98,9 +105,12 @@ class UnitDistances:
     def _distances(
         self, executed: Mask, max_distance: int, limit: Callable[[Distances], int] | None
     ) -> Distances:
-        """Return the distances of all units if the units ``executed`` and their outputs cost nothing."""
-        available = self._available | self._outline.made_by(executed)
-        return self._outline.distances(available, self._costs, max_distance, executed, limit)
+        """Return the distances of all units, where the units ``executed`` and their outputs cost nothing.
+
+        ``max_distance`` and ``limit`` are those of :meth:`.Outline.unit_distances`.
+        """
+        available = self._available | self._outline.nodes_made_by(executed)
+        return self._outline.unit_distances(available, self._costs, max_distance, executed, limit)
 
 
 def least_cost(rate: Fraction) -> int:
@@ -116,6 +126,6 @@ def greatest_cost(rate: Fraction) -> int:
 
 
 def _logarithm(rate: Fraction) -> tuple[float, int]:
-    """Return the scaled negative logarithm of a rate, and a bound on its error."""
+    """Return the negative logarithm of a rate, scaled by ``_SCALE``, and a bound on its error."""
     logarithms = math.log(rate.denominator), math.log(rate.numerator)
     return (logarithms[0] - logarithms[1]) * _SCALE, 2 + math.ceil(sum(logarithms) * _SCALE * 2**-50)

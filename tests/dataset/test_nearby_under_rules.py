@@ -259,7 +259,7 @@ def test_a_limit_while_more_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
     more = *SLOW, ("wave", "boiled", "waved")
     with monkeypatch.context() as patched:
-        patched.setattr(UnitDistances, "relevant", stopped)
+        patched.setattr(UnitDistances, "relevant_units", stopped)
         found = answer_under_rules(near_stew(tmp_path, *more), UNITS, WAVE)
         assert found.costs is not None
         assert (found.status, found.costs.units, found.outcome.bounds) == (
@@ -283,7 +283,7 @@ def test_ctrl_c_keeps_the_tree_and_the_bound(tmp_path: Path, monkeypatch: pytest
     def interrupted(*asked: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(UnitDistances, "relevant", interrupted)
+    monkeypatch.setattr(UnitDistances, "relevant_units", interrupted)
     found = answer_under_rules(near_stew(tmp_path, *SLOW, ("wave", "boiled", "waved")), UNITS, WAVE)
     assert found.costs is not None
     assert (found.status, found.costs.units, found.outcome.bounds) == (

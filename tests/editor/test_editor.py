@@ -47,7 +47,7 @@ def test_names_stand_where_the_reader_finds_them(text: str) -> None:
 @given(text=texts(), other=texts(), end=st.sampled_from(["\n", "\r\n"]))
 def test_edits_bring_about_other_lines(text: str, other: str, end: str) -> None:
     before, after = (split_lines(each) for each in (text, other))
-    edits = EditedText("file:///a", end.join(before)).edits(after)
+    edits = EditedText("file:///a", end.join(before)).edits_to(after)
     assert edited("\n".join(before), edits).replace("\r\n", "\n") == "\n".join(after)
 
 

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from foon_asp.linting.catalog import CATALOG
 from foon_asp.linting.finding import Finding
 from foon_asp.linting.linter import lint
-from foon_asp.linting.mending import mended
+from foon_asp.linting.mending import mend
 from foon_asp.linting.near_names import near_names
 from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.reader import FoonReader
@@ -317,7 +317,7 @@ def test_mending_only_what_is_selected(tmp_path: Path, cli: Cli) -> None:
 def test_a_line_that_has_changed_since_is_left_alone(tmp_path: Path) -> None:
     (file,) = written(tmp_path, "O\ttea\t00\nM\tstir\nO\ttea\n//\n")
     findings = lint([file])
-    assert mended(b"O\tcoffee\t1\nM\tstir\n", findings) == b"O\tcoffee\t1\nM\tstir\n"
+    assert mend(b"O\tcoffee\t1\nM\tstir\n", findings) == b"O\tcoffee\t1\nM\tstir\n"
 
 
 @pytest.mark.parametrize(
@@ -343,7 +343,7 @@ def test_mending_changes_nothing_of_what_is_read(tmp_path_factory: pytest.TempPa
     assert {finding.code for finding in findings} <= set(CATALOG)
     assert all(finding.severity is CATALOG[finding.code].severity for finding in findings)
     assert all(str(Finding.of(finding)) for finding in findings)
-    content = mended(file.read_bytes(), findings)
+    content = mend(file.read_bytes(), findings)
     before = [unit[:3] for unit in FoonReader().units(file.read_bytes().decode().removeprefix("\ufeff"), "f")]
     file.write_bytes(content)
     assert [unit[:3] for unit in FoonReader().units(content.decode().removeprefix("\ufeff"), "f")] == before

@@ -23,7 +23,7 @@ from foon_asp import Cancel, UserError
 from foon_asp.asp import Settings
 from foon_asp.rules.passed_constraint import RuleText
 from foon_asp.serve.desk import Desk
-from foon_asp.serve.form import Form, Without, read_question
+from foon_asp.serve.form import Form, RegretForm, read_question
 from tests.conftest import Cli
 from tests.support.browser import CHROMIUM, browser
 
@@ -47,7 +47,7 @@ def request(
     leaves: bool = False,
 ) -> tuple[int, dict[str, str], str]:
     """Ask the site as a server does."""
-    from foon_asp.serve.site import site  # noqa: PLC0415 (starlette may be missing)
+    from foon_asp.serve.site import web_application  # noqa: PLC0415 (starlette may be missing)
 
     sent: list[dict[str, Any]] = []
     coming = [{"type": "http.request", "body": b"" if body is None else json.dumps(body).encode()}]
@@ -71,7 +71,7 @@ def request(
         "query_string": query.encode(),
         "headers": [(name.encode(), value.encode()) for name, value in headers.items()],
     }
-    asyncio.run(site(desk, TOKEN, 80)(scope, receive, send))
+    asyncio.run(web_application(desk, TOKEN, 80)(scope, receive, send))
     start, *rest = sent
     found = {name.decode(): value.decode() for name, value in start["headers"]}
     return start["status"], found, b"".join(each.get("body", b"") for each in rest).decode()
@@ -167,7 +167,7 @@ def test_rules_and_stocks_of_the_command_line_hold_for_every_question(tmp_path: 
     glass = foon_asp.parse_node("drinking glass; empty")
     used_up = foon_asp.UsedUp(told={"muddler": False}, stock={glass: 0})
     desk = Desk(foon, Form(), settings=Settings(fixed, constants=('forbidden="crush"',)), used_up=used_up)
-    assert desk.start()["always"] == [
+    assert desk.opening_data()["always"] == [
         "mine.lp",
         ":- use(U), #false.",
         'forbidden="crush"',
@@ -232,7 +232,7 @@ def test_what_is_no_question_is_refused(text: str) -> None:
     with pytest.raises(UserError, match="found"):
         read_question(text.encode(), Form)
     with pytest.raises(UserError):
-        read_question(text.encode(), Without)
+        read_question(text.encode(), RegretForm)
 
 
 def test_without_a_unit_or_an_item_it_is_what_regret_says(desk: Desk) -> None:
@@ -260,16 +260,16 @@ ENDLESS = "p(0). p(X+1) :- p(X), X < 100000000. :- use(U), p(-1)."
 @pytest.mark.parametrize("how", ["cancel", "next", "limit"])
 def test_a_question_ends_when_it_is_told_to(how: str) -> None:
     desk = Desk(foon_asp.load(), Form(), 0.1 if how == "limit" else None)
-    token, events = desk.next(), list[dict[str, Any]]()
+    token, events = desk.next_token(), list[dict[str, Any]]()
     form = Form(("ice",), rules=ENDLESS)
-    asking = threading.Thread(target=desk.ask, args=(form, token, events.append))
+    asking = threading.Thread(target=desk.answer_form, args=(form, token, events.append))
     began = time.monotonic()
     asking.start()
     time.sleep(0.1)
     if how == "cancel":
         desk.cancel()
     elif how == "next":
-        desk.next()
+        desk.next_token()
     asking.join(20)
     assert not asking.is_alive()
     assert time.monotonic() - began < 15
@@ -280,7 +280,9 @@ def test_who_leaves_ends_the_question() -> None:
     desk = Desk(foon_asp.load(), Form())
     request(desk, "/secret/ask", {"goals": ["ice"], "rules": ENDLESS}, leaves=True)
     events: list[dict[str, Any]] = []
-    asking = threading.Thread(target=desk.ask, args=(Form(("ice",)), Cancel(), events.append), daemon=True)
+    asking = threading.Thread(
+        target=desk.answer_form, args=(Form(("ice",)), Cancel(), events.append), daemon=True
+    )
     asking.start()  # answered when it is its turn, which is when the other has ended
     asking.join(15)
     assert events

@@ -41,7 +41,7 @@ def test_networks_are_read_without(tmp_path: Path) -> None:
 
     before = gc.get_threshold()
     with Store(tmp_path / "soup.foon") as store:
-        for read in (store.whole, lambda: read_data(files)):
+        for read in (store.read_whole, lambda: read_data(files)):
             read()  # makes the parser, too
             gc.collect()
             gc.callbacks.append(noting)

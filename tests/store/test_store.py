@@ -141,17 +141,17 @@ def same_network(one: Network, other: Network) -> bool:
 def assert_holds(store: Path, data: Data) -> None:
     """Hold everything in a store against what was read from the files."""
     opened = Store(store)
-    network, kitchen = opened.whole()
+    network, kitchen = opened.read_whole()
     assert same_network(network, data.network)
     assert kitchen == (frozenset() if data.starting else data.kitchen)
     assert opened.goals_from == data.goals_from
-    starting = {o for o in range(opened.objects) if opened.is_starting(o)}
+    starting = {o for o in range(opened.object_count) if opened.is_starting(o)}
     assert starting == starting_nodes(network)
     assert opened.kitchen_items() == data.kitchen_items
     assert opened.goals == data.goals
     assert opened.rates == data.rates
     assert opened.utensils == data.utensils
-    assert (opened.units, opened.objects) == (len(data.network), len(data.network.objects))
+    assert (opened.unit_count, opened.object_count) == (len(data.network), len(data.network.objects))
     stated = Subject(network, kitchen, data.rates, data.utensils, data.unit_prices).digests()
     assert opened.digests == {name: stated[name] for name in opened.digests}
     for unit in range(len(network)):
@@ -166,7 +166,7 @@ def cone_problem(store: Path, problem: Problem, own_kitchen: bool) -> Problem:
     """Ask the same of the store: with the kitchen that is in it, or with one given by id."""
     opened = Store(store)
     at_hand = StoredIds(opened, "kitchen") if own_kitchen else problem.kitchen
-    part = opened.part(
+    part = opened.read_part(
         opened.cone(problem.goals, problem.containers, problem.utensils, at_hand).units, problem.goals
     )
     numbers = part.object_numbers
@@ -207,7 +207,7 @@ def test_the_bundled_kitchen(kitchen_store: Path) -> None:
 
 def test_copies_keep_their_places_and_videos(soup: tuple[DataFiles, Path]) -> None:
     files, store = soup
-    network, _ = Store(store).whole()
+    network, _ = Store(store).read_whole()
     first, second = network.sources[0]
     assert (first.file, first.line, first.videos) == (
         str(files.network[0]),
@@ -302,7 +302,7 @@ def test_the_cone_has_the_optimum_of_the_whole(rule: ContainerRule, tmp_path: Pa
     for seed in range(30):
         problem = replace(random_problem(seed, rule, units=10, readable=True), unit_prices=None)
         store = import_problem(problem, tmp_path)
-        network, kitchen = Store(store).whole()
+        network, kitchen = Store(store).read_whole()
         assert (network.objects, network.inputs, network.outputs) == (
             problem.network.objects,
             problem.network.inputs,
@@ -342,7 +342,7 @@ def test_a_question_reads_what_it_is_about(tmp_path: Path, opened: list[sqlite3.
             goal = find_goal(SOUP_NODE, asked)
             assert (
                 len(
-                    asked.part(
+                    asked.read_part(
                         asked.cone(
                             [goal], ContainerRule.STRICT, frozenset(), StoredIds(asked, "kitchen")
                         ).units
@@ -740,8 +740,8 @@ def test_readers_at_once_and_a_new_import_under_them(soup: tuple[DataFiles, Path
     with ThreadPoolExecutor(4) as pool:
         assert all(same_network(network, data.network) for network, _ in pool.map(read_whole, [store] * 16))
     import_files(DataFiles(files.network[1:]), store)
-    assert same_network(old.whole()[0], data.network)  # the old one, as long as it is open
-    assert len(Store(store).whole()[0]) == 2
+    assert same_network(old.read_whole()[0], data.network)  # the old one, as long as it is open
+    assert len(Store(store).read_whole()[0]) == 2
 
 
 def test_processes_that_read_at_once(soup: tuple[DataFiles, Path]) -> None:
@@ -754,7 +754,7 @@ def test_processes_that_read_at_once(soup: tuple[DataFiles, Path]) -> None:
 
 
 def read_whole(store: Path) -> tuple[Network, frozenset[int]]:
-    return Store(store).whole()
+    return Store(store).read_whole()
 
 
 # A store that was opened is closed.
@@ -786,10 +786,10 @@ def test_a_store_is_closed_at_the_end_of_with(
     soup: tuple[DataFiles, Path], opened: list[sqlite3.Connection]
 ) -> None:
     with Store(soup[1]) as store:
-        assert store.units == 4
+        assert store.unit_count == 4
     assert all_closed(opened)
     with pytest.raises(UserError, match=r"soup\.foon: the store was closed; open it again"):
-        store.whole()
+        store.read_whole()
     with pytest.raises(UserError, match="the store was closed"):
         store.node(0)
     store.close()  # twice does no harm
@@ -799,7 +799,7 @@ def test_a_store_that_nothing_refers_to_is_closed(
     soup: tuple[DataFiles, Path], opened: list[sqlite3.Connection]
 ) -> None:
     store = Store(soup[1])
-    network, _ = store.whole()
+    network, _ = store.read_whole()
     opened[0].execute("SELECT 1")
     del store
     assert all_closed(opened)
@@ -832,7 +832,7 @@ def everything(store: Path) -> list[object]:
     """Ask all that can be asked of a part, and then of the whole."""
     opened = Store(store)
     goal = find_goal(SOUP_NODE, opened, opened.goals)
-    cone = opened.part(
+    cone = opened.read_part(
         opened.cone([goal], ContainerRule.IMPLIED, opened.utensils, StoredIds(opened, "kitchen")).units
     )
     answers: list[object] = [
@@ -850,7 +850,7 @@ def everything(store: Path) -> list[object]:
         {*StoredIds(opened, "starting")},
     ]
     answers += [opened.unit_id(cone.unit(u)) for u in range(len(cone))]
-    network, kitchen = opened.whole()
+    network, kitchen = opened.read_whole()
     answers += [network.objects, network.motions, network.inputs, network.outputs, network.sources, kitchen]
     answers += [
         opened.kitchen_items(),
@@ -971,7 +971,7 @@ def test_a_hundred_thousand_units(tmp_path: Path, cli: Cli) -> None:
     import_files(files, store)
     data = read_data(files)
     opened = Store(store)
-    network, kitchen = opened.whole()
+    network, kitchen = opened.read_whole()
     assert same_network(network, data.network)
     assert kitchen == data.kitchen
     for entry in data.goals[::4]:
@@ -1080,7 +1080,7 @@ def test_a_network_that_is_made_up_is_damage(
     _, store = soup
     forged(store, statement)
     with pytest.raises(UserError, match=words):
-        Store(store).whole()
+        Store(store).read_whole()
 
 
 def test_a_change_after_the_import_is_noticed_where_all_is_read(

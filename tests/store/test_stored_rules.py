@@ -92,13 +92,13 @@ def test_a_store_has_the_answers_of_the_whole(
     seeds: range, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     read: list[Store] = []
-    whole = Store.whole
+    read_whole = Store.read_whole
 
     def noted(store: Store) -> object:
         read.append(store)
-        return whole(store)
+        return read_whole(store)
 
-    monkeypatch.setattr(Store, "whole", noted)
+    monkeypatch.setattr(Store, "read_whole", noted)
     asked = 0
     for seed in seeds:
         text, part, some = posed(seed, tmp_path)

@@ -5,7 +5,7 @@ from typing import Any
 
 from foon_asp.network import FunctionalUnit, counted
 from foon_asp.network.near_units import nearest_units
-from foon_asp.pictures.two_columns import Pair, two_columns
+from foon_asp.pictures.two_columns import PairSection, two_column_page
 from foon_asp.questions.result import Result
 from foon_asp.results.plain_values import plain
 from foon_asp.results.table_columns import flat_row
@@ -65,17 +65,17 @@ class Difference(Result, frozen=True, kw_only=True):
 
     def html(self) -> str:
         """Return a page in HTML with a column for each of the two."""
-        return two_columns(
+        return two_column_page(
             f"{self.a} and {self.b}",
             [str(self.a), str(self.b)],
             self.figures(),
             [
-                Pair(
+                PairSection(
                     "nearly the same", [(pair.a, pair.b, pair.differences) for pair in self.nearly_the_same]
                 ),
-                Pair("only in A", [(unit, None, ()) for unit in self.only_in_a]),
-                Pair("only in B", [(None, unit, ()) for unit in self.only_in_b]),
-                Pair("in both", [(unit, None, ()) for unit in self.in_both], folded=True),
+                PairSection("only in A", [(unit, None, ()) for unit in self.only_in_a]),
+                PairSection("only in B", [(None, unit, ()) for unit in self.only_in_b]),
+                PairSection("in both", [(unit, None, ()) for unit in self.in_both], folded=True),
             ],
         )
 
