@@ -93,7 +93,7 @@ def assemble(
         from foon_asp.rules import stating  # noqa: PLC0415
 
         if endless:
-            from foon_asp.encoding.worker_process import prepare  # noqa: PLC0415
+            from foon_asp.encoding.program_client import prepare  # noqa: PLC0415
 
             prepare()  # while files are parsed
 
@@ -276,7 +276,7 @@ def reach_of_rules(settings: Settings) -> ReachOfRules:
     return ReachOfRules.NEEDED if rules.shrinking else ReachOfRules.TREE
 
 
-def hold_for_parts(settings: Settings) -> bool:
+def hold_for_subtrees(settings: Settings) -> bool:
     """Whether the added rules are antimonotone, so that they hold for every subtree as well.
 
     They have to be so in every part of the network, and also if more object nodes are available than the
@@ -284,13 +284,13 @@ def hold_for_parts(settings: Settings) -> bool:
     """
     if settings.replaced is not None:
         return False
-    rules = _ready_made_rules(settings) or varying_available(settings)
+    rules = _ready_made_rules(settings) or rules_for_varying_kitchens(settings)
     if rules is None:
         return not settings.constraints
     return rules.local and rules.shrinking
 
 
-def leave_unsettled(settings: Settings) -> bool:
+def need_clingo(settings: Settings) -> bool:
     """Whether clingo has to enforce added rules, since they do more than remove and require units.
 
     Raises as :func:`assemble` does.
@@ -299,7 +299,7 @@ def leave_unsettled(settings: Settings) -> bool:
     return rules is not None and bool(rules.unsettled)
 
 
-def varying_available(settings: Settings) -> "Rules | None":
+def rules_for_varying_kitchens(settings: Settings) -> "Rules | None":
     """Return the added rules, analysed for questions that differ in which object nodes are available.
 
     ``None`` without rules. Raises as :func:`assemble` does.

@@ -15,7 +15,7 @@ _AS_FACTS = "_by_person(U) :- motion(U,_). _takes_over(P,U) :- motion(P,M), moti
 _OF_DOERS = {("rate", 2), ("risk", 2), ("_takes_over", 2), ("_by_person", 1)}
 
 
-def assisted(twins: Mapping[int, int], max_assisted: int) -> Bounded:
+def assistance_bounds(twins: Mapping[int, int], max_assisted: int) -> Bounded:
     """Return bounds on trees: a person does at most ``max_assisted`` units, and no unit is done twice.
 
     ``twins`` maps each unit done by the person to the same unit done by the robot, by ids in the whole
@@ -24,7 +24,7 @@ def assisted(twins: Mapping[int, int], max_assisted: int) -> Bounded:
     return Bounded(write_assisted(twins, max_assisted), (question_encoding("assist.lp"),))
 
 
-def sees_who_does_it(constraints: Sequence[Constraint]) -> bool:
+def read_who_does_units(constraints: Sequence[Constraint]) -> bool:
     """Whether constraints read who does a unit: success rates, or units done by a person.
 
     Raises as :func:`foon_asp.encoding.encoding.read_encoding` does.

@@ -16,7 +16,7 @@ from foon_asp.encoding.scales import Scales
 from foon_asp.encoding.stated import Stated
 from foon_asp.errors import UserError
 from foon_asp.plans.most_executions import executions_as_good, most_executions
-from foon_asp.problem import Objective, Problem, levels, reach, relevant
+from foon_asp.problem import Objective, Problem, levels, reach, relevant_units
 from foon_asp.rules.passed_constraint import Constraint
 
 
@@ -73,12 +73,12 @@ def bare_program(
     prepared = prepare(problem, objectives, settings, program._replace(understood=None))
     if prepared.tree is None:  # with all units, bare clingo can prove that a goal cannot be made
         everything = reach(problem)._replace(units=tuple(range(len(problem.network))))
-        units = relevant(problem, everything) if program.own else everything.units
+        units = relevant_units(problem, everything) if program.own else everything.units
         prepared = replace(prepared, units=units)
     return _written(program, prepared.facts + write_objectives(prepared.levels) + penalty)
 
 
-def printed_program(
+def printable_program(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, soft: Mapping[Constraint, int]
 ) -> BareProgram:
     """Return a question as :func:`bare_program` does; if there are rules, for the whole network."""
@@ -86,7 +86,7 @@ def printed_program(
     return bare_program(problem.whole if ruled else problem, objectives, settings, soft)
 
 
-def bare_plans(
+def bare_plan_program(
     outcome: Outcome, objectives: Sequence[Objective], settings: Settings
 ) -> tuple[BareProgram | None, dict[int, tuple[int, int]]]:
     """Return the program of a question about plans for bare clingo, and the most executions of each unit.

@@ -34,7 +34,7 @@ class Postconditions:
         if not holds:
             raise BugError(f"{otherwise()}\n{self._question()}")
 
-    def tree(self, units: Collection[int]) -> tuple[int, ...]:
+    def require_executable(self, units: Collection[int]) -> tuple[int, ...]:
         """Require that units execute and make the goals; return them in an executable order.
 
         If there is an order in which each item can even be used up, that order is returned. Raises
@@ -57,7 +57,7 @@ class Postconditions:
         run = used_up_run(problem, problem.tree(listed))
         return listed if run.order is None else tuple(listed[position] for position in run.order)
 
-    def no_tree(self) -> None:
+    def require_no_tree(self) -> None:
         """Require that no tree makes all goals, by forward reachability over the units relevant for them.
 
         The required sets of a restriction are goals as well.
@@ -101,7 +101,9 @@ class Postconditions:
             lambda: "the answer is that there is no tree, but the goals can be made",
         )
 
-    def outcome(self, outcome: Outcome, best: Costs | None = None, reduced: Reduced | None = None) -> None:
+    def require_true_claims(
+        self, outcome: Outcome, best: Costs | None = None, reduced: Reduced | None = None
+    ) -> None:
         """Require that the claims of an outcome with a tree are true.
 
         ``best`` has the costs of the incumbent of the search, ``reduced`` is the result of the reductions;
@@ -124,7 +126,9 @@ class Postconditions:
         if reduced is not None and reduced.costs is not None:
             self._reduced(outcome, costs, reduced, reduced.costs)
 
-    def settled(self, tree: Collection[int], chosen: Collection[int], by: Sequence[Objective]) -> None:
+    def require_equal_costs(
+        self, tree: Collection[int], chosen: Collection[int], by: Sequence[Objective]
+    ) -> None:
         """Require that a tree costs the same as the ``chosen`` one by some objectives."""
         ours, theirs = self.problem.costs(tree), self.problem.costs(chosen)
         self.require(
@@ -135,7 +139,7 @@ class Postconditions:
             ),
         )
 
-    def no_better(self, harder: Outcome, easier: Outcome, by: str) -> None:
+    def require_no_better(self, harder: Outcome, easier: Outcome, by: str) -> None:
         """Require that a tree is not better than the proved optimum of an easier question.
 
         The easier question allows more trees; ``by`` names it in the message. Checks nothing if its optimum

@@ -24,7 +24,7 @@ from foon_asp.hypergraph import (
     reduce,
     reduce_under_rules,
 )
-from foon_asp.problem import Contradiction, Objective, Problem, first_tree, levels, reach, relevant
+from foon_asp.problem import Contradiction, Objective, Problem, first_tree, levels, reach, relevant_units
 
 if TYPE_CHECKING:  # often clingo need not run
     from foon_asp.encoding.run import Run
@@ -233,7 +233,7 @@ def prepare(
             tree = first_tree(stocked, reached)
             # backwards with the kitchen as it is: items for sale may also be made
             cut = program.own or (prepared.unsettled and not prepared.redundant)
-            units = relevant(kept, reached) if cut else tuple(sorted(reached.units))
+            units = relevant_units(kept, reached) if cut else tuple(sorted(reached.units))
         return replace(prepared, units=units, tree=None if tree is None else frozenset(tree))
     except KeyboardInterrupt:
         deadline.interrupt()

@@ -90,7 +90,7 @@ class Ranked:
         ids = [unit for unit in units if unit is not None]
         if len(ids) < len(units):
             raise UserError("a tree was found with units that are not in the network: check the encodings")
-        order = self._holds.tree(ids)
+        order = self._holds.require_executable(ids)
         self._prepared.require_kept(order)
         costs, scales = self.problem.costs(order), self._prepared.scales
         rounded = (

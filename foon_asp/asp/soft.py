@@ -120,7 +120,7 @@ def solve_soft(
             )
             return answer
     if ended.units is not None:  # stopped: the incumbent
-        tree = holds.tree(ended.units)
+        tree = holds.require_executable(ended.units)
         stopped = outcome._replace(status=Status.FEASIBLE, units=tree, costs=problem.costs(tree), bounds={})
         return soft_outcome(stopped, ended.atoms["_broken"])
     return SoftOutcome(outcome, None, ())

@@ -162,7 +162,7 @@ class _Solver:
             if prepared.full_program is not None:
                 prepared.keeps(Units())  # to say what is wrong with a rule, though no tree depends on it
             if not prepared.contradicted:
-                self.holds.no_tree()
+                self.holds.require_no_tree()
             return self._outcome(Status.INFEASIBLE, None, {})
         if prepared.unsettled and prepared.reduced and prepared.reduced.subproblem:
             return self._solve_unsettled(prepared.reduced, prepared.reduced.subproblem, prepared.tree)
@@ -572,7 +572,7 @@ class _Solver:
             run = self._run((*before, *after), totals, number, mode)
             if run.units is not None:
                 self._require_measures(self._measures_agree(run.units, run.cost, (*before, *after)))
-                self.holds.settled(run.units, chosen, by)
+                self.holds.require_equal_costs(run.units, chosen, by)
                 chosen = run.units
             if not run.exhausted:
                 return chosen, False
@@ -683,14 +683,16 @@ class _Solver:
         began = time.perf_counter()
         size = len(self.problem.network.objects)  # larger ids are required sets of units
         outcome = outcome._replace(
-            units=self.holds.tree(units),
+            units=self.holds.require_executable(units),
             costs=self.listener.costs(units),
             left=0 if proof is Proof.CUTS else len(prepared.units),
             cases=reduced.cases if reduced else None,
             cuts=tuple(tuple(sorted(objects)) for objects in _cuts(reduced) if max(objects) < size),
         )
         assert self.listener.incumbent is not None
-        self.holds.outcome(outcome, None if self.program.replaced else self.listener.incumbent[1], reduced)
+        self.holds.require_true_claims(
+            outcome, None if self.program.replaced else self.listener.incumbent[1], reduced
+        )
         prepared.require_kept(units)
         self._spent("check", began)
         return outcome

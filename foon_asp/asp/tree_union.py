@@ -156,7 +156,7 @@ class _Union:
             if ended.units is None:
                 return False
             units = {problem.network.unit_of_number(number) for number in ended.units}
-            order = self._prepared.holds.tree([unit for unit in units if unit is not None])
+            order = self._prepared.holds.require_executable([unit for unit in units if unit is not None])
             self._prepared.require_kept(order)
             if self._is_beyond(order):
                 return False

@@ -38,7 +38,7 @@ class UserRuleCheck:
         self._settings = settings._replace(constraints=(), relaxed=self._relaxed)
         self._program = assemble(self._settings, lambda _: None, used_up)
 
-    def broken(self, problem: Problem, tree: Collection[int]) -> tuple[IntegrityConstraint, ...]:
+    def broken_rules(self, problem: Problem, tree: Collection[int]) -> tuple[IntegrityConstraint, ...]:
         """Return the rules that a tree or plan breaks.
 
         ``tree`` has unit ids; for a plan, the id of a unit comes once per execution. Raises

@@ -38,7 +38,7 @@ class NameMap(NamedTuple):
     items: UsedUp | None
 
 
-def map_of(task: PlanningTask) -> NameMap:
+def name_map_of(task: PlanningTask) -> NameMap:
     """Return the name map of a task."""
     problem, network = task.problem, task.problem.network
     return NameMap(

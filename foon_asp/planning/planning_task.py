@@ -8,7 +8,15 @@ from typing import NamedTuple
 from foon_asp.errors import UserError
 from foon_asp.planning.action_costs import ActionCosts, action_costs
 from foon_asp.planning.pddl_name import pddl_name
-from foon_asp.problem import Flow, Objective, Problem, first_tree, reach, relevant, relevant_to_plans
+from foon_asp.problem import (
+    Flow,
+    Objective,
+    Problem,
+    first_tree,
+    reach,
+    relevant_units,
+    units_relevant_to_plans,
+)
 
 
 class Action(NamedTuple):
@@ -104,7 +112,11 @@ def planning_task(
     reached = reach(replace(problem, kitchen=available))
     allowed: Iterable[int] = range(len(network))
     if not whole:
-        allowed = relevant(problem, reached) if problem.items is None else relevant_to_plans(problem, reached)
+        allowed = (
+            relevant_units(problem, reached)
+            if problem.items is None
+            else units_relevant_to_plans(problem, reached)
+        )
     not_added = bought if problem.items is None else endless
     flows = {unit: problem.flows[unit] for unit in sorted(allowed)}
     add_effects = {unit: tuple(o for o in flow.adds if o not in not_added) for unit, flow in flows.items()}

@@ -34,7 +34,7 @@ class BestSchedule(NamedTuple):
     lacking: dict[ToolName, int]
 
 
-def shortest(task: ScheduleTask, deadline: Deadline) -> BestSchedule:
+def shortest_schedule(task: ScheduleTask, deadline: Deadline) -> BestSchedule:
     """Minimize the makespan until it is proved optimal, or until a limit or ctrl-C; return the best schedule.
 
     Raises :class:`UserError` where OR-Tools is not installed.

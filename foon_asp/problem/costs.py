@@ -4,7 +4,7 @@ import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from fractions import Fraction
 
-from foon_asp.problem.objective import Known, Measured, Objective, multiplies
+from foon_asp.problem.objective import Measured, Objective, OptionalData, multiplies
 
 _MEASURED = tuple(Objective)
 
@@ -74,11 +74,11 @@ class Costs:
             ValueError: if data are missing, as for ``success`` without rates, or for ``attempts`` with a
                 rate of 0.
         """
-        if objective not in self.measures and objective.row.needs is Known.STAND_INS:
+        if objective not in self.measures and objective.row.needs is OptionalData.STAND_INS:
             return Fraction(0)  # there are none
         if objective not in self.measures:
             needs = objective.row.needs
-            condition = " above 0" if needs is Known.RATES else ""
+            condition = " above 0" if needs is OptionalData.RATES else ""
             raise ValueError(f"{str(objective)!r} cannot be computed: it needs {needs}{condition}")
         return self.measures[objective]
 
@@ -97,7 +97,7 @@ class Costs:
 def tree_costs(
     units: Mapping[Measured, int],
     items: int,
-    available: Collection[Known],
+    available: Collection[OptionalData],
     user_objectives: Iterable[Objective] = (),
 ) -> Costs:
     """Return the costs of a tree or plan.

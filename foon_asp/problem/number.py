@@ -16,7 +16,7 @@ _MAX_DIGITS = 1000  # of a number: those of 1e999999999 take hours to compute
 _EXPONENT = re.compile(r"e([+-]?[\d_]+)\s*", re.IGNORECASE)
 
 
-def exact(number: Number, quantity: str) -> Fraction:
+def exact_number(number: Number, quantity: str) -> Fraction:
     """Return a number as an exact fraction; else raises :class:`UserError`, which names the ``quantity``."""
     try:
         power = _EXPONENT.search(str(number)) if isinstance(number, str | Decimal) else None
@@ -31,7 +31,7 @@ def exact(number: Number, quantity: str) -> Fraction:
 
 def unit_price(number: Number, quantity: str) -> Fraction:
     """Return an exact price, from 0; else raises :class:`UserError`, which names the ``quantity``."""
-    price = exact(number, quantity)
+    price = exact_number(number, quantity)
     if price < 0 or max(price.numerator, price.denominator) >= 10**_MAX_DIGITS:
         raise UserError(
             f"found {str(number)[:40]} for {quantity}, expected a price from 0, of at most "
@@ -42,7 +42,7 @@ def unit_price(number: Number, quantity: str) -> Fraction:
 
 def success_rate(number: Number, quantity: str) -> Fraction:
     """Return an exact success rate, above 0 and at most 1; raises :class:`UserError` for other values."""
-    rate = exact(number, quantity)
+    rate = exact_number(number, quantity)
     if not 0 < rate <= 1:
         raise UserError(f"found {number} for {quantity}, expected a number above 0 and at most 1")
     return rate

@@ -10,7 +10,7 @@ from foon_asp.errors import UserError
 from foon_asp.network import ObjectNode
 
 
-class Known(StrEnum):
+class OptionalData(StrEnum):
     """A kind of optional data that an objective may need."""
 
     RATES = "rates"
@@ -61,7 +61,7 @@ class Row(NamedTuple):
     unit: Callable[[Measured], int | Fraction]
     item: int = 0
     multiplies: bool = False
-    needs: Known | None = None
+    needs: OptionalData | None = None
     is_fact: bool = False
     whole: bool = True
 
@@ -138,7 +138,7 @@ class Objective(str, metaclass=_Listed):
         Parameters:
             name: The name of the measure.
         """
-        row = Row(name, name, partial(_measure, name), needs=Known.MEASURES, is_fact=True, whole=False)
+        row = Row(name, name, partial(_measure, name), needs=OptionalData.MEASURES, is_fact=True, whole=False)
         return Objective.of_row(name, row)
 
     def __setattr__(self, name: str, value: object) -> None:
@@ -147,7 +147,7 @@ class Objective(str, metaclass=_Listed):
 
     def __reduce__(self) -> tuple[Callable[[str], "Objective"], tuple[str]]:
         """Pickle an objective as its name, since each process has the same objectives."""
-        return Objective.of_measure if self.row.needs is Known.MEASURES else Objective, (str(self),)
+        return Objective.of_measure if self.row.needs is OptionalData.MEASURES else Objective, (str(self),)
 
     def __repr__(self) -> str:
         return f"<Objective: {str(self)!r}>"
@@ -179,7 +179,7 @@ _BUILT_IN = {
                 "success rate",
                 lambda unit: unit.rate,
                 multiplies=True,
-                needs=Known.RATES,
+                needs=OptionalData.RATES,
                 whole=False,
             ),
         ),
@@ -190,14 +190,21 @@ _BUILT_IN = {
                 "attempts",
                 "expected executions of units",
                 lambda unit: 1 / unit.rate,
-                needs=Known.RATES,
+                needs=OptionalData.RATES,
                 is_fact=True,
                 whole=False,
             ),
         ),
         Objective.of_row(
             "price",
-            Row("price", "price", lambda unit: unit.price, needs=Known.PRICES, is_fact=True, whole=False),
+            Row(
+                "price",
+                "price",
+                lambda unit: unit.price,
+                needs=OptionalData.PRICES,
+                is_fact=True,
+                whole=False,
+            ),
         ),
         Objective.of_row(
             "dissimilarity",
@@ -205,7 +212,7 @@ _BUILT_IN = {
                 "dissimilarity",
                 "dissimilarity of stand-ins",
                 lambda unit: unit.dissimilarity,
-                needs=Known.STAND_INS,
+                needs=OptionalData.STAND_INS,
                 is_fact=True,
                 whole=False,
             ),

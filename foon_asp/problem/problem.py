@@ -34,7 +34,7 @@ from foon_asp.problem.container_rule import (
 from foon_asp.problem.costs import Costs, tree_costs
 from foon_asp.problem.items import Flow, UnitFlows, UsedUp, plain_flows
 from foon_asp.problem.number import Number
-from foon_asp.problem.objective import Known, Measured, Objective
+from foon_asp.problem.objective import Measured, Objective, OptionalData
 from foon_asp.problem.restriction import Restriction
 
 Names = str | ObjectNode | Iterable[str | ObjectNode]
@@ -99,7 +99,7 @@ class Changes(NamedTuple):
 class Origin(Protocol):
     """The data from which a problem was made."""
 
-    def posed_anew(
+    def vary_problem(
         self, problem: "Problem", goals: Names | None, containers: str | None, changes: Changes
     ) -> "Problem":
         """Return a variation of a problem over the changed data; see :meth:`Problem.vary`."""
@@ -111,10 +111,10 @@ class Origin(Protocol):
     def unpriced(self) -> Sequence[Unpriced]:
         """Return the units of the whole network that have no price, by motion."""
 
-    def posed_whole(self, problem: "Problem") -> "Problem":
+    def extend_to_whole(self, problem: "Problem") -> "Problem":
         """Return a problem over the whole network."""
 
-    def posed_about(self, problem: "Problem", units: Iterable[FunctionalUnit]) -> "Problem":
+    def extend_to_units(self, problem: "Problem", units: Iterable[FunctionalUnit]) -> "Problem":
         """Return a problem over a network that is relevant to its goals, and has these units."""
 
 
@@ -185,7 +185,7 @@ class Problem:
             raise UserError("no goal is given")
         object.__setattr__(self, "goals", tuple(dict.fromkeys(self.goals)))
         if self.rates is not None and not self.rates.keys() >= set(self.network.motions):
-            object.__setattr__(self, "unrated", unrated_text(first_places(self.network), self.rates))
+            object.__setattr__(self, "unrated", unrated_text(first_sources(self.network), self.rates))
             object.__setattr__(self, "rates", None)
 
     @property
@@ -206,7 +206,7 @@ class Problem:
         """The same problem over the whole network; if this is a store, all of it is read."""
         nearest = self.stand_ins is not None and self.stand_ins.nearest
         is_part = self.network.object_numbers or nearest
-        return self.origin.posed_whole(self) if self.origin is not None and is_part else self
+        return self.origin.extend_to_whole(self) if self.origin is not None and is_part else self
 
     @property
     def plain(self) -> "Problem":
@@ -224,7 +224,7 @@ class Problem:
             units: The units.
         """
         is_part = self.origin is not None and self.network.object_numbers
-        return self.origin.posed_about(self, units) if self.origin is not None and is_part else self
+        return self.origin.extend_to_units(self, units) if self.origin is not None and is_part else self
 
     @typed
     def vary(
@@ -261,7 +261,7 @@ class Problem:
         if self.origin is None:
             raise UserError("this problem was put together by hand: dataclasses.replace makes another of it")
         changes = Changes(kitchen, adding, without, rates, unit_prices, measures)
-        return self.origin.posed_anew(self, goals, containers, changes)
+        return self.origin.vary_problem(self, goals, containers, changes)
 
     def place(self, unit: FunctionalUnit) -> Source:
         """Return the source of the first copy of a unit; its file is ``-`` if the network lacks the unit.
@@ -425,12 +425,12 @@ class Problem:
                 objective has no value then.
         """
         for objective in objectives:
-            if objective.row.needs is Known.MEASURES and objective not in self.measures:
+            if objective.row.needs is OptionalData.MEASURES and objective not in self.measures:
                 raise UserError(
                     f"the objective {objective} needs the rules of its measure: "
                     "give them with --measure FILE or in Python load(..., measures=FILE)"
                 )
-        by_rates = [objective for objective in objectives if objective.row.needs is Known.RATES]
+        by_rates = [objective for objective in objectives if objective.row.needs is OptionalData.RATES]
         sums = [str(objective) for objective in by_rates if not objective.row.multiplies]
         if sums and 0 in {*(self.rates or {}).values(), *self.own_rates.values()}:
             raise UserError(
@@ -442,7 +442,7 @@ class Problem:
                 or "the objective success needs the success rates of the motions: "
                 "give a rates file, with --rates FILE or in Python load(..., rates=FILE)"
             )
-        by_prices = [str(objective) for objective in objectives if objective.row.needs is Known.PRICES]
+        by_prices = [str(objective) for objective in objectives if objective.row.needs is OptionalData.PRICES]
         if by_prices and self.unit_prices is None:
             raise UserError(
                 f"the objective {by_prices[0]} needs the prices of the units: "
@@ -598,11 +598,11 @@ class Problem:
         items = len({o for unit in counts for o in self.needs[unit] if o in self.endless})
         if self.items is not None:
             items += sum(self.copies_taken(plan).values())
-        available = {Known.MEASURES} | ({Known.RATES} if self.rates is not None else set())
+        available = {OptionalData.MEASURES} | ({OptionalData.RATES} if self.rates is not None else set())
         if self.unit_prices is not None and all(self.prices[unit] is not None for unit in counts):
-            available.add(Known.PRICES)
+            available.add(OptionalData.PRICES)
         if self.stand_ins is not None:
-            available.add(Known.STAND_INS)
+            available.add(OptionalData.STAND_INS)
         user_objectives = map(Objective.of_measure, self.measures)
         return tree_costs({self.measured(u): n for u, n in counts.items()}, items, available, user_objectives)
 
@@ -636,7 +636,7 @@ class Problem:
         Raises:
             ValueError: if a rate, price or measure is missing that the objective needs.
         """
-        if objective.row.needs is Known.MEASURES:
+        if objective.row.needs is OptionalData.MEASURES:
             return map(self._costs_by(objective).__getitem__, units)
         return (self.figure(objective, unit) for unit in units)
 
@@ -706,7 +706,7 @@ def _unpriced_text(lacking: Sequence[Unpriced], max_lines: int = 10) -> str:
     return "\n".join(lines)
 
 
-def first_places(network: Network) -> Iterable[tuple[str, Source]]:
+def first_sources(network: Network) -> Iterable[tuple[str, Source]]:
     """Return the motion of each unit, and the source of its first copy."""
     for motion, copies in zip(network.motions, network.sources, strict=True):
         yield motion, copies[0] if copies else Source("-", 0)

@@ -9,7 +9,7 @@ from typing import Self
 
 from foon_asp.deadline import Deadline
 from foon_asp.network import Network, Source
-from foon_asp.problem.objective import Known, Objective
+from foon_asp.problem.objective import Objective, OptionalData
 from foon_asp.problem.problem import Problem
 from foon_asp.problem.restriction import Restriction
 
@@ -63,7 +63,7 @@ class Purchases:
             costs[_SECOND] = [*nothing, *(int(o in second_choices) for o in wares)]
         by = [*map(Objective.of_measure, costs)]
         for objective in objectives:
-            if objective.row.needs in {Known.PRICES, Known.MEASURES}:
+            if objective.row.needs in {OptionalData.PRICES, OptionalData.MEASURES}:
                 name = f"_by_{objective}"
                 figures = problem.figures(objective, range(self._first))
                 costs[name] = [*figures, *(0 for _ in wares)]

@@ -83,18 +83,18 @@ def _closure(
     return Reached(tuple(order), makers, available)
 
 
-def relevant(problem: Problem, reached: Reached) -> tuple[int, ...]:
+def relevant_units(problem: Problem, reached: Reached) -> tuple[int, ...]:
     """Return the reached units that some irredundant tree can contain, in order of id.
 
     They are found backward from the goals through all reached achievers, down to the kitchen.
     """
-    units, _ = backwards(
+    units, _ = search_backward(
         problem.targets, problem.makers, problem.needs, problem.kitchen, frozenset(reached.units)
     )
     return tuple(sorted(units))
 
 
-def backwards(
+def search_backward(
     goals: Iterable[int],
     makers: Sequence[Iterable[int]],
     needs: Sequence[Iterable[int]],
@@ -119,7 +119,7 @@ def backwards(
     return achievers, objects
 
 
-def relevant_to_plans(problem: Problem, reached: Reached) -> set[int]:
+def units_relevant_to_plans(problem: Problem, reached: Reached) -> set[int]:
     """Return the reached units that some irredundant plan can contain, where items are used up.
 
     They are found backward from the goals through achievers, down to items that are not consumable.
@@ -143,7 +143,7 @@ def relevant_to_plans(problem: Problem, reached: Reached) -> set[int]:
 
 def kitchen_needed(problem: Problem) -> list[int]:
     """Return the kitchen items that a tree for the goals can need, including goals, in order of id."""
-    units, _ = backwards(problem.goals, problem.makers, problem.needs, problem.kitchen)
+    units, _ = search_backward(problem.goals, problem.makers, problem.needs, problem.kitchen)
     needed = {o for unit in units for o in problem.needs[unit]}.union(problem.goals)
     return sorted(needed & problem.kitchen)
 
@@ -153,11 +153,11 @@ def first_tree(problem: Problem, reached: Reached) -> tuple[int, ...] | None:
 
     Its costs may be far from optimal: it is the first incumbent of a search.
     """
-    chosen = follow(problem.targets, reached.makers, problem.needs, problem.kitchen)
+    chosen = follow_achievers(problem.targets, reached.makers, problem.needs, problem.kitchen)
     return None if chosen is None else tuple(unit for unit in reached.units if unit in chosen)
 
 
-def follow(
+def follow_achievers(
     objects: Iterable[int],
     maker: Mapping[int, int],
     needs: Sequence[Iterable[int]],

@@ -24,23 +24,23 @@ class Restriction:
 
     def makers(self, makers: Sequence[tuple[int, ...]]) -> Sequence[tuple[int, ...]]:
         """Return the achievers of each object node, then the required sets, all without removed units."""
-        return Left((*makers, *(tuple(sorted(units)) for units in self.required)), self.removed)
+        return FilteredSets((*makers, *(tuple(sorted(units)) for units in self.required)), self.removed)
 
 
 class Contradiction(NamedTuple):
     """The proof, before any search, that no tree satisfies the rules."""
 
 
-class Left(Sequence[tuple[int, ...]]):
+class FilteredSets(Sequence[tuple[int, ...]]):
     """The unit sets of a restriction without removed units; a set is filtered at its first access."""
 
     def __init__(self, sets: Sequence[tuple[int, ...]], removed: Callable[[int], bool]) -> None:
         self._sets, self._removed = sets, removed
         self._filtered: dict[int, tuple[int, ...]] = {}
 
-    def instead(self, others: Mapping[int, tuple[int, ...]]) -> "Left":
+    def with_sets(self, others: Mapping[int, tuple[int, ...]]) -> "FilteredSets":
         """Return a copy with the sets in ``others`` at their positions; these sets are not filtered."""
-        copy = Left(self._sets, self._removed)
+        copy = FilteredSets(self._sets, self._removed)
         copy._filtered.update(others)
         return copy
 
@@ -53,7 +53,7 @@ class Left(Sequence[tuple[int, ...]]):
     def __getitem__(self, index: slice) -> Sequence[tuple[int, ...]]: ...
     def __getitem__(self, index: int | slice) -> tuple[int, ...] | Sequence[tuple[int, ...]]:
         if isinstance(index, slice):
-            return Left(self._sets[index], self._removed)
+            return FilteredSets(self._sets[index], self._removed)
         units = self._filtered.get(index)
         if units is None:
             removed = self._removed

@@ -11,14 +11,14 @@ from fractions import Fraction
 class Root:
     """The positive ``degree``-th root of a rational number ``of``, with the least possible degree.
 
-    :meth:`taken` makes one. Roots are compared exactly, by their powers, which are rational numbers.
+    :meth:`simplify` makes one. Roots are compared exactly, by their powers, which are rational numbers.
     """
 
     degree: int
     of: Fraction
 
     @classmethod
-    def taken(cls, degree: int, of: Fraction) -> "Root":
+    def simplify(cls, degree: int, of: Fraction) -> "Root":
         """Return the root of a degree; raises ``ValueError`` for numbers that are not positive.
 
         If a number is a root of rational numbers for two degrees, it is also one for their greatest common
@@ -30,8 +30,8 @@ class Root:
         for divisor in range(2, degree + 1):
             while degree % divisor == 0:
                 numerator, denominator = (
-                    whole_root(divisor, of.numerator),
-                    whole_root(divisor, of.denominator),
+                    integer_root(divisor, of.numerator),
+                    integer_root(divisor, of.denominator),
                 )
                 if numerator**divisor != of.numerator or denominator**divisor != of.denominator:
                     break
@@ -43,19 +43,19 @@ class Root:
         """The value of the root where it is rational, else ``None``."""
         return self.of if self.degree == 1 else None
 
-    def over(self, number: Fraction) -> "Root":
+    def divide_by(self, number: Fraction) -> "Root":
         """Return the quotient of the root and a positive rational number."""
         return Root(self.degree, self.of / number**self.degree)
 
     def __lt__(self, other: "Root") -> bool:
         return self.of**other.degree < other.of**self.degree
 
-    def below(self, digits: int) -> Fraction:
+    def round_down(self, digits: int) -> Fraction:
         """Return the greatest decimal with ``digits`` significant digits that is at most the root."""
         places = self._places(digits)
         return self._scaled(places) / Fraction(10) ** places
 
-    def above(self, digits: int) -> Fraction:
+    def round_up(self, digits: int) -> Fraction:
         """Return the least decimal with ``digits`` significant digits that is at least the root."""
         places = self._places(digits)
         scaled = self._scaled(places)
@@ -74,10 +74,10 @@ class Root:
 
     def _scaled(self, places: int) -> int:
         """Return the integer part of the root times ten to the ``places``."""
-        return whole_root(self.degree, math.floor(self.of * Fraction(10) ** (places * self.degree)))
+        return integer_root(self.degree, math.floor(self.of * Fraction(10) ** (places * self.degree)))
 
 
-def whole_root(degree: int, number: int) -> int:
+def integer_root(degree: int, number: int) -> int:
     """Return the integer part of a root of a nonnegative integer.
 
     Newton's method on integers, started above the root, decreases until it reaches the result.

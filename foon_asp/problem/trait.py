@@ -5,7 +5,7 @@ from enum import Enum, auto
 from typing import NamedTuple
 
 
-class Having(Enum):
+class Role(Enum):
     """The role of a name in a unit: its motion, or a label or ingredient of one of its inputs or outputs.
 
     ``MADE`` is an input that is not in the kitchen.
@@ -20,11 +20,11 @@ class Having(Enum):
 class Trait(NamedTuple):
     """The property of a unit to have a name in a role."""
 
-    having: Having
+    role: Role
     word: str
 
 
-class Wanted(NamedTuple):
+class RequiredUnit(NamedTuple):
     """A unit that rules require, described in disjunctive normal form: it has all traits of at least one row.
 
     ``always`` says that the rules require the unit whatever the network is.

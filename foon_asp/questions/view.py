@@ -447,7 +447,7 @@ def pages(
         proof = certified(endless, chosen, settings) if PagePart.PROOF in wanted and below else None
         lasting = answered(endless, chosen, settings) if proof is None else proof
         if below:
-            Postconditions(endless, levels(tuple(chosen)), settings).no_better(
+            Postconditions(endless, levels(tuple(chosen)), settings).require_no_better(
                 answer.outcome, lasting.outcome, "where items last"
             )
         if lasting and not answer:

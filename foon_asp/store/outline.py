@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from foon_asp.problem import Having, Trait
+from foon_asp.problem import Role, Trait
 from foon_asp.store.columns import encoded_label, quoted
 
 Numbers = NDArray[np.uint32]
@@ -90,13 +90,13 @@ class Outline:
     def with_all(self, traits: Iterable[Trait], kitchen: Mask) -> Mask:
         """Return the mask of the units that may have all of the traits; nodes of ``kitchen`` are not made."""
         mask = np.ones(len(self.motions), dtype=np.bool_)
-        for having, word in traits:
-            if having is Having.MOTION:
+        for role, word in traits:
+            if role is Role.MOTION:
                 mask &= np.isin(self.motions, [n for n, name in enumerate(self.motion_names) if name == word])
             else:
-                lists = self.outputs if having is Having.OUTPUT else self.inputs
+                lists = self.outputs if role is Role.OUTPUT else self.inputs
                 nodes = self.named(word)
-                if having is Having.MADE:
+                if role is Role.MADE:
                     nodes = nodes & ~kitchen
                 mask &= lists.any(nodes[lists.entries])
         return mask

@@ -96,7 +96,7 @@ def test_trees_in_order_keep_to_them_and_others_break_them(seeds: range) -> None
             assert {frozenset(units) for units, _ in ranked} == minimal, chosen
             for units, tree in found[:3]:
                 for rule in chosen:
-                    broken = UserRuleCheck(settings_of([rule])).broken(problem, units)
+                    broken = UserRuleCheck(settings_of([rule])).broken_rules(problem, units)
                     assert bool(broken) is not keeps(problem, tree, rule), rule
 
 
