@@ -17,7 +17,11 @@ _EXPONENT = re.compile(r"e([+-]?[\d_]+)\s*", re.IGNORECASE)
 
 
 def exact_number(number: Number, quantity: str) -> Fraction:
-    """Return a number as an exact fraction; else raises :class:`UserError`, which names the ``quantity``."""
+    """Return a number as an exact fraction: ``Fraction(9, 10)`` for ``0.9`` and for ``"0.9"``.
+
+    Raises :class:`UserError` for a text that is no number and for an exponent beyond 1,000. Its message names
+    the ``quantity``, such as ``the duration of 'stir'``.
+    """
     try:
         power = _EXPONENT.search(str(number)) if isinstance(number, str | Decimal) else None
         if power and abs(int(power[1])) > _MAX_DIGITS:
@@ -30,7 +34,11 @@ def exact_number(number: Number, quantity: str) -> Fraction:
 
 
 def unit_price(number: Number, quantity: str) -> Fraction:
-    """Return an exact price, from 0; else raises :class:`UserError`, which names the ``quantity``."""
+    """Return a price as an exact fraction.
+
+    Raises :class:`UserError` for a price below 0, of more than 1,000 digits, or that is no number. Its
+    message names the ``quantity``.
+    """
     price = exact_number(number, quantity)
     if price < 0 or max(price.numerator, price.denominator) >= 10**_MAX_DIGITS:
         raise UserError(
@@ -41,7 +49,11 @@ def unit_price(number: Number, quantity: str) -> Fraction:
 
 
 def success_rate(number: Number, quantity: str) -> Fraction:
-    """Return an exact success rate, above 0 and at most 1; raises :class:`UserError` for other values."""
+    """Return a success rate as an exact fraction.
+
+    Raises :class:`UserError` for a rate that is not above 0 and at most 1, or no number. Its message names
+    the ``quantity``.
+    """
     rate = exact_number(number, quantity)
     if not 0 < rate <= 1:
         raise UserError(f"found {number} for {quantity}, expected a number above 0 and at most 1")
