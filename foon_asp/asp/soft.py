@@ -1,4 +1,4 @@
-"""Soft constraints: the least penalty first, then the best tree among those that have it."""
+"""Soft constraints: trees of the least penalty, and the best tree among these."""
 
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
@@ -18,7 +18,7 @@ from foon_asp.rules.passed_constraint import Constraint, find_constraint
 
 
 class Broken(NamedTuple):
-    """A soft constraint, its weight, and the number of its instances that the tree breaks."""
+    """An integrity constraint that may be broken, its weight, and how many of its instances a tree breaks."""
 
     constraint: IntegrityConstraint
     weight: int
@@ -29,8 +29,9 @@ class SoftOutcome(NamedTuple):
     """An answer under soft constraints.
 
     ``penalty`` is the sum of ``weight`` times ``ways`` over all soft ``constraints``, for the tree of
-    ``outcome``. Without a tree, ``penalty`` is ``None`` and ``constraints`` is empty. An ``optimal`` outcome
-    has the least penalty of all trees, and is the best by the objectives among the trees with that penalty.
+    ``outcome``. Without a tree, ``penalty`` is ``None`` and ``constraints`` is empty. The tree of an
+    ``optimal`` outcome has the least penalty, and is the best by the objectives among the trees with this
+    penalty.
     """
 
     outcome: Outcome
@@ -41,10 +42,10 @@ class SoftOutcome(NamedTuple):
 def soft_rules(
     settings: Settings, weights: Mapping[Constraint, int]
 ) -> tuple[tuple[IntegrityConstraint, ...], dict[int, int], Relaxed]:
-    """Number the integrity constraints of soft constraints, with their weights, and rewrite them.
+    """Return the integrity constraints of soft constraints, their weights by number, and rewritten rules.
 
-    Returns the constraints, the weight by number, and the rewritten rules. Raises :class:`UserError` for a
-    soft constraint that is also a constraint of ``settings``.
+    ``weights`` are by soft constraint. The rewritten rules count the instances that a tree breaks. Raises
+    :class:`UserError` for a soft constraint that is also a constraint of ``settings``.
     """
     weight_of = {find_constraint(constraint): weight for constraint, weight in weights.items()}
     both = weight_of.keys() & set(map(find_constraint, settings.constraints))
@@ -65,10 +66,10 @@ def solve_soft(
     weights: Mapping[Constraint, int],
     reporter: Reporter | None = None,
 ) -> SoftOutcome:
-    """Find the tree with the least penalty, and among these the best by a lexicographic list of objectives.
+    """Find the tree with the least penalty, and among these the best by lexicographic objectives.
 
     ``weights`` are by soft constraint; the constraints of ``settings`` are hard. Each instance of a rule that
-    a tree breaks costs the weight of the rule; instances differ in the values of global variables. Raises
+    a tree breaks costs the weight of the rule. Two instances differ in the values of global variables. Raises
     :class:`UserError` like :func:`foon_asp.asp.solve`.
     """
     settings = settings._replace(deadline=settings.begun)
@@ -82,15 +83,17 @@ def solve_soft(
     proved = True
     ended = Run()
 
-    def ask(question_facts: str) -> Run:
+    def run_with_penalty(question_facts: str) -> Run:
+        """Run clingo for the least penalty, under additional facts."""
         return prepared.run(question_facts + write_least_penalty(1), predicates=[("_broken", 2)])
 
     def soft_outcome(outcome: Outcome, ways: Mapping[int, int]) -> SoftOutcome:
+        """Return an outcome with its penalty; ``ways`` has the number of broken instances by constraint."""
         broken = tuple(Broken(c, by_number[c.number], ways.get(c.number, 0)) for c in constraints)
         return SoftOutcome(outcome, sum(rule.weight * rule.ways for rule in broken), broken)
 
     if prepared.tree is not None:
-        ended = ask("")
+        ended = run_with_penalty("")
         proved = ended.exhausted
         spent["soft"] = ended.ground_seconds + ended.solve_seconds
         if ended.units is not None:
@@ -105,7 +108,7 @@ def solve_soft(
     outcome.seconds.update(spent)
     if outcome.units is not None:
         # auxiliary predicates may leave the broken instances of a tree open: the least penalty counts
-        checked = ask(write_tree(outcome.units))
+        checked = run_with_penalty(write_tree(outcome.units))
         if checked.exhausted:
             holds.require(
                 checked.units == frozenset(outcome.units),

@@ -138,7 +138,7 @@ class Problem:
     a larger kitchen.
     ``restriction``: the effect of rules on the network, for this question only; each variation needs its own.
     ``items``: the model in which items are used up; ``None`` if items last.
-    ``starting``: no kitchen is named, so that all nodes are available that no unit makes out of other nodes.
+    ``starting``: whether no kitchen is named. Then the nodes that no unit makes out of others are available.
     ``stand_ins``: the source of the stand-ins of the network; ``None`` if it has none.
     ``amounts``: how many copies of a node units take and make; these count if items are used up.
 
@@ -324,6 +324,7 @@ class Problem:
         counted = {unit.motion for unit in self.amounts}
 
         def flow(unit: int) -> Flow:
+            """Return the flow of a unit, with the amounts that are stated for it."""
             has_amounts = network.motions[unit] in counted
             amounts = self.amounts.get(network.unit(unit)) if has_amounts else None
             if amounts is None:
@@ -711,7 +712,7 @@ def for_each_goal(problem: Problem) -> list[Problem]:
 
 
 def count_unpriced(units: Iterable[tuple[str, Sequence[Source]]]) -> list[Unpriced]:
-    """Return the number of units by motion, and the source of the first unit of each motion.
+    """Return the units without a price, counted by motion, each with the source of the first unit.
 
     ``units`` has the motion and the sources of each unit without a price.
     """

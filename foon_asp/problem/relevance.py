@@ -161,8 +161,8 @@ def kitchen_needed(problem: Problem) -> list[int]:
 def first_tree(problem: Problem, reached: Reached) -> tuple[int, ...] | None:
     """Return a feasible tree, in an executable order; ``None`` if there is none.
 
-    It consists of the first achievers of the nodes needed, by the order of ``reached``. Its costs may be far
-    from optimal: it is the first incumbent of a search.
+    It has the first achiever (``reached.makers``) of each node that it needs. Its costs may be far from
+    optimal: it is the first incumbent of a search.
     """
     chosen = follow_achievers(problem.targets, reached.makers, problem.needs, problem.kitchen)
     return None if chosen is None else tuple(unit for unit in reached.units if unit in chosen)
@@ -174,7 +174,7 @@ def follow_achievers(
     needs: Sequence[Iterable[int]],
     start: Container[int],
 ) -> set[int] | None:
-    """Return the units that make objects out of ``start``, with the one achiever that ``maker`` has of each.
+    """Return the units that make objects out of ``start``; ``maker`` has one achiever for each object.
 
     ``None`` if an object that is needed has no achiever.
     """
