@@ -473,11 +473,10 @@ class _Solver:
     ) -> "Run":
         """Run clingo for the best tree by ``objectives``, and report trees; return the run.
 
-        ``products``: products of success rates, each as exponents by rate. Trees with one of them are
-        excluded.
-        ``wanted``: the index of a product that is required instead.
-        ``fewer``: numbers of units by index of a product. Trees with this product and fewer units are
-        allowed.
+        ``products``: totals by the rounded objective, such as products of success rates, each as the vector
+        of :meth:`Scales.vector`. Trees with one of these totals are excluded.
+        ``wanted``: the index of a total that is required instead.
+        ``fewer``: numbers of units by index of a total. Trees with this total and fewer units are allowed.
         ``opt_mode``: the ``--opt-mode`` of clasp.
         ``bounds``: whether to report bounds, too.
         """

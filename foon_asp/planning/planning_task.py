@@ -20,9 +20,10 @@ from foon_asp.problem import (
 
 
 class Action(NamedTuple):
-    """An action: to execute a ``unit``, or to take an ``item`` from the kitchen; the other is ``None``.
+    """An action, which executes a ``unit`` or takes an ``item`` from the kitchen.
 
-    ``preconditions``, ``add_effects`` and ``consumption`` (delete effects) are object nodes, by id.
+    ``unit`` and ``item`` are ids; one of them is ``None``. ``preconditions``, ``add_effects`` and
+    ``consumption`` (delete effects) are object nodes, by id.
     """
 
     name: str
@@ -36,11 +37,14 @@ class Action(NamedTuple):
 
 @dataclass(frozen=True)
 class PlanningTask:
-    """A planning task for the goals of a problem.
+    """A planning task for the goals of a problem; all nodes are given by id.
 
-    ``names`` maps the id of every object node in the task to its name. ``start`` is the initial state,
-    ``goals`` are the nodes that have to be made, and ``costs`` are the integer costs of actions. Where items
-    are used up, the copies of consumable nodes are counted, or all copies of a node are ``merged`` into one.
+    ``names``: the name of every object node in the task.
+    ``start``: the initial state.
+    ``goals``: the nodes that have to be made.
+    ``costs``: the integer costs of actions.
+    ``merged``: where items are used up, whether all copies of a node are merged into one. Otherwise the
+    copies of consumable nodes are counted.
     """
 
     problem: Problem
@@ -54,7 +58,10 @@ class PlanningTask:
 
     @cached_property
     def counted(self) -> dict[int, int]:
-        """The number of copies in the initial state of each node whose copies are counted, by id."""
+        """The number of copies in the initial state, by id, of each node whose copies are counted.
+
+        Empty if no copies are counted.
+        """
         problem = self.problem
         if problem.items is None or self.merged:
             return {}
@@ -62,7 +69,10 @@ class PlanningTask:
         return {o: stock.get(o, 0) for o in self.names if o not in problem.endless}
 
     def flow(self, action: Action) -> Flow:
-        """Return the copies that an action asks for, consumes and adds; one copy if these are not counted."""
+        """Return how many copies of each node an action asks for, uses up and adds.
+
+        It is one copy of each if the task counts no copies.
+        """
         if action.unit is None or not self.counted:
             sides = (action.preconditions, action.consumption, action.add_effects)
             return Flow(*(dict.fromkeys(side, 1) for side in sides))
@@ -75,12 +85,12 @@ class PlanningTask:
 
     @property
     def wanted(self) -> dict[int, int]:
-        """The copies of each goal that are wanted."""
+        """The number of copies of each goal that are wanted, by id."""
         return {goal: self.problem.wanted(goal) for goal in self.goals}
 
 
-def taking(name: str) -> str:
-    """Return the name of the action that takes the kitchen item ``name``."""
+def taking_action_name(name: str) -> str:
+    """Return the name of the action that takes the kitchen item ``name``: ``take-o43-ice``."""
     return f"take-{name}"
 
 
@@ -90,11 +100,13 @@ def planning_task(
     whole: bool = False,
     merged: bool = False,
 ) -> PlanningTask:
-    """Return a planning task of a problem, over the units relevant to its goals or the ``whole`` network.
+    """Return the planning task of a problem, over the units relevant to its goals or the ``whole`` network.
 
-    If kitchen items have a cost, the task has an action for each of them, which takes the item.
+    With ``merged``, copies are not counted, but merged into one. If kitchen items have a cost, the task has
+    an action for each of them, which takes the item.
 
-    Raises :class:`UserError` where an objective has no costs that planners can add up.
+    Raises :class:`UserError` if an objective has no costs that planners can add up. Where items are used up,
+    also for several objectives, and for costs of a stock.
     """
     network, endless = problem.network, problem.endless
     problem.require_known_for(objectives)
@@ -142,6 +154,6 @@ def planning_task(
         )
         for unit in units
     ]
-    actions += [Action(taking(names[o]), None, o, (), (o,), costs.item) for o in items]
+    actions += [Action(taking_action_name(names[o]), None, o, (), (o,), costs.item) for o in items]
     start = tuple(sorted((nodes & available) - bought))
     return PlanningTask(problem, tuple(objectives), tuple(actions), names, start, goals, costs, merged)

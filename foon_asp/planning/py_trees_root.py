@@ -77,7 +77,7 @@ def py_trees_root(xml: str | PathLike[str], execute: Execute, is_available: IsAv
         import py_trees  # noqa: F401, PLC0415 (an extra)
     except ImportError:
         raise UserError("running a behaviour tree needs py_trees: pip install 'foon-asp[robot]'") from None
-    text, name = (xml, "the behaviour tree") if isinstance(xml, str) else (_text(Path(xml)), str(xml))
+    text, name = (xml, "the behaviour tree") if isinstance(xml, str) else (_file_text(Path(xml)), str(xml))
     try:
         element = ElementTree.fromstring(text).find("BehaviorTree/*")
     except ElementTree.ParseError as error:
@@ -87,7 +87,8 @@ def py_trees_root(xml: str | PathLike[str], execute: Execute, is_available: IsAv
     return _behaviour(element, execute, is_available)
 
 
-def _text(file: Path) -> str:
+def _file_text(file: Path) -> str:
+    """Return the text of a file; raises :class:`UserError` if it cannot be read."""
     try:
         return file.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
@@ -95,7 +96,10 @@ def _text(file: Path) -> str:
 
 
 def _behaviour(element: ElementTree.Element, execute: Execute, is_available: IsAvailable) -> "Behaviour":
-    """Return the behaviour of an XML element, with its children."""
+    """Return the py_trees behaviour of an XML element, with its children.
+
+    Raises :class:`UserError` for an element that is not of this program.
+    """
     from py_trees import behaviours, composites, decorators  # noqa: PLC0415
 
     name = element.get("name", element.get("ID", element.tag))
@@ -113,7 +117,7 @@ def _behaviour(element: ElementTree.Element, execute: Execute, is_available: IsA
         case "AlwaysSuccess", _:
             behaviour = behaviours.Success(name)
         case "Condition", id_ if id_ == CONDITION:
-            nodes = _names(element, "nodes")
+            nodes = _port_names(element, "nodes")
             behaviour = _leaf(name, lambda: all(map(is_available, nodes)))
         case "Action", id_ if id_ == ACTION:
             execution = _execution(element)
@@ -124,7 +128,10 @@ def _behaviour(element: ElementTree.Element, execute: Execute, is_available: IsA
 
 
 def _leaf(name: str, ask: Callable[[], bool | None]) -> "Behaviour":
-    """Return a behaviour without children: ``ask`` returns success, failure, or ``None`` while it runs."""
+    """Return a behaviour without children, whose status is what ``ask`` returns at each tick.
+
+    ``True`` means success, ``False`` failure, ``None`` running.
+    """
     from py_trees.behaviour import Behaviour  # noqa: PLC0415
     from py_trees.common import Status  # noqa: PLC0415
 
@@ -137,15 +144,16 @@ def _leaf(name: str, ask: Callable[[], bool | None]) -> "Behaviour":
 
 
 def _execution(element: ElementTree.Element) -> Execution:
-    """Return the execution in the ports of an action."""
+    """Return the execution that the ports of an action element describe."""
     ports = element.attrib
     needs, makes, acted_on, tools, origins, destinations = (
-        _names(element, port) for port in ("needs", "makes", "acted_on", "tools", "from", "to")
+        _port_names(element, port) for port in ("needs", "makes", "acted_on", "tools", "from", "to")
     )
     rate, duration = (float(ports[port]) if port in ports else None for port in ("rate", "duration"))
     step, unit, motion = int(ports["step"]), int(ports["unit"]), ports["motion"]
     return Execution(step, unit, motion, needs, makes, acted_on, tools, origins, destinations, rate, duration)
 
 
-def _names(element: ElementTree.Element, port: str) -> tuple[str, ...]:
+def _port_names(element: ElementTree.Element, port: str) -> tuple[str, ...]:
+    """Return the names of object nodes in a port; empty without the port."""
     return tuple(filter(None, element.get(port, "").split(LIST_SEPARATOR)))
