@@ -158,8 +158,9 @@ def program_of(problem: Problem, settings: Settings, warn: Callable[[str], None]
 def ready_made_program(problem: Problem, settings: Settings, warn: Callable[[str], None]) -> Program | None:
     """Return the program of a question whose user rules are all ready-made constraints, without clingo.
 
-    ``None`` if there are other rules or items are used up. Also ``None`` for a large network, unless it is a
-    part of a store or the rules require units.
+    Ready-made constraints come with this program, so their effect is computed without their text. ``None`` if
+    there are other rules or items are used up. Also ``None`` for a large network, unless it is a part of a
+    store or the rules require units.
     """
     rules = _ready_made_rules(settings)
     if rules is None or problem.items is not None:
@@ -285,7 +286,7 @@ class ReachOfRules(Enum):
 
 
 def reach_of_rules(settings: Settings) -> ReachOfRules:
-    """Return the units that the user rules can depend on or require; raises as :func:`assemble` does."""
+    """Return which units the user rules can depend on or require; raises as :func:`assemble` does."""
     rules = _ready_made_rules(settings) or _analysed_rules(settings)
     if rules is None or not rules.local:
         return ReachOfRules.ALL

@@ -9,7 +9,7 @@ from foon_asp.problem import Costs, Objective
 
 
 def better_than(incumbents: Iterable[Costs], objectives: Iterable[Objective]) -> Bounded:
-    """Return bounds that a tree meets if it is better than each incumbent by at least one objective.
+    """Return bounds that a tree meets if, for each incumbent, it is better by at least one objective.
 
     They exclude the trees that an incumbent dominates. The objectives must not include ``success``. The
     result is for ``bounded`` of :class:`foon_asp.asp.Settings`. Raises :class:`UserError` for numbers beyond

@@ -61,9 +61,10 @@ def relax(
     values of its variables (``questions/soft.lp``). Other rules of the ``constraints`` stay as they are.
     ``constants`` are the user's settings of constants.
 
-    ``before`` are other constraints of the question, which are not rewritten; messages count them first. Each
-    constraint is first parsed and grounded without facts, so that its errors are raised with their places.
-    Raises as :func:`foon_asp.encoding.encoding.read_encoding` does.
+    ``before`` are other constraints of the question, which are not rewritten; in messages, their texts are
+    numbered before those of ``constraints``. Each constraint is first parsed and grounded without facts, so
+    that its errors are raised with their places. Raises as :func:`foon_asp.encoding.encoding.read_encoding`
+    does.
     """
     numbered: list[IntegrityConstraint] = []
     rules: dict[str, Source] = {}

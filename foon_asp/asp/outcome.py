@@ -12,7 +12,7 @@ if TYPE_CHECKING:  # few questions need it
 
 
 class Status(StrEnum):
-    """What is proved about an answer.
+    """The status of an answer: whether there is a tree, and what is proved.
 
     ``OPTIMAL``: it is proved that no tree is better.
     ``FEASIBLE``: a tree was found, and a limit was reached before a proof.
@@ -31,7 +31,7 @@ class Status(StrEnum):
 
 
 class Proof(StrEnum):
-    """What proves a claim.
+    """The kind of proof that a claim has.
 
     ``solver``: an exhausted search.
     ``cuts``: landmark cuts that leave nothing to search, at once or case by case; see docs/dev/reductions.md.

@@ -101,10 +101,10 @@ class Prepared:
             return facts + writing.write_required([map(number, sorted(remaining & units)) for units in sets])
 
     def keeps(self, units: Collection[int]) -> bool | None:
-        """Whether a tree keeps to all user rules, which have to be local.
+        """Whether a tree keeps to all user rules. ``None`` if a limit was reached first.
 
-        clingo decides, unless all rules are ready-made. ``None`` if a limit was reached first. Raises
-        :class:`UserError` for a fault in a rule.
+        The rules have to be local: units outside the tree must not matter for them. clingo decides, unless
+        all rules are ready-made. Raises :class:`UserError` for a fault in a rule.
         """
         program = self.full_program or self.program
         if program.ready_made is not None:
@@ -184,10 +184,10 @@ def prepare(
 
     ``listener``: receives trees and bounds. Without one, no reductions by costs are made, so that all trees
     remain. With one, they may exclude every tree except one of the best. If ``program`` has bounds on trees,
-    there are none either, since perhaps only excluded trees meet the bounds.
+    none are made either, since perhaps only excluded trees meet the bounds.
     ``for_sale``: ids of object nodes that may be added to the kitchen.
-    ``brief``: whether the best tree without the unsettled rules is not needed.
-    ``solved``: solved goals of the same question.
+    ``brief``: whether to skip the search for the best tree without the rules that clingo has to enforce.
+    ``solved``: goals of the same question that are solved already, by which reductions save work.
 
     At a limit, a question with ``stopped`` is returned. Raises :class:`UserError` if an objective needs data
     that are missing, and for items that are used up.

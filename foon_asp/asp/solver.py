@@ -50,9 +50,10 @@ def solve(
     ``units`` decides last, so that the tree is irredundant. At a limit or ctrl-C, the outcome has the
     incumbent.
 
-    ``mattered``: public numbers of units that mattered in a similar question. The units that matter in this
-    question are added to it.
-    ``solved``: solved goals of questions with the same data; this goal is added.
+    ``mattered``: units, by id in the whole network, that the search for a similar question explored. They are
+    explored first, and the units that this search explores are added.
+    ``solved``: goals of the same question that are solved already, by which reductions save work; this goal
+    is added.
 
     Raises :class:`UserError` for faults in constraints, encodings and options, and for ``success`` without
     known rates. Raises :class:`BugError` if stand-ins that the best tree may need are not in the network.
@@ -213,7 +214,7 @@ class _Solver:
         return self._solve_violated(subproblem, tree)
 
     def _solve_violated(self, subproblem: Subproblem, tree: Units) -> Outcome:
-        """Find the best tree under rules that ``tree``, the best one without them, breaks.
+        """Find the best tree under rules that ``tree`` breaks; ``tree`` is the best one without the rules.
 
         Three searches are tried in turn: by a price on a limited sum, for trees with open preconditions, and
         in ever larger neighbourhoods of the goals.
@@ -224,7 +225,7 @@ class _Solver:
             and (outcome := self._solve_by_priced_limit(subproblem, tree)) is not None
         ):
             return outcome
-        run = None if subproblem.redundant else self._with_open_preconditions(subproblem, tree)
+        run = None if subproblem.redundant else self._search_with_open_preconditions(subproblem, tree)
         is_best = run is not None
         if run is None:
             run = self._search_near_goals(subproblem, tree)
@@ -299,7 +300,7 @@ class _Solver:
         self._restrict_to(candidates)
         return self._search(tree)
 
-    def _with_open_preconditions(self, subproblem: Subproblem, tree: Units) -> "Run | None":
+    def _search_with_open_preconditions(self, subproblem: Subproblem, tree: Units) -> "Run | None":
         """Search a relaxation in which preconditions of unexplored units may stay open.
 
         An open precondition is one that no unit of the tree makes. Every tree that keeps to the rules has a
@@ -483,6 +484,7 @@ class _Solver:
         on_bound = self._report_bound if bounds and not self.program.replaced else None
 
         def on_tree(units: Units) -> None:
+            """Report a tree, given by public numbers, unless it may have open preconditions."""
             if not self._open_preconditions:
                 self.listener.tree(self._unit_ids(units))
 
@@ -748,10 +750,11 @@ class _Solver:
 
 
 def _cut_objects(reduced: Reduced | None) -> list[frozenset[int]]:
-    """Return the objects of each cut of the best bound, and of each cut that holds for more actions.
+    """Return the objects of each cut that a certificate can start from; empty without reductions.
 
-    Excluded actions may cross many cuts of the best bound. The cuts found before any reduction count all
-    actions. Tight cuts count the actions that remained when they were found. Empty without reductions.
+    These are the cuts of the best bound, those found before any reduction, and tight ones. Excluded actions
+    may cross many cuts of the best bound. The cuts found before any reduction count all actions. Tight cuts
+    count the actions that remained when they were found.
     """
     if reduced is None:
         return []
@@ -763,7 +766,7 @@ def _cut_objects(reduced: Reduced | None) -> list[frozenset[int]]:
 
 
 def _first_cut_objects(cuts: Cuts | None) -> list[frozenset[int]]:
-    """Return the objects of each of the first cuts, up to about ``SEARCH.cut_objects`` objects in all."""
+    """Return the objects of each cut, for the first cuts: up to about ``SEARCH.cut_objects`` in all."""
     object_sets, total = list[frozenset[int]](), 0
     for cut in cuts.cuts if cuts else ():
         if total > SEARCH.cut_objects:

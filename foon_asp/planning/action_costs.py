@@ -16,9 +16,9 @@ _MAX_FACTOR = 10**6  # of costs that are rounded: more digits of a logarithm, bu
 class Scale(NamedTuple):
     """The scale by which an objective became integers: each of its costs was multiplied by ``factor``.
 
-    ``rounded`` says whether the products were rounded to integers, or were integers. The costs of an
-    objective that multiplies are the negative logarithms of its factors. ``factor`` includes the weight that
-    makes an objective outweigh all less important ones (lexicographic order).
+    ``rounded`` says whether the products had to be rounded, so that sums of costs are not exact. The costs of
+    an objective that multiplies are the negative logarithms of its factors. ``factor`` includes the weight
+    that makes an objective outweigh all less important ones (lexicographic order).
     """
 
     objective: Objective
@@ -27,9 +27,11 @@ class Scale(NamedTuple):
 
 
 class ActionCosts(NamedTuple):
-    """Integer costs of actions: of executing each unit, by id, and of taking an ``item`` from the kitchen.
+    """The integer costs of actions.
 
-    ``scales`` has the scale of each objective, in the order of the objectives.
+    ``units``: the cost of executing each unit, by unit id.
+    ``item``: the cost of taking a kitchen item.
+    ``scales``: the scale of each objective, in the order of the objectives.
     """
 
     units: dict[int, int]
@@ -50,7 +52,7 @@ def action_costs(
     tree: Collection[int],
     repeats: int = 1,
 ) -> ActionCosts:
-    """Return one integer cost for each action, which stands for a lexicographic list of objectives.
+    """Return integer costs by which a cheapest plan is a best one by a lexicographic list of objectives.
 
     A tree executes each of the ``units`` at most once, and takes at most ``items`` kitchen items. So an
     objective gets a weight above the greatest sum of all less important objectives. ``tree`` is a feasible

@@ -105,7 +105,11 @@ def behaviour_tree_text(name: str, branches: Sequence[Branch], is_used_up: bool)
 
 
 def _add_reactive_sequence(parent: ElementTree.Element, name: str, steps: Iterable[RobotStep]) -> None:
-    """Add to an element the reactive sequence of the steps of a branch, for items that last."""
+    """Add to an element the reactive sequence of the steps of a branch, for items that last.
+
+    A step is a fallback: the condition that its outputs are available, or else its action. Without steps, the
+    sequence succeeds.
+    """
     sequence = ElementTree.SubElement(parent, "ReactiveSequence", name=escaped(name))
     for step in steps:
         fallback = ElementTree.SubElement(sequence, "Fallback", name=_step_name(step))
@@ -117,7 +121,11 @@ def _add_reactive_sequence(parent: ElementTree.Element, name: str, steps: Iterab
 
 
 def _add_sequence(parent: ElementTree.Element, name: str, steps: Iterable[RobotStep]) -> None:
-    """Add to an element the sequence of the steps of a branch, for items that are used up."""
+    """Add to an element the sequence of the steps of a branch, for items that are used up.
+
+    A step is the condition that its inputs are available, then its action, which is repeated until it
+    succeeds. Without steps, the sequence succeeds.
+    """
     sequence = ElementTree.SubElement(parent, "Sequence", name=escaped(name))
     for step in steps:
         _add_condition(sequence, step.needs)

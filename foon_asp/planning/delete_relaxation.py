@@ -74,9 +74,10 @@ class _Relaxation:
         )
 
     def _relevant_facts(self) -> set[int]:
-        """Return the facts of the goal and of all conditions of operators, axioms and their effects.
+        """Return the facts of the goal and of the conditions of operators and axioms.
 
-        The other values of variables in conditions of axioms are included, since axioms may be negated.
+        Conditions of effects that add such facts are included. So are the other values of variables in
+        conditions of axioms, since an axiom may be negated.
         """
         task = self._task
         bodies = [axiom.body for axiom in task.axioms]
@@ -141,8 +142,9 @@ class _Relaxation:
     def _default_derivations(self, defaults: set[int]) -> Iterator[StripsAction]:
         """Yield actions that derive the default values of derived variables (Clark's completion).
 
-        A variable has its default value if each axiom that sets it has a condition that fails. Facts that a
-        given axiom fails are added where needed. Raises :class:`UserError` if such a derivation is cyclic.
+        A variable has its default value if each axiom that sets it has a condition that fails. Where several
+        values make an axiom fail, a new fact says that it fails. Raises :class:`UserError` if such a
+        derivation is cyclic.
         """
         graph: dict[int, set[int]] = {}
         pending = sorted(defaults)

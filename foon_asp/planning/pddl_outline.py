@@ -38,7 +38,7 @@ class PddlOutline:
 
     @property
     def kind(self) -> str:
-        """``domain`` or ``problem``, as the file defines; empty if the file is no PDDL."""
+        """The kind of definition in the file: ``domain`` or ``problem``; empty if the file is no PDDL."""
         words = [token.text for token in self.tokens[:4]]
         return words[3] if words[:3] == ["(", "define", "("] and len(words) == 4 else ""
 

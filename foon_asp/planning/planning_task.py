@@ -58,7 +58,7 @@ class PlanningTask:
 
     @cached_property
     def counted(self) -> dict[int, int]:
-        """The number of copies in the initial state, by id, of each node whose copies are counted.
+        """The initial number of copies of each node whose copies are counted, by node id.
 
         Empty if no copies are counted.
         """
@@ -105,8 +105,9 @@ def planning_task(
     With ``merged``, copies are not counted, but merged into one. If kitchen items have a cost, the task has
     an action for each of them, which takes the item.
 
-    Raises :class:`UserError` if an objective has no costs that planners can add up. Where items are used up,
-    also for several objectives, and for costs of a stock.
+    Raises :class:`UserError` if planners cannot add up the costs of an objective. Where items are used up,
+    also for several objectives, for an objective by which items of a stock have a cost, and for ``merged`` if
+    amounts count.
     """
     network, endless = problem.network, problem.endless
     problem.require_known_for(objectives)

@@ -77,7 +77,7 @@ def best_policy(problem: Problem, trees: Sequence[tuple[int, ...]], retries: int
     Parameters:
         problem: The problem, whose items last, with rates.
         trees: Trees for its goals, by unit ids in an order that executes.
-        retries: How many executions may fail before the last one that ends the run.
+        retries: How many failed executions a run survives; the next failure ends it.
     """
     units = tuple(dict.fromkeys(unit for tree in trees for unit in tree))
     try:
@@ -107,10 +107,11 @@ def _candidates(trees: Sequence[tuple[int, ...]], failures: int) -> Iterator[tup
                 yield tuple(map(PolicyBranch, order, shares))
 
 
-class _World:
-    """The model of executions: preconditions, add effects and rates of units, without kitchen items.
+class _ExecutionModel:
+    """The preconditions, add effects and rates of units, all without kitchen items.
 
-    ``makes`` has outputs that are no inputs of the unit.
+    The functions ``needs``, ``makes`` and ``rate`` return them by unit id, and cache them. An add effect that
+    is also an input is left out.
     """
 
     def __init__(self, problem: Problem) -> None:
@@ -142,7 +143,7 @@ class _World:
 
 def _chance(problem: Problem, branches: tuple[PolicyBranch, ...]) -> Fraction:
     """Return the exact chance that the branches, followed one after the other, make the goals."""
-    world = _World(problem)
+    model = _ExecutionModel(problem)
     # by branch, position in it, and minus the failures left: a success and a failure lead to later keys
     waiting = {(0, 0, -branches[0].failures): {State(): Fraction(1)}}
     order = [*waiting]
@@ -153,14 +154,14 @@ def _chance(problem: Problem, branches: tuple[PolicyBranch, ...]) -> Fraction:
         units = branches[branch].units
         for state, chance in waiting.pop(key).items():
             index = position
-            while index < len(units) and world.makes(units[index]) <= state:
+            while index < len(units) and model.makes(units[index]) <= state:
                 index += 1
             if index == len(units):
                 reached += chance
                 continue
             unit = units[index]
-            rate = world.rate(unit)
-            after = [((branch, index + 1, failures), state | world.makes(unit), rate)]
+            rate = model.rate(unit)
+            after = [((branch, index + 1, failures), state | model.makes(unit), rate)]
             if failures < -1:
                 after.append(((branch, index, failures + 1), state, 1 - rate))
             elif branch + 1 < len(branches):
@@ -180,7 +181,7 @@ class _Optimum:
 
     def __init__(self, problem: Problem, units: Sequence[int], retries: int) -> None:
         """Compute the greatest chance; raises :class:`_TooManyStates` beyond the limits."""
-        self._world, self._units, self._retries = _World(problem), units, retries
+        self._model, self._units, self._retries = _ExecutionModel(problem), units, retries
         self._values: dict[State, tuple[Fraction, ...]] = {}
         if len(units) > POLICY_LIMITS.units:
             raise _TooManyStates
@@ -191,14 +192,14 @@ class _Optimum:
 
         Raises :class:`_TooManyStates` beyond the limit.
         """
-        if self._world.goals <= state:
+        if self._model.goals <= state:
             return (Fraction(1),) * (self._retries + 1)
         if state not in self._values:
             if len(self._values) == POLICY_LIMITS.states:
                 raise _TooManyStates
             self._values[state] = ()  # counts while it is being computed
             after = [
-                (self._world.rate(unit), self._value(state | self._world.makes(unit)))
+                (self._model.rate(unit), self._value(state | self._model.makes(unit)))
                 for unit in self._choices(state)
             ]
             values: list[Fraction] = []
@@ -211,10 +212,10 @@ class _Optimum:
 
     def _choices(self, state: State) -> list[int]:
         """Return the units that can be executed in a state and add something; a necessary one alone."""
-        world = self._world
-        useful = [unit for unit in self._units if not world.makes(unit) <= state]
-        ready = [unit for unit in useful if world.needs(unit) <= state]
-        return next(([unit] for unit in ready if world.is_necessary(unit, state, useful)), ready)
+        model = self._model
+        useful = [unit for unit in self._units if not model.makes(unit) <= state]
+        ready = [unit for unit in useful if model.needs(unit) <= state]
+        return next(([unit] for unit in ready if model.is_necessary(unit, state, useful)), ready)
 
 
 def _bound(problem: Problem, units: Sequence[int], retries: int) -> Fraction:
@@ -222,12 +223,12 @@ def _bound(problem: Problem, units: Sequence[int], retries: int) -> Fraction:
 
     It is the chance that the necessary units fail at most ``retries`` times in total.
     """
-    world = _World(problem)
+    model = _ExecutionModel(problem)
     chances = [Fraction(1)] + [Fraction(0)] * retries  # by the number of failures so far
     for unit in units:
-        if not world.is_necessary(unit, State(), units):
+        if not model.is_necessary(unit, State(), units):
             continue
-        rate = world.rate(unit)
+        rate = model.rate(unit)
         for failures in range(retries + 1):
             earlier = chances[failures - 1] if failures else Fraction(0)  # of this unit, changed already
             chances[failures] = rate * chances[failures] + (1 - rate) * earlier

@@ -15,15 +15,21 @@ if TYPE_CHECKING:
 
 
 class Execution(NamedTuple):
-    """The ports of an action: one execution of a functional unit.
+    """One execution of a functional unit: the ports of an action in a behaviour tree.
 
     Object nodes have their names in PDDL, such as ``o46-ice-cubed-in-drinking-glass``.
 
-    ``step``: the number of the step. ``unit``: the id of the functional unit. ``motion``: its motion.
-    ``needs``: nodes that have to be there. ``makes``: nodes that are there afterwards.
-    ``acted_on``: nodes that the motion is done to. ``tools``: nodes that it is done with.
-    ``origins``, ``destinations``: places that the inputs, and the outputs, are in, on or at.
-    ``rate``: the success rate. ``duration``: in seconds. Both are ``None`` if they are not known.
+    ``step``: the number of the step, from 1.
+    ``unit``: the id of the functional unit.
+    ``motion``: its motion.
+    ``needs``: nodes that have to be available.
+    ``makes``: nodes that are available afterwards.
+    ``acted_on``: nodes that the motion is done to.
+    ``tools``: nodes that it is done with.
+    ``origins``: places that the inputs are in, on or at.
+    ``destinations``: places that the outputs are in, on or at.
+    ``rate``: the success rate; ``None`` if it is not known.
+    ``duration``: the duration in seconds; ``None`` if it is not known.
 
     Example:
         >>> foon_asp.Execution(1, 26, "twist", ("o43-ice",), ("o46-ice",)).motion
