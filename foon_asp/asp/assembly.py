@@ -169,20 +169,20 @@ def ready_made_program(problem: Problem, settings: Settings, warn: Callable[[str
     from foon_asp.rules.parameter_names import unknown_parameters  # noqa: PLC0415
 
     network = problem.network  # reading a part of a store takes longer than searching it
-    large = len(network) > SEARCH.units_without_clingo and not network.object_numbers
-    if (large and rules.shrinking) or not rules.fit(problem):
+    is_large = len(network) > SEARCH.units_without_clingo and not network.object_numbers
+    if (is_large and rules.shrinking) or not rules.fit(problem):
         return None
     for message in unknown_parameters(settings.constraints, settings.constants, FactValues(problem)):
         warn(message)
-    plain = assemble(settings._replace(constraints=(), constants=()), warn, problem=problem)
+    without_rules = assemble(settings._replace(constraints=(), constants=()), warn, problem=problem)
     constants = [word for setting in rules.constants.items() for word in ("-c", "=".join(setting))]
-    whole = plain._replace(
-        files=(*plain.files, *rules.files),
-        arguments=(*constants, *plain.arguments),
+    whole_program = without_rules._replace(
+        files=(*without_rules.files, *rules.files),
+        arguments=(*constants, *without_rules.arguments),
         own=False,
         looked_at=rules.looked_at,
     )
-    return plain._replace(own=False, ready_made=rules, whole=whole)
+    return without_rules._replace(own=False, ready_made=rules, whole=whole_program)
 
 
 def _warn_of_names(
@@ -351,14 +351,14 @@ def rules_digest(
     return {"rules": hashlib.sha256(content.encode()).hexdigest()[:16]}
 
 
-def _encodings_folder_for(path: Path | None, ours: Path) -> Path:
+def _encodings_folder_for(path: Path | None, built_in_folder: Path) -> Path:
     """Return the folder of encodings: ``path``, a built-in folder of that name, or ``ours`` without a path.
 
     Raises :class:`UserError` if the folder has no encodings.
     """
     if path is None:
-        return ours
-    folder = ours / path.name if not path.is_dir() and path.name == str(path) else path
+        return built_in_folder
+    folder = built_in_folder / path.name if not path.is_dir() and path.name == str(path) else path
     if any((folder / name).is_file() for name in ENCODING_FILES):
         return folder
     names = ", ".join(ENCODING_FILES)
@@ -383,4 +383,4 @@ def _clingo_options(options: tuple[str, ...]) -> tuple[str, ...]:
             raise UserError(f"found {option!r} after --, expected options of clingo, --NAME=VALUE")
         if any(reserved.startswith(name) for reserved in _RESERVED):
             raise UserError(f"the option {option!r} would change what an answer means, so it cannot be set")
-    return (*(ours for ours in CLINGO_OPTIONS if ours.partition("=")[0] not in names), *options)
+    return (*(default for default in CLINGO_OPTIONS if default.partition("=")[0] not in names), *options)

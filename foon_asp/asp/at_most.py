@@ -15,10 +15,10 @@ def better_than(incumbents: Iterable[Costs], objectives: Iterable[Objective]) ->
     result is for ``bounded`` of :class:`foon_asp.asp.Settings`. Raises :class:`UserError` for numbers beyond
     those of clingo.
     """
-    by = tuple(objectives)
-    if all(objective.row.whole for objective in by):
-        return _integer_bounds({o: int(costs.measure(o)) - 1 for o in by} for costs in incumbents)
-    below = tuple({o: costs.measure(o) for o in by} for costs in incumbents)
+    summed = tuple(objectives)
+    if all(objective.row.whole for objective in summed):
+        return _integer_bounds({o: int(costs.measure(o)) - 1 for o in summed} for costs in incumbents)
+    below = tuple({o: costs.measure(o) for o in summed} for costs in incumbents)
     return Bounded("", (question_encoding("at_most.lp"),), below)
 
 

@@ -64,17 +64,19 @@ def bare_program(
         if soft:
             raise UserError("soft constraints are not built for items that are used up")
         executions = most_executions(problem, objectives, settings)
-        by = levels(tuple(objectives))
-        scales = Scales(problem, list(executions), by)
-        facts = write_facts(problem, list(executions), scales, program.looked_at) + write_objectives(by)
-        number = problem.network.unit_number
+        objective_levels = levels(tuple(objectives))
+        scales = Scales(problem, list(executions), objective_levels)
+        facts = write_facts(problem, list(executions), scales, program.looked_at) + write_objectives(
+            objective_levels
+        )
+        unit_number = problem.network.unit_number
         return _bare_program_of(
-            program, facts + write_times({number(unit): bounds for unit, bounds in executions.items()})
+            program, facts + write_times({unit_number(unit): bounds for unit, bounds in executions.items()})
         )
     prepared = prepare(problem, objectives, settings, program._replace(understood=None))
     if prepared.tree is None:  # with all units, bare clingo can prove that a goal cannot be made
-        everything = reach(problem)._replace(units=tuple(range(len(problem.network))))
-        units = relevant_units(problem, everything) if program.own else everything.units
+        all_reached = reach(problem)._replace(units=tuple(range(len(problem.network))))
+        units = relevant_units(problem, all_reached) if program.own else all_reached.units
         prepared = replace(prepared, units=units)
     return _bare_program_of(program, prepared.facts + write_objectives(prepared.levels) + penalty)
 
@@ -106,8 +108,8 @@ def bare_plan_program(
     facts = write_facts(
         problem, list(executions), Scales(problem, list(executions), objectives), program.looked_at
     )
-    number = problem.network.unit_number
-    caps = {unit: (number(unit), cap) for unit, cap in executions.items()}
+    unit_number = problem.network.unit_number
+    caps = {unit: (unit_number(unit), cap) for unit, cap in executions.items()}
     return _bare_program_of(program, facts + write_objectives(objectives)), caps
 
 

@@ -68,9 +68,9 @@ def relax(
     """
     numbered: list[IntegrityConstraint] = []
     rules: dict[str, Source] = {}
-    checked = tuple(dict.fromkeys(map(find_constraint, constraints)))
-    files = loaded((*map(find_constraint, before), *checked))
-    for constraint in checked:
+    distinct = tuple(dict.fromkeys(map(find_constraint, constraints)))
+    files = loaded((*map(find_constraint, before), *distinct))
+    for constraint in distinct:
         _check_alone(files[constraint], deadline or Deadline())
         settings, original_rules = constants, files[constraint]
         if isinstance(constraint, LibraryUse):
@@ -93,7 +93,7 @@ def relax(
             rules[rule] = source_of(statement)
     encoding = question_encoding("soft.lp" if soft else "clash.lp")
     text = "".join(f"{rule}\n" for rule in rules)
-    return tuple(numbered), Relaxed(checked, text, encoding, rules, tuple(files.values()))
+    return tuple(numbered), Relaxed(distinct, text, encoding, rules, tuple(files.values()))
 
 
 def _statements(rules: Loaded) -> list[AST]:

@@ -113,11 +113,12 @@ class Postconditions:
         assert outcome.costs is not None
         units, costs = outcome.units, outcome.costs
         self.require(len(set(units)) == len(units), lambda: f"a unit is twice in the tree {list(units)}")
-        anew = self.problem.costs(units)
+        recomputed = self.problem.costs(units)
         self.require(
-            costs == anew,
+            costs == recomputed,
             lambda: (
-                f"the answer says {_costs_text(costs)}, but the tree {list(units)} costs {_costs_text(anew)}"
+                f"the answer says {_costs_text(costs)}, "
+                f"but the tree {list(units)} costs {_costs_text(recomputed)}"
             ),
         )
         self.require(
@@ -132,31 +133,31 @@ class Postconditions:
             self._require_agreement(outcome, costs, reduced, reduced.costs)
 
     def require_equal_costs(
-        self, tree: Collection[int], chosen: Collection[int], by: Sequence[Objective]
+        self, tree: Collection[int], chosen: Collection[int], objectives: Sequence[Objective]
     ) -> None:
         """Require that two trees, given by unit ids, cost the same by some objectives."""
-        ours, theirs = self.problem.costs(tree), self.problem.costs(chosen)
+        tree_costs, chosen_costs = self.problem.costs(tree), self.problem.costs(chosen)
         self.require(
-            ours.key(by) == theirs.key(by),
+            tree_costs.key(objectives) == chosen_costs.key(objectives),
             lambda: (
-                f"the tree {sorted(tree)} is to be as good as {sorted(chosen)} by {', '.join(by)}, "
-                f"but costs {_costs_text(ours)} and not {_costs_text(theirs)}"
+                f"the tree {sorted(tree)} is to be as good as {sorted(chosen)} by {', '.join(objectives)}, "
+                f"but costs {_costs_text(tree_costs)} and not {_costs_text(chosen_costs)}"
             ),
         )
 
-    def require_no_better(self, harder: Outcome, easier: Outcome, by: str) -> None:
+    def require_no_better(self, harder: Outcome, easier: Outcome, description: str) -> None:
         """Require that the tree of ``harder`` is no better than the proved optimum of ``easier``.
 
-        The question of ``easier`` allows more trees; ``by`` names it in the message. Nothing is checked if
-        its optimum is not proved, or if ``harder`` has no tree.
+        The question of ``easier`` allows more trees; ``description`` names it in the message. Nothing is
+        checked if its optimum is not proved, or if ``harder`` has no tree.
         """
         if harder.costs is None or easier.status not in {Status.OPTIMAL, Status.INFEASIBLE}:
             return
-        theirs = easier.costs
+        easier_costs = easier.costs
         self.require(
-            theirs is not None and harder.costs.key(self.levels) >= theirs.key(self.levels),
+            easier_costs is not None and harder.costs.key(self.levels) >= easier_costs.key(self.levels),
             lambda: (
-                f"the best tree {by} costs {_costs_text(theirs)}, "
+                f"the best tree {description} costs {_costs_text(easier_costs)}, "
                 f"but a question with fewer trees has one for {_costs_text(harder.costs)}"
             ),
         )
@@ -171,15 +172,15 @@ class Postconditions:
                 f"but the bounds are {list(map(_number_text, outcome.bounds.values()))}"
             ),
         )
-        for objective, have in exact.items():
+        for objective, cost in exact.items():
             bound = outcome.bounds.get(objective)
-            if bound is None or (bound > have if multiplies(objective) else bound < have):
+            if bound is None or (bound > cost if multiplies(objective) else bound < cost):
                 return  # later objectives count among better trees only
             self.require(
-                bound == have,
+                bound == cost,
                 partial(
                     "the tree has {} by {}, which the bound {} rules out".format,
-                    _number_text(have),
+                    _number_text(cost),
                     objective,
                     _number_text(bound),
                 ),
@@ -234,7 +235,7 @@ class Postconditions:
             words += ["--rule" if isinstance(constraint, RuleText) else "--constraint", str(constraint)]
         if settings.replaced is not None:
             words += ["--encodings", str(settings.replaced)]
-        others = {
+        other_settings = {
             "constants": ", ".join(settings.constants),
             "reductions": ", ".join(sorted(settings.reductions)) or "none",
             "options of clingo": " ".join(settings.clingo_options),
@@ -248,7 +249,7 @@ class Postconditions:
             [
                 "what was asked, with the network, kitchen and rates of your command:",
                 f"  {shlex.join(words)}",
-                *(f"  {name}: {text}" for name, text in others.items() if text),
+                *(f"  {name}: {text}" for name, text in other_settings.items() if text),
             ]
         )
 
@@ -264,5 +265,5 @@ def _number_text(figure: int | Fraction | None) -> str:
     """Return a number as text, ``3/5`` or ``unknown``, even if it has more digits than ``str`` allows."""
     if figure is None:
         return "unknown"
-    above, below = Decimal(figure.numerator), Decimal(figure.denominator)
-    return f"{above}" if below == 1 else f"{above}/{below}"
+    numerator, denominator = Decimal(figure.numerator), Decimal(figure.denominator)
+    return f"{numerator}" if denominator == 1 else f"{numerator}/{denominator}"

@@ -113,8 +113,8 @@ class Prepared:
 
         tree = replace(self, units=tuple(sorted(units)), program=program)
         numbers = list(map(self.problem.network.unit_number, tree.units))
-        ended = tree.run(write_given(numbers), "ignore", (question_encoding("second_opinion.lp"),))
-        return True if ended.units is not None else (False if ended.exhausted else None)
+        run = tree.run(write_given(numbers), "ignore", (question_encoding("second_opinion.lp"),))
+        return True if run.units is not None else (False if run.exhausted else None)
 
     def require_kept(self, units: Collection[int]) -> None:
         """Require that a tree keeps to the user rules that were applied before the search.
@@ -194,20 +194,20 @@ def prepare(
     """
     if problem.items is not None:
         raise UserError("this question is not built for items that are used up")
-    by = levels(tuple(objectives))
-    problem.require_known_for(by)
-    program.require_facts(problem, by)
-    for objective in program.named.intersection(by):
+    objective_levels = levels(tuple(objectives))
+    problem.require_known_for(objective_levels)
+    program.require_facts(problem, objective_levels)
+    for objective in program.named.intersection(objective_levels):
         raise UserError(
             f"found #const {objective} in a constraint or an encoding, but that is the name of a measure: "
             "give one of them another name"
         )
-    if sum(not objective.row.whole for objective in by) > 1:
+    if sum(not objective.row.whole for objective in objective_levels) > 1:
         from foon_asp.encoding.scales import require_one_rounded  # noqa: PLC0415 (few questions have two)
 
-        require_one_rounded(problem, by)
+        require_one_rounded(problem, objective_levels)
     deadline = settings.begun
-    prepared = Prepared(problem, by, settings, deadline, program)
+    prepared = Prepared(problem, objective_levels, settings, deadline, program)
     try:
         if problem.measures:
             with deadline.watched("measuring units"):
@@ -225,7 +225,7 @@ def prepare(
                 presolve = partial(reduce_under_rules, redundant=prepared.redundant, course=course)
             reduced = presolve(
                 kept,
-                by,
+                objective_levels,
                 NONE if program.bounded else settings.reductions,
                 lambda: deadline.passed,
                 Bounds(listener) if prepared.unsettled else listener,

@@ -67,21 +67,21 @@ class Ranked:
         avoided = ""
         while True:
             text = write_objectives(self.levels) + avoided
-            ended = self._prepared.run(text, encodings=(question_encoding("other_trees.lp"),))
-            if ended.units is None:
+            run = self._prepared.run(text, encodings=(question_encoding("other_trees.lp"),))
+            if run.units is None:
                 break
-            tree = self._tree_of_numbers(ended.units)
+            tree = self._tree_of_numbers(run.units)
             insort(waiting, tree, key=lambda entry: (entry.costs.key(self.levels), sorted(entry.units)))
-            if not ended.exhausted:
+            if not run.exhausted:
                 break
-            self._require_in_order(ended, tree, found)
+            self._require_in_order(run, tree, found)
             while waiting and self._is_settled(waiting[0], tree.rounded):
                 yield self._next_in_order(waiting)
             if not tree.units:  # every other tree contains it
                 break
             avoided += write_avoided(len(found), map(self.problem.network.unit_number, tree.units))
             found.append(tree)
-        if not ended.exhausted:
+        if not run.exhausted:
             self.pending = [(tree.units, tree.costs) for tree in waiting]
             return
         self.complete = True
@@ -107,24 +107,25 @@ class Ranked:
         )
         return _Tree(order, costs, tuple(rounded))
 
-    def _require_in_order(self, ended: Run, tree: _Tree, earlier: Sequence[_Tree]) -> None:
+    def _require_in_order(self, run: Run, tree: _Tree, earlier: Sequence[_Tree]) -> None:
         """Require that clingo's costs of a tree are right and in order, and that it contains no earlier tree.
 
         Raises :class:`UserError` where replaced encodings measure something else.
         """
         units, _, rounded = tree
-        agree = [cost % 2**32 for cost in rounded] == [cost % 2**32 for cost in ended.cost]
-        last = earlier[-1].rounded if earlier else ()
-        if not (agree and last <= rounded) and self._program.replaced:
+        agree = [cost % 2**32 for cost in rounded] == [cost % 2**32 for cost in run.cost]
+        last_rounded = earlier[-1].rounded if earlier else ()
+        if not (agree and last_rounded <= rounded) and self._program.replaced:
             raise UserError(
                 f"{self._program.files[1]} does not measure what the objectives {', '.join(self.levels)} "
                 "measure here, so trees cannot be ordered"
             )
         self._holds.require(
-            agree, lambda: f"clingo reports the costs {list(ended.cost)}, the units {units} cost {rounded}"
+            agree, lambda: f"clingo reports the costs {list(run.cost)}, the units {units} cost {rounded}"
         )
         self._holds.require(
-            last <= rounded, lambda: f"the tree {units} costs {rounded}, but comes after one for {last}"
+            last_rounded <= rounded,
+            lambda: f"the tree {units} costs {rounded}, but comes after one for {last_rounded}",
         )
         self._holds.require(
             not any(set(units).issuperset(before.units) for before in earlier),
@@ -143,10 +144,10 @@ class Ranked:
 
     def _is_settled(self, tree: _Tree, last: Rounded) -> bool:
         """Whether a tree is at least as good as every tree whose rounded costs are ``last`` or more."""
-        by = self._prepared.scales.rounded
-        if by is None:
+        rounded_objective = self._prepared.scales.rounded
+        if rounded_objective is None:
             return True
-        position = self.levels.index(by)
+        position = self.levels.index(rounded_objective)
         if last[:position] > tree.rounded:  # with equal prefixes, the prefix is less
             return True
         return last[position] >= tree.rounded[position] + self._prepared.scales.doubt(tree.units)

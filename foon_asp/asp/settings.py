@@ -83,8 +83,8 @@ class Settings(NamedTuple):
         If files of the built-in folder itself were changed, this is the built-in folder.
         """
         if self.encodings is None:
-            ours = encodings_folder()
-            return None if all(is_own(ours / name) for name in ENCODING_FILES) else ours
+            built_in_folder = encodings_folder()
+            return None if all(is_own(built_in_folder / name) for name in ENCODING_FILES) else built_in_folder
         return self.encodings
 
     @property

@@ -317,17 +317,23 @@ class _Solver:
         program, number = self.program, self.problem.network.unit_number
         files = (question_encoding("loose_ends.lp"), *program.files[1:], question_encoding("required.lp"))
         # shrinking cores takes longer than it saves here
-        others, quick = (
+        replaced_options, quick_options = (
             ((SHRINKING,), ()) if self.prepared.settings.clingo_options else (CLINGO_OPTIONS, _QUICK_OPTIONS)
         )
-        arguments = (*(argument for argument in program.arguments if argument not in others), *quick)
+        arguments = (
+            *(argument for argument in program.arguments if argument not in replaced_options),
+            *quick_options,
+        )
         program = program._replace(files=files, arguments=arguments)
         landmarks = subproblem.landmarks()
         required = write_required([map(number, sorted(landmark)) for landmark in landmarks])
         before = subproblem.left_of(self._mattered)
         max_units = SEARCH.explored_units + len(before)
         explored = subproblem.with_only_achievers(
-            before.union(tree, *(e for e in landmarks if len(e) <= SEARCH.nearest_units)), max_units
+            before.union(
+                tree, *(landmark for landmark in landmarks if len(landmark) <= SEARCH.nearest_units)
+            ),
+            max_units,
         )
         by, fewest = _UNITS_ONLY, 0  # fast, and enough to prove that there is no tree
         for _ in range(SEARCH.open_rounds):
@@ -517,8 +523,8 @@ class _Solver:
         """
         question = objectives, len(products), wanted, fewer
         if self._ground:
-            before, program = self._ground
-            if before == question:
+            last_question, program = self._ground
+            if last_question == question:
                 return program
             program.close()
         from foon_asp.encoding import fact_writer  # noqa: PLC0415 (often there is nothing left to ask)
@@ -577,12 +583,16 @@ class _Solver:
         if scales.rounded not in self.levels:  # a kept program has other levels, too
             return best, True
         position = self.levels.index(scales.rounded)
-        before, by, after = self.levels[:position], self.levels[: position + 1], self.levels[position + 1 :]
+        earlier_levels, rounded_levels, later_levels = (
+            self.levels[:position],
+            self.levels[: position + 1],
+            self.levels[position + 1 :],
+        )
         totals: list[dict[int, int]] = []
-        fixed = [scales.weight(objective, best) for objective in before]
+        fixed = [scales.weight(objective, best) for objective in earlier_levels]
         chosen, rival, wanted = best, best, [0]  # indices of the totals as good as that of the chosen tree
         # a second search with open preconditions is slow
-        at_once = self._open_preconditions and after == _UNITS_ONLY
+        at_once = self._open_preconditions and later_levels == _UNITS_ONLY
         while True:
             # A total that is better or as good has a weight of at most W + n - 1, where n units of the tree
             # weigh less than they cost, and of at most W where none does.
@@ -593,29 +603,33 @@ class _Solver:
             band = scales.weight(scales.rounded, chosen) + max(0, doubt - 1)
             mode = ",".join(["opt", *map(str, fixed), str(band)])
             fewer = wanted if at_once and len(chosen) > fewest else ()
-            run = self._run(by, totals, opt_mode=mode, fewer=dict.fromkeys(fewer, len(chosen)))
+            run = self._run(rounded_levels, totals, opt_mode=mode, fewer=dict.fromkeys(fewer, len(chosen)))
             if not run.exhausted or (at_once and run.units is None):
                 return chosen, run.exhausted
             if run.units is None:
                 break
             rival = run.units
-            self._require_measures(self._measures_agree(rival, run.cost, by))
-            ours, theirs = (self.listener.costs(tree).key(by) for tree in (chosen, rival))
-            if theirs < ours:
+            self._require_measures(self._measures_agree(rival, run.cost, rounded_levels))
+            chosen_costs, rival_costs = (
+                self.listener.costs(tree).key(rounded_levels) for tree in (chosen, rival)
+            )
+            if rival_costs < chosen_costs:
                 chosen, wanted = rival, []
-            elif theirs == ours and at_once:
+            elif rival_costs == chosen_costs and at_once:
                 chosen = min(chosen, rival, key=len)
-            if theirs <= ours:
+            if rival_costs <= chosen_costs:
                 wanted.append(len(totals))
-        if not after or (after == _UNITS_ONLY and len(chosen) == fewest):
+        if not later_levels or (later_levels == _UNITS_ONLY and len(chosen) == fewest):
             return chosen, True
         for number in wanted:
-            limits = (scales.weight(objective, chosen) for objective in after)
+            limits = (scales.weight(objective, chosen) for objective in later_levels)
             mode = ",".join(["opt", *map(str, fixed), *map(str, limits)])
-            run = self._run((*before, *after), totals, number, mode)
+            run = self._run((*earlier_levels, *later_levels), totals, number, mode)
             if run.units is not None:
-                self._require_measures(self._measures_agree(run.units, run.cost, (*before, *after)))
-                self.holds.require_equal_costs(run.units, chosen, by)
+                self._require_measures(
+                    self._measures_agree(run.units, run.cost, (*earlier_levels, *later_levels))
+                )
+                self.holds.require_equal_costs(run.units, chosen, rounded_levels)
                 chosen = run.units
             if not run.exhausted:
                 return chosen, False
@@ -641,11 +655,11 @@ class _Solver:
             ),
         )
         listed = self.levels if len(cost) == len(self.levels) else objectives
-        ours = [weights.get(objective, 0) for objective in listed]
-        agree = [mine % 2**32 for mine in ours] == [theirs % 2**32 for theirs in cost]
+        our_weights = [weights.get(objective, 0) for objective in listed]
+        agree = [weight % 2**32 for weight in our_weights] == [clingo_cost % 2**32 for clingo_cost in cost]
         self.holds.require(
             agree or self.program.replaced,
-            lambda: f"clingo reports the costs {list(cost)}, the units {sorted(units)} cost {ours}",
+            lambda: f"clingo reports the costs {list(cost)}, the units {sorted(units)} cost {our_weights}",
         )
         if not agree:
             self.listener.reporter.warning(

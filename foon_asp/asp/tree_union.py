@@ -105,22 +105,29 @@ class _UnionSearch:
         prepared, deadline = self._prepared, self._prepared.deadline
         if not prepared.program.own or prepared.unsettled or not prepared.settings.reductions:
             return prepared.units
-        problem, by = prepared.kept or prepared.problem, prepared.levels
+        problem, levels = prepared.kept or prepared.problem, prepared.levels
         try:
             reduced = reduce_under_rules(
-                problem, by, expired=lambda: deadline.passed, redundant=prepared.redundant
+                problem, levels, expired=lambda: deadline.passed, redundant=prepared.redundant
             )
             subproblem, costs = reduced.subproblem, reduced.costs
             if subproblem is None or costs is None:
                 return prepared.units
             if self._worse:
-                none = dict.fromkeys(by, Fraction(0)) | {o: Fraction(1) for o in by if multiplies(o)}
-                limit = costs.of(Costs({**none, by[0]: self._limit()}))
+                zero_costs = dict.fromkeys(levels, Fraction(0)) | {
+                    o: Fraction(1) for o in levels if multiplies(o)
+                }
+                limit = costs.of(Costs({**zero_costs, levels[0]: self._limit()}))
             else:
                 limit = subproblem.total(self._in_some) + costs.doubt
             with deadline.watched("cutting the network"):
                 kept = at_costs(
-                    subproblem, by, costs, lambda: deadline.passed, self._in_some, below=limit + 1
+                    subproblem,
+                    levels,
+                    costs,
+                    lambda: deadline.passed,
+                    self._in_some,
+                    below=limit + 1,
                 ).units
         except KeyboardInterrupt:
             deadline.interrupt()
@@ -133,11 +140,11 @@ class _UnionSearch:
 
         It is ``opt``, without a bound, if worse trees count or costs are rounded.
         """
-        scales, by = self._prepared.scales, self._prepared.levels
+        scales, levels = self._prepared.scales, self._prepared.levels
         if self._worse or scales.rounded is not None:
             return "opt"
         assert self._best.units is not None
-        return ",".join(["opt", *(str(scales.weight(objective, self._best.units)) for objective in by)])
+        return ",".join(["opt", *(str(scales.weight(objective, self._best.units)) for objective in levels)])
 
     def _limit(self) -> Fraction:
         """Return a value of the first objective that is just worse than that of every tree that counts."""
@@ -153,15 +160,15 @@ class _UnionSearch:
         ``question`` are facts that ask for such a tree. Returns ``True`` if one was found, ``False`` if there
         is none, ``None`` at a limit.
         """
-        problem, by = self._prepared.problem, self._prepared.levels
+        problem, levels = self._prepared.problem, self._prepared.levels
         while True:
-            text = write_objectives(by) + question + self._settled
-            ended = self._prepared.run(text, self._opt_mode, encodings=(question_encoding("union.lp"),))
-            if not ended.exhausted:
+            text = write_objectives(levels) + question + self._settled
+            run = self._prepared.run(text, self._opt_mode, encodings=(question_encoding("union.lp"),))
+            if not run.exhausted:
                 return None
-            if ended.units is None:
+            if run.units is None:
                 return False
-            units = {problem.network.unit_of_number(number) for number in ended.units}
+            units = {problem.network.unit_of_number(number) for number in run.units}
             order = self._prepared.holds.require_executable([unit for unit in units if unit is not None])
             self._prepared.require_kept(order)
             if self._is_above_limit(order):
@@ -169,10 +176,10 @@ class _UnionSearch:
             tree = self._irredundant_subtree(order) if self._worse else frozenset(order)
             counts = self._is_within_limit(tree)
             if counts:
-                before = len(self._in_some), len(self._in_every)
+                sizes = len(self._in_some), len(self._in_every)
                 self._in_some |= tree
                 self._in_every &= tree
-            if not counts or (len(self._in_some), len(self._in_every)) == before:
+            if not counts or (len(self._in_some), len(self._in_every)) == sizes:
                 self._settled += write_avoided(self._avoided, map(self._number, sorted(tree)))
                 self._avoided += 1
                 continue
@@ -195,19 +202,19 @@ class _UnionSearch:
 
     def _is_within_limit(self, tree: Collection[int]) -> bool:
         """Whether the exact costs of a tree are within the cost limit, so that the tree counts."""
-        by, costs = self._prepared.levels, self._prepared.problem.costs(tree)
+        levels, costs = self._prepared.levels, self._prepared.problem.costs(tree)
         if not self._worse:
-            return costs.key(by) == self._costs.key(by)
-        figure, limit = costs.measure(by[0]), self._limit()
-        return figure > limit if multiplies(by[0]) else figure < limit
+            return costs.key(levels) == self._costs.key(levels)
+        figure, limit = costs.measure(levels[0]), self._limit()
+        return figure > limit if multiplies(levels[0]) else figure < limit
 
     def _irredundant_subtree(self, tree: Sequence[int]) -> frozenset[int]:
         """Return the unit ids of an irredundant subtree of a tree."""
         problem, kept = self._prepared.problem, set(tree)
         for unit in reversed(tree):
-            restriction = Restriction(lambda u, kept=kept, unit=unit: u == unit or u not in kept)  # type: ignore[misc]
-            fewer = replace(problem, restriction=restriction)
-            reached = reach(fewer)
+            restriction = Restriction(lambda other, kept=kept, unit=unit: other == unit or other not in kept)  # type: ignore[misc]
+            without_unit = replace(problem, restriction=restriction)
+            reached = reach(without_unit)
             if all(reached.available[goal] for goal in problem.goals):
                 kept = set(reached.units)
         return frozenset(kept)

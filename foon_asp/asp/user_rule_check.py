@@ -46,26 +46,28 @@ class UserRuleCheck:
         lacks, or if rules of another form exclude the tree.
         """
         self._program.require_facts(problem, (Objective.UNITS,))
-        ended = (
+        clingo_run = (
             self._run_on_tree(problem, tree) if problem.items is None else self._run_on_plan(problem, tree)
         )
-        if not ended.exhausted:
+        if not clingo_run.exhausted:
             self._settings.begun.check()
             raise KeyboardInterrupt
-        if ended.units is None:
+        if clingo_run.units is None:
             raise UserError(
                 "the rules that are added exclude every tree by more than rules that begin with :-, so it "
                 "cannot be said which of them a tree breaks"
             )
-        ways = ended.atoms["_broken"]
+        ways = clingo_run.atoms["_broken"]
         return tuple(rule for rule in self._rules if ways.get(rule.number))
 
     def _run_on_tree(self, problem: Problem, tree: Collection[int]) -> Run:
         """Run clingo on the facts of a tree, with constraints rewritten to count their broken instances."""
         used = set(tree)
         units = sorted(used if self.local else used.union(reach(problem).units))
-        by = levels((Objective.UNITS,))
-        prepared = Prepared(problem, by, self._settings, self._settings.begun, self._program, tuple(units))
+        objective_levels = levels((Objective.UNITS,))
+        prepared = Prepared(
+            problem, objective_levels, self._settings, self._settings.begun, self._program, tuple(units)
+        )
         numbers = list(map(problem.network.unit_number, sorted(used)))
         return prepared.run(write_tree(numbers) + write_least_penalty(1), predicates=[("_broken", 2)])
 

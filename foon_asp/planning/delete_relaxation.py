@@ -89,10 +89,10 @@ class _Relaxation:
         """Return some facts with the conditions of the effects that add them, and so on transitively."""
         effects = [effect for operator in self._task.operators for effect in operator.effects]
         while True:
-            new = set(chain(*(effect.condition for effect in effects if effect.fact in facts))) - facts
-            if not new:
+            missing = set(chain(*(effect.condition for effect in effects if effect.fact in facts))) - facts
+            if not missing:
                 return facts
-            facts = facts | new
+            facts = facts | missing
 
     def _deletes(self, needed: set[int]) -> bool:
         """Whether an operator deletes a fact of ``needed``, or a condition of an effect that adds one."""
@@ -100,8 +100,10 @@ class _Relaxation:
         for operator in self._task.operators:
             for effect in operator.effects:
                 values = self._values[effect.fact]
-                before = {*operator.preconditions, *effect.condition}.intersection(values) or {*values}
-                if not before.difference([effect.fact]).isdisjoint(needed):
+                possible_before = {*operator.preconditions, *effect.condition}.intersection(values) or {
+                    *values
+                }
+                if not possible_before.difference([effect.fact]).isdisjoint(needed):
                     return True
         return False
 

@@ -128,7 +128,7 @@ def timed_steps(task: ScheduleTask, starts: Sequence[int]) -> list[TimedStep]:
         after[later].add(earlier)
     earliest: dict[int, int] = {}
     for step in sorted(range(len(starts)), key=lambda step: starts[step]):
-        earliest[step] = max((earliest[before] + task.lengths[before] for before in after[step]), default=0)
+        earliest[step] = max((earliest[first] + task.lengths[first] for first in after[step]), default=0)
     return [
         TimedStep(
             earliest[step] * task.tick,

@@ -145,9 +145,11 @@ def units_relevant_to_plans(problem: Problem, reached: Reached) -> set[int]:
         for unit in makers[o]:
             if unit in allowed and unit not in achievers and o in flows[unit].adds:
                 achievers.add(unit)
-                new = [needed for needed in needs[unit] if needed not in objects and needed not in endless]
-                objects.update(new)
-                stack += new
+                newly_needed = [
+                    needed for needed in needs[unit] if needed not in objects and needed not in endless
+                ]
+                objects.update(newly_needed)
+                stack += newly_needed
     return achievers
 
 
