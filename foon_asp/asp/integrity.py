@@ -159,6 +159,7 @@ def _rule_for_broken(rule: AST, number: int) -> str:
 
 
 def _parse_statement(text: str) -> AST:
+    """Return the last statement of a text."""
     statements: list[AST] = []
     parse_string(text, statements.append)
     return statements[-1]

@@ -45,6 +45,7 @@ class Ranked:
         settings: Settings,
         reporter: Reporter | None = None,
     ) -> None:
+        """Assemble the program and prepare the question; only warnings are reported."""
         self._program = assemble(settings, (reporter or Reporter()).warning, problem=problem)
         self._prepared = prepare(problem, objectives, settings, self._program)
         self._holds = self._prepared.holds

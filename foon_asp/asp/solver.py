@@ -127,6 +127,12 @@ class _Solver:
         rules: str = "",
         mattered: set[int] | None = None,
     ) -> None:
+        """Take a prepared question.
+
+        ``listener`` has the incumbent of the reductions, and receives better trees. ``seconds``, the time by
+        phase, is added to. ``rules`` are additional rules as text. ``mattered`` are units to explore first,
+        by id in the whole network; explored units are added to it.
+        """
         self.prepared, self.objectives, self.listener, self.seconds = (
             prepared,
             tuple(objectives),

@@ -70,6 +70,7 @@ class _UnionSearch:
     """The search: the units seen so far, and the facts that exclude trees that do not count."""
 
     def __init__(self, prepared: Prepared, best: Outcome, worse: Fraction) -> None:
+        """Begin with the units of the ``best`` tree; for ``worse``, see :func:`tree_union`."""
         assert best.units is not None
         assert best.costs is not None
         self._prepared, self._costs, self._worse = prepared, best.costs, worse

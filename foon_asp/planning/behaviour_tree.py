@@ -173,6 +173,7 @@ def _without_braces(name: str) -> str:
 
 
 def _step_name(step: RobotStep) -> str:
+    """Return the name of a step: its number and motion."""
     return escaped(f"{step.step} {step.motion}")
 
 

@@ -71,11 +71,15 @@ class _Model:
         starts, send_lock = self._starts, threading.Lock()
 
         def report(kind: str, value: object) -> None:
+            """Send a message; CP-SAT calls this from several threads."""
             with send_lock:
                 send(answers, (kind, value))
 
         class Listener(library.CpSolverSolutionCallback):  # type: ignore[misc, name-defined]
+            """Callback of CP-SAT that sends each better schedule."""
+
             def on_solution_callback(self) -> None:
+                """Send the starts of the steps, in ticks."""
                 report("found", [self.value(start) for start in starts])
 
         solver = self._solver()

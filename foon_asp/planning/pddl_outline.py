@@ -49,6 +49,7 @@ class PddlOutline:
 
     @cached_property
     def _lines(self) -> list[str]:
+        """The lines of the text."""
         return split_lines(self.text)
 
     def section(self, name: str) -> set[str]:

@@ -115,6 +115,7 @@ class _ExecutionModel:
     """
 
     def __init__(self, problem: Problem) -> None:
+        """Take the goals, kitchen, rates and units of a problem."""
         self.kitchen, self.goals = problem.kitchen, frozenset(problem.goals) - problem.kitchen
         self.rate = cache(lambda unit: Fraction(problem.rate(unit)))
         self.needs = cache(lambda unit: frozenset(problem.needs[unit]) - problem.kitchen)

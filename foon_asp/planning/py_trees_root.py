@@ -142,7 +142,10 @@ def _leaf(name: str, ask: Callable[[], bool | None]) -> "Behaviour":
     from py_trees.common import Status  # noqa: PLC0415
 
     class Leaf(Behaviour):
+        """The behaviour."""
+
         def update(self) -> "Status":
+            """Return the status of a tick."""
             outcome = ask()
             return Status.RUNNING if outcome is None else Status.SUCCESS if outcome else Status.FAILURE
 

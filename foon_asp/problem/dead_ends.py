@@ -133,6 +133,7 @@ def _sort_achievers(
     """
 
     def key(blocked: Blocked) -> tuple[bool, int, int]:
+        """Return the sort key of an achiever."""
         return blocked.unit != cheapest, sum(h_values[lack] for lack in blocked.lacks), blocked.unit
 
     return tuple(sorted(units, key=key))

@@ -164,6 +164,7 @@ class Objective(str, metaclass=_IterableOverBuiltIns):
 
 
 def _user_cost(name: str, unit: Measured) -> int | Fraction:
+    """Return the cost of a unit by a user measure."""
     return unit.measure(name)
 
 

@@ -181,6 +181,10 @@ class Problem:
     stand_ins: StandIns | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
+        """Drop repeated goals; drop rates that some motion of the network lacks, and set ``unrated`` then.
+
+        Raises :class:`UserError` without goals.
+        """
         if not self.goals:
             raise UserError("no goal is given")
         object.__setattr__(self, "goals", tuple(dict.fromkeys(self.goals)))

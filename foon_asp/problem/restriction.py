@@ -58,6 +58,7 @@ class FilteredSets(Sequence[tuple[int, ...]]):
     @overload
     def __getitem__(self, index: slice) -> Sequence[tuple[int, ...]]: ...
     def __getitem__(self, index: int | slice) -> tuple[int, ...] | Sequence[tuple[int, ...]]:
+        """Return a set as a tuple without removed units; for a slice, return a filtered sequence."""
         if isinstance(index, slice):
             return FilteredSets(self._sets[index], self._removed)
         units = self._filtered.get(index)
