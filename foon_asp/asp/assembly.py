@@ -73,14 +73,14 @@ def assemble(
     added = tuple(dict.fromkeys(map(find_constraint, settings.constraints)))
     relaxed, bounded = settings.relaxed, settings.bounded
     unrelaxed, rules = added, ""
-    questions: tuple[Path, ...] = ()
+    question_files: tuple[Path, ...] = ()
     if relaxed is not None:
         unrelaxed = tuple(constraint for constraint in added if constraint not in relaxed.constraints)
         added = tuple(dict.fromkeys((*added, *relaxed.constraints)))
-        questions = (relaxed.encoding,)
+        question_files = (relaxed.encoding,)
         rules = relaxed.rules
     if bounded is not None:
-        questions += bounded.files
+        question_files += bounded.files
         rules += bounded.rules
     looked_at: frozenset[tuple[str, int]] = frozenset()
     text, named = "", frozenset[str]()
@@ -101,7 +101,7 @@ def assemble(
             prepare()  # while files are parsed
 
         parsed = [encoding.read_encoding(file) for file in base if endless]
-        question_encodings = [encoding.read_encoding(file) for file in questions]
+        question_encodings = [encoding.read_encoding(file) for file in question_files]
         files = stating.loaded(added)
         added_encodings = [encoding.read_encoding(files[constraint]) for constraint in added]
         faults = map(str, encoding.check_encodings(added_encodings, parsed, question_encodings))
@@ -129,7 +129,7 @@ def assemble(
         (
             *base,
             *(files[constraint] for constraint in unrelaxed),
-            *questions,
+            *question_files,
             *_overflow_checks(user_encodings),
         ),
         exact_success(),
@@ -143,7 +143,7 @@ def assemble(
         endless=endless,
         constants=tuple(constants),
         encodings=encodings,
-        ours=(*base, *questions),
+        ours=(*base, *question_files),
         understood=understood,
         named=named,
         reads=_optional_predicates([read for read in user_encodings if read.rules not in base]),

@@ -87,8 +87,8 @@ class Prepared:
 
         with self.deadline.watched("writing facts"):
             if self.full_program is not None:  # the predicates that rules read are known
-                read = writing.READ_BY_OURS | self.program.looked_at
-                facts = writing.write_facts_read(self.problem, self.units, read, self.scales)
+                predicates_read = writing.READ_BY_OURS | self.program.looked_at
+                facts = writing.write_facts_read(self.problem, self.units, predicates_read, self.scales)
             else:
                 looked_at = None if self.program.own else self.program.looked_at
                 facts = writing.write_facts(self.problem, self.units, self.scales, looked_at)
@@ -251,8 +251,8 @@ def prepare(
 def _apply_rules(prepared: Prepared, rules: "Rules | ReadyMade") -> Prepared:
     """Apply the user rules that remove units or require sets of units, and return the question.
 
-    If other rules remain, the question is ``unsettled``. It is returned unchanged if rules cannot be applied
-    because they are not local.
+    If other rules remain, the question is ``unsettled``; if no tree can satisfy the rules, it is
+    ``contradicted``. It is returned unchanged if the rules cannot be applied because they are not local.
     """
     if rules.unsettled and not rules.local:
         return prepared

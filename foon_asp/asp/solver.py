@@ -102,8 +102,8 @@ class _IncumbentListener(Listener):
         """Receive a proved lower bound, and report it as one on the first objective."""
         self.reporter.bound(self.levels[0], costs.first(bound))
 
-    def ended(self, run: "Run") -> None:
-        """Receive a finished run of clingo; report its statistics if it has any."""
+    def run_ended(self, run: "Run") -> None:
+        """Receive a finished run of clingo; if it has statistics, report them and note that clingo ran."""
         if run.statistics:
             self.clingo_ran = True
             self.reporter.statistics(run.statistics)
@@ -348,14 +348,14 @@ class _Solver:
             prepared = replace(self.prepared, program=program)
             text = required + write_known(map(number, sorted(explored)))
             run = prepared.run(text + write_objectives(by))
-            self.listener.ended(run)
+            self.listener.run_ended(run)
             if by != self.levels and run.exhausted and run.units is not None:
                 tree = self._unit_ids(run.units)
                 if tree <= explored:  # it keeps to all rules: its cost bounds the optimum
                     by, fewest = self.levels, len(tree)
                     worst = self._current_scales().weight(by[0], tree)
                     run = prepared.run(text + write_objectives(by), f"opt,{worst}")
-                    self.listener.ended(run)
+                    self.listener.run_ended(run)
             if not run.exhausted or run.units is None:
                 return run if run.exhausted else None
             run.units = self._unit_ids(run.units)
@@ -511,7 +511,7 @@ class _Solver:
 
             run = Run()
         self.seconds["solve"] = self.seconds.get("solve", 0.0) + run.solve_seconds
-        self.listener.ended(run)
+        self.listener.run_ended(run)
         if run.units is not None:
             run.units = self._unit_ids(run.units)
         return run
@@ -647,9 +647,9 @@ class _Solver:
     def _measures_agree(self, units: Units, cost: Sequence[int], objectives: Sequence[Objective]) -> bool:
         """Return whether clingo's costs (modulo 2^32) are the weights of the units.
 
-        They may differ only if objectives.lp is replaced: then a warning is reported that its optimum is
-        returned. Also requires that the weights fit the exact costs. clingo may report all levels, with 0 for
-        those not optimized.
+        If they are not, objectives.lp must have been replaced; then a warning is reported. In any case the
+        weights are required to fit the exact costs. ``cost`` may have all levels, with 0 for those not
+        optimized.
         """
         scales, costs = self._current_scales(), self.listener.costs(units)
         weights = {objective: scales.weight(objective, units) for objective in objectives}

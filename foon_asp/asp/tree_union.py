@@ -25,7 +25,7 @@ _JUST_ABOVE = Fraction(1, 10**30)  # a cost that is this much above a limit is a
 class TreeUnion(NamedTuple):
     """The ids of the units that some tree has, and of those that every tree has.
 
-    ``best``: the best tree.
+    ``best``: the outcome with the best tree.
     ``in_some``, ``in_every``: the units that some tree has, and that every tree has, as far as it is known.
     ``undecided``: after a limit, the units that may still change this: units outside ``in_some`` that some
     tree may have, and units in ``in_some`` that every tree may have.
@@ -192,11 +192,11 @@ class _UnionSearch:
         scales = prepared.scales
         for objective in prepared.levels[:1] if self._worse else prepared.levels:
             figure: int | Fraction = costs.measure(objective)
-            best = self._limit() if self._worse else self._costs.measure(objective)
+            limit = self._limit() if self._worse else self._costs.measure(objective)
             if objective is scales.rounded:
                 figure = scales.bound(objective, scales.weight(objective, tree))
-            if figure != best:
-                return figure < best if multiplies(objective) else figure > best
+            if figure != limit:
+                return figure < limit if multiplies(objective) else figure > limit
             if objective is scales.rounded:
                 return False
         return False

@@ -45,8 +45,8 @@ def _domain_lines(task: PlanningTask) -> Iterator[str]:
     yield "; Costs of actions, the most important first:"
     yield from (f";   {scale_words(scale)}" for scale in task.costs.scales)
     yield f"(define (domain {DOMAIN})"
-    numbers = " :numeric-fluents" * bool(task.counted)
-    yield f"  (:requirements :strips :typing{numbers}{' :action-costs' * costed})"
+    numeric_fluents = " :numeric-fluents" * bool(task.counted)
+    yield f"  (:requirements :strips :typing{numeric_fluents}{' :action-costs' * costed})"
     yield "  (:types item)"
     yield "  (:constants"
     yield from (f"    {name} - item ; {_comment(str(network.objects[o]))}" for o, name in task.names.items())

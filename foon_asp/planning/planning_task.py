@@ -120,7 +120,7 @@ def planning_task(
         )
     if by_items and problem.kitchen != endless:
         raise UserError("copies of a stock have no costs in planning tasks: name another objective")
-    bought = endless if by_items else frozenset[int]()  # no unit adds a bought item, or it would be free
+    items_with_cost = endless if by_items else frozenset[int]()  # no unit adds one, or it would be free
     available = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
     reached = reach(replace(problem, kitchen=available))
     allowed: Iterable[int] = range(len(network))
@@ -130,17 +130,17 @@ def planning_task(
             if problem.items is None
             else units_relevant_to_plans(problem, reached)
         )
-    not_added = bought if problem.items is None else endless
+    not_added = items_with_cost if problem.items is None else endless
     flows = {unit: problem.flows[unit] for unit in sorted(allowed)}
     add_effects = {unit: tuple(o for o in flow.adds if o not in not_added) for unit, flow in flows.items()}
     units = [unit for unit, added in add_effects.items() if added]
     needed = {o for unit in units for o in problem.needs[unit]}
-    items = sorted(needed & bought)
+    items = sorted(needed & items_with_cost)
     tree = first_tree(problem, reached) or units
     # a plan with items used up may cost 50 times as much as a tree; a larger ratio would round costs more
     repeats = 1 if problem.items is None else 50
     costs = action_costs(problem, objectives, units, len(items), {*tree} & {*units}, repeats)
-    goals = tuple(goal for goal in problem.goals if goal not in bought)
+    goals = tuple(goal for goal in problem.goals if goal not in items_with_cost)
     nodes = {*goals, *needed, *(o for unit in units for o in add_effects[unit])}
     names = {o: pddl_name("o", network.object_number(o), str(network.objects[o])) for o in sorted(nodes)}
     actions = [
@@ -156,5 +156,5 @@ def planning_task(
         for unit in units
     ]
     actions += [Action(taking_action_name(names[o]), None, o, (), (o,), costs.item) for o in items]
-    start = tuple(sorted((nodes & available) - bought))
+    start = tuple(sorted((nodes & available) - items_with_cost))
     return PlanningTask(problem, tuple(objectives), tuple(actions), names, start, goals, costs, merged)

@@ -61,9 +61,8 @@ def shortest_schedule(task: ScheduleTask, deadline: Deadline) -> BestSchedule:
     def raise_bound(value: float) -> None:
         """Round a lower bound on the makespan up to whole ticks, and keep it if it is better."""
         nonlocal bound
-        bound = max(
-            bound, ceil(value - 1e-6)
-        )  # a float, in ticks: so little above a whole number is that number
+        # a float, in ticks: so little above a whole number is that number
+        bound = max(bound, ceil(value - 1e-6))
 
     worker = take(_WORKER_KEY, lambda: Worker(_WORKER_KEY, "schedules are found"))
     try:

@@ -41,7 +41,10 @@ class StripsTask:
 
     @property
     def objective(self) -> Objective:
-        """The objective by which a tree of :meth:`problem` has the cost of the plan."""
+        """The objective by which a tree of :meth:`problem` costs as much as the plan.
+
+        It is ``units`` if all actions cost 1, else ``price``.
+        """
         unit_cost = all(action.cost == 1 for action in self.actions)
         return Objective.UNITS if unit_cost else Objective.PRICE
 

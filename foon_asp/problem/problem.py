@@ -325,11 +325,11 @@ class Problem:
         plain = plain_flows(network, self.containers, self.utensils, frozenset(items.told.items()))
         if not self.amounts:
             return plain
-        counted = {unit.motion for unit in self.amounts}
+        motions_with_amounts = {unit.motion for unit in self.amounts}
 
         def flow(unit: int) -> Flow:
             """Return the flow of a unit, with the amounts that are stated for it."""
-            has_amounts = network.motions[unit] in counted
+            has_amounts = network.motions[unit] in motions_with_amounts
             amounts = self.amounts.get(network.unit(unit)) if has_amounts else None
             if amounts is None:
                 return plain[unit]
