@@ -152,7 +152,10 @@ class _Reader:
         return tuple(self._fact_number(*self._numbers(2)) for _ in range(self._number()))
 
     def _fact_number(self, variable: int, value: int) -> int:
-        """Return the number of the fact that a variable has a value."""
+        """Return the number of the fact that assigns a value to a variable.
+
+        Raises :class:`InputError` if the file declares no such value.
+        """
         if not (0 <= variable < len(self._variables) and 0 <= value < len(self._variables[variable])):
             self._raise_error(f"found the value {value} of variable {variable}, which is not declared")
         return self._variables[variable][value]
@@ -193,9 +196,10 @@ class _Reader:
 
 
 def _fact_name(name: str, variable: str) -> str:
-    """Return the name of the fact that a variable has a value: its PDDL atom, ``(not ATOM)`` if negated.
+    """Return the name of a fact: the PDDL atom of a value, or ``(not ATOM)`` if the atom is negated.
 
-    For a value without an atom, it is ``(VARIABLE VALUE)``.
+    ``name`` is the value as the file has it, ``variable`` the name of its variable. If the value is no atom,
+    the fact is named ``(VARIABLE VALUE)``.
     """
     atom = _ATOM.fullmatch(name)
     if atom is None:

@@ -13,10 +13,10 @@ from foon_asp.proof.timetable import Means, ToolName, tools_asked
 
 
 class Use(NamedTuple):
-    """One use of one copy of a tool by ``steps``, given by position in the plan, which do not overlap.
+    """The use of one copy of a tool by some steps of a plan, which do not overlap.
 
-    The copy is occupied from the start of the first step to the end of the last step, since each later step
-    needs the tool in the state in which an earlier step left it.
+    ``steps`` are positions in the plan, from 0. The copy is occupied from the start of the first step to the
+    end of the last step, since each later step needs the tool in the state in which an earlier step left it.
     """
 
     name: ToolName
@@ -56,9 +56,9 @@ class ScheduleTask(NamedTuple):
 
     @property
     def bound(self) -> int:
-        """A lower bound on the makespan in ticks: the critical path, or the work divided among agents.
+        """A lower bound on the makespan, in ticks.
 
-        It is the greater of the two.
+        It is the critical path or the work divided among the agents, whichever is greater.
         """
         ready: list[int] = []
         for length, after in zip(self.lengths, self.after, strict=True):

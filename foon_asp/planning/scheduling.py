@@ -37,7 +37,7 @@ class BestSchedule(NamedTuple):
 def shortest_schedule(task: ScheduleTask, deadline: Deadline) -> BestSchedule:
     """Return the schedule of least makespan; at a limit or ctrl-C, the best one found so far.
 
-    Raises :class:`UserError` if OR-Tools is not installed.
+    CP-SAT searches for it in another process. Raises :class:`UserError` if OR-Tools is not installed.
     """
     if find_spec("ortools") is None:
         raise UserError(_NOT_INSTALLED)

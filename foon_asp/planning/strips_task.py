@@ -50,12 +50,12 @@ class StripsTask:
 
     @property
     def action_count(self) -> int:
-        """The number of actions, without those that derive facts."""
+        """The number of actions; those that derive facts do not count."""
         return sum(action.name != DERIVED for action in self.actions)
 
     @property
     def unit_cost(self) -> bool:
-        """Whether each action costs 1, without those that derive facts."""
+        """Whether each action costs 1; those that derive facts are not looked at."""
         return all(action.cost == 1 for action in self.actions if action.name != DERIVED)
 
     def problem(self) -> Problem:

@@ -75,7 +75,7 @@ def _run(task: ScheduleTask, deadline: Deadline, may_lack: bool) -> Run:
 def _steps_in_order(task: ScheduleTask, answer: Run) -> tuple[int, ...]:
     """Return the steps in a topological order that keeps to the order of uses in clingo's answer.
 
-    Of the steps that can come next, the first in the plan does.
+    If several steps can come next, the one that is first in the plan does.
     """
     sorter = TopologicalSorter[tuple[str, int]]()
     for step, after in enumerate(task.after):

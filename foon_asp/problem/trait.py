@@ -20,7 +20,7 @@ class Role(Enum):
 
 
 class Trait(NamedTuple):
-    """The property of a unit that a name, ``word``, has a role in it."""
+    """A property of a unit: the name ``word`` has the role ``role`` in it."""
 
     role: Role
     word: str
