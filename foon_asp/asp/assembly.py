@@ -256,7 +256,10 @@ def _optional_predicates(encodings: "Sequence[Encoding]") -> frozenset[tuple[str
 
 
 def _overflow_checks(encodings: "Sequence[Encoding]") -> list[Stated]:
-    """Return rules that detect numbers beyond clingo's integers in user encodings; empty without need."""
+    """Return rules that detect numbers beyond clingo's integers in user encodings.
+
+    The list is empty if there is nothing to check.
+    """
     if not encodings:
         return []
     from foon_asp.encoding.number_checks import CHECKS_FILE  # noqa: PLC0415

@@ -95,9 +95,9 @@ def bare_plan_program(
     """Return a program with which bare clingo finds the optimum of a question about plans.
 
     ``outcome`` is an optimal plan. The program has no facts that limit how often units are executed. The
-    second value maps each unit id to the unit's public number and its greatest number of executions in any
-    plan that is as good by the first objective. Returns ``None`` and an empty mapping if these numbers are
-    unbounded.
+    second value maps the id of each unit to two numbers: its id in the whole network, and its greatest number
+    of executions in any plan that is as good by the first objective. Returns ``None`` and an empty mapping if
+    these numbers of executions are unbounded.
     """
     settings = settings._replace(deadline=None)
     executions = executions_as_good(outcome, settings)
@@ -114,7 +114,10 @@ def bare_plan_program(
 
 
 def _require_no_amounts(problem: Problem) -> None:
-    """Raise :class:`UserError` if amounts count: the encodings have one copy of each output."""
+    """Raise :class:`UserError` if a unit takes or makes several copies of a node, or several are wanted.
+
+    The encodings have one copy of each output.
+    """
     if problem.counts_amounts:
         raise UserError("amounts are not built for bare clingo, whose encodings have one copy of each output")
 

@@ -28,8 +28,8 @@ _PASSED_OVER = {ASTType.Program, ASTType.Comment}
 class IntegrityConstraint(NamedTuple):
     """A rule without a head: its number, the constraint that it belongs to, its source and text.
 
-    ``number`` is counted from 1. ``constants`` are the user's settings of constants that occur in it, as
-    ``NAME=VALUE``.
+    ``number`` counts from 1. ``constants`` are the user's settings, ``NAME=VALUE``, of the constants in the
+    rule.
     """
 
     number: int

@@ -24,7 +24,7 @@ class Program(NamedTuple):
     ``replaced``: whether some of the first three files differ from the built-in ones.
     ``own``: whether every rule is built in, so that units that the goals do not need cannot matter.
     ``rules``: rules as text, in addition to the files.
-    ``bounded``: whether a tree of the unbounded question may be excluded.
+    ``bounded``: whether bounds on costs may exclude trees.
     ``looked_at``: the predicates that user rules read, by name and arity.
     ``text``: the content of the files when they were checked.
     ``endless``: whether grounding may not terminate.

@@ -90,9 +90,9 @@ class Ranked:
             yield self._next_in_order(waiting)
 
     def _tree_of_numbers(self, numbers: frozenset[int]) -> _Tree:
-        """Return the tree of units that are given by public number, with exact and rounded costs.
+        """Return the tree of units that are given by id in the whole network, with exact and rounded costs.
 
-        Raises :class:`UserError` for numbers of no unit, :class:`BugError` for a tree that does not execute.
+        Raises :class:`UserError` for an id of no unit, :class:`BugError` for a tree that does not execute.
         """
         network = self.problem.network
         units = [network.unit_of_number(number) for number in sorted(numbers)]

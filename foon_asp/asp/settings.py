@@ -17,7 +17,7 @@ from foon_asp.rules.passed_constraint import Constraint
 
 
 class Relaxed(NamedTuple):
-    """Constraints that trees may break or drop: they are loaded rewritten.
+    """Constraints that are rewritten, so that a tree may break them or the search may drop them.
 
     ``constraints``: the original constraints, which are checked like others, but not loaded.
     ``rules``: their rewritten text.

@@ -145,7 +145,7 @@ class _Solver:
         self._scales: Scales | None = None  # None before the first run of clingo
         self._ground: tuple[object, Grounded] | None = None  # the last question grounded, and its program
         self._open_preconditions = False  # whether trees found may have open preconditions
-        self._mattered = set() if mattered is None else mattered  # public numbers of the units explored first
+        self._mattered = set() if mattered is None else mattered  # units explored first, by id in the whole network
 
     def solve(self) -> Outcome:
         """Return the outcome of the search; at a limit or ctrl-C, the outcome with the incumbent.
@@ -496,7 +496,7 @@ class _Solver:
         on_bound = self._report_bound if bounds and not self.program.replaced else None
 
         def on_tree(units: Units) -> None:
-            """Report a tree, given by public numbers, unless it may have open preconditions."""
+            """Report a tree, given by ids in the whole network, unless it may have open preconditions."""
             if not self._open_preconditions:
                 self.listener.tree(self._unit_ids(units))
 
@@ -568,7 +568,10 @@ class _Solver:
         return self._scales
 
     def _unit_ids(self, numbers: Units) -> Units:
-        """Return the ids of units by public number; raises :class:`UserError` for a number of no unit."""
+        """Return the ids of units that are given by id in the whole network.
+
+        Raises :class:`UserError` for an id of no unit.
+        """
         units: set[int] = set()
         for number in sorted(numbers):
             unit = self.problem.network.unit_of_number(number)
@@ -676,9 +679,9 @@ class _Solver:
         return agree
 
     def _require_measures(self, agree: bool) -> None:
-        """Require that a replaced objectives.lp measures all trees as usual if it measures one so.
+        """Raise :class:`UserError` unless clingo's costs agree with the weights of a tree, as for earlier trees.
 
-        Raises :class:`UserError` unless ``agree``, which is whether it measures this tree as usual.
+        A replaced objectives.lp then measures only some trees as usual, so that trees cannot be compared.
         """
         if not agree:
             raise UserError(

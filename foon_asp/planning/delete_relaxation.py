@@ -86,7 +86,7 @@ class _Relaxation:
         return self._with_effect_conditions(facts)
 
     def _with_effect_conditions(self, facts: set[int]) -> set[int]:
-        """Return some facts with the conditions of the effects that add them, and so on transitively."""
+        """Return some facts and, transitively, the conditions of all effects that add them."""
         effects = [effect for operator in self._task.operators for effect in operator.effects]
         while True:
             missing = set(chain(*(effect.condition for effect in effects if effect.fact in facts))) - facts

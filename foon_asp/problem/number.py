@@ -36,8 +36,8 @@ def exact_number(number: Number, quantity: str) -> Fraction:
 def unit_price(number: Number, quantity: str) -> Fraction:
     """Return a price as an exact fraction.
 
-    Raises :class:`UserError` for a price below 0, of more than 1,000 digits, or that is no number. Its
-    message names the ``quantity``.
+    Raises :class:`UserError` for a text that is no number, and for a price below 0 or of more than 1,000
+    digits. Its message names the ``quantity``.
     """
     price = exact_number(number, quantity)
     if price < 0 or max(price.numerator, price.denominator) >= 10**_MAX_DIGITS:
@@ -49,10 +49,10 @@ def unit_price(number: Number, quantity: str) -> Fraction:
 
 
 def success_rate(number: Number, quantity: str) -> Fraction:
-    """Return a success rate as an exact fraction.
+    """Return a success rate as an exact fraction, above 0 and at most 1.
 
-    Raises :class:`UserError` for a rate that is not above 0 and at most 1, or no number. Its message names
-    the ``quantity``.
+    Raises :class:`UserError` for a text that is no number, and for a rate outside this range. Its message
+    names the ``quantity``.
     """
     rate = exact_number(number, quantity)
     if not 0 < rate <= 1:
