@@ -145,7 +145,8 @@ class _Solver:
         self._scales: Scales | None = None  # None before the first run of clingo
         self._ground: tuple[object, Grounded] | None = None  # the last question grounded, and its program
         self._open_preconditions = False  # whether trees found may have open preconditions
-        self._mattered = set() if mattered is None else mattered  # units explored first, by id in the whole network
+        # units to explore first, by id in the whole network
+        self._mattered = set() if mattered is None else mattered
 
     def solve(self) -> Outcome:
         """Return the outcome of the search; at a limit or ctrl-C, the outcome with the incumbent.
@@ -679,9 +680,10 @@ class _Solver:
         return agree
 
     def _require_measures(self, agree: bool) -> None:
-        """Raise :class:`UserError` unless clingo's costs agree with the weights of a tree, as for earlier trees.
+        """Raise :class:`UserError` unless ``agree``: clingo's costs are the weights of a tree.
 
-        A replaced objectives.lp then measures only some trees as usual, so that trees cannot be compared.
+        It is called after they were so for an earlier tree. If they are not, a replaced objectives.lp
+        measures only some trees as usual, so that trees cannot be compared.
         """
         if not agree:
             raise UserError(

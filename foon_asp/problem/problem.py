@@ -181,7 +181,7 @@ class Problem:
     stand_ins: StandIns | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
-        """Drop repeated goals; drop rates that some motion of the network lacks, and set ``unrated`` then.
+        """Drop repeated goals. If a motion of the network has no rate, drop all rates and set ``unrated``.
 
         Raises :class:`UserError` without goals.
         """
