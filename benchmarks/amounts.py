@@ -40,7 +40,7 @@ from foon_asp.hypergraph.highs_run import silent_highs
 from foon_asp.plans.bulk_order import bulk_order
 from foon_asp.plans.flows import flows_of
 from foon_asp.plans.whole_program import Stopped
-from foon_asp.problem import Problem, reach, relevant_to_plans
+from foon_asp.problem import Problem, reach, units_relevant_to_plans
 
 VERSION = "1.20"  # of Minecraft
 
@@ -104,7 +104,7 @@ def factorio(wheel: Path) -> Iterator[Recipe]:
 
 def plain_optimum(problem: Problem, seconds: float) -> tuple[int | None, str]:
     """Return the optimum of HiGHS over the state equation, and whether its counts have an order."""
-    units = sorted(relevant_to_plans(problem, reach(problem)))
+    units = sorted(units_relevant_to_plans(problem, reach(problem)))
     flows = flows_of(problem, units)
     highs = silent_highs()
     highs.setOptionValue("time_limit", seconds)

@@ -38,7 +38,7 @@ from generate import Family, generate
 import foon_asp
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.deadline import Deadline
-from foon_asp.problem import Objective, Problem, reach, relevant
+from foon_asp.problem import Objective, Problem, reach, relevant_units
 from foon_asp.store.import_files import import_files
 from foon_asp.text.data_folder import find_data, read_data
 from foon_asp.text.node_lookup import find_goal
@@ -70,7 +70,7 @@ def measure(folder: Path, objective: Objective, limit: float) -> dict[str, float
         goal = find_goal(entry["label"], network, data.goals)
         problem = Problem(network, data.kitchen, (goal,), data.rates, data.utensils)
         start = time.perf_counter()
-        relevant(problem, reach(problem))
+        relevant_units(problem, reach(problem))
         cut = time.perf_counter()
         outcome = solve(problem, (objective,), Settings(deadline=Deadline(limit)))
         whole = time.perf_counter() - cut

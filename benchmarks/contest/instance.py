@@ -7,7 +7,7 @@ from fractions import Fraction
 from functools import cached_property
 
 from foon_asp.engines.engine import cost
-from foon_asp.problem import Objective, Problem, reach, relevant
+from foon_asp.problem import Objective, Problem, reach, relevant_units
 
 _STEPS = 2**53  # whole numbers that floats hold
 SCALE = 10**6  # steps of -ln(rate) to 1, for engines that add whole numbers
@@ -92,7 +92,7 @@ class Instance:
 
 def raw_units(problem: Problem) -> tuple[int, ...]:
     """Give what the plain program leaves: units that can be made to run and that the goals can need."""
-    return relevant(problem, reach(problem))
+    return relevant_units(problem, reach(problem))
 
 
 def instance_of(problem: Problem, units: Sequence[int], objective: Objective) -> Instance:

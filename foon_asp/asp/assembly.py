@@ -1,4 +1,4 @@
-"""Assembly of a program: the built-in encodings or a replacement, and user rules."""
+"""Assembly of a clingo program: the built-in encodings or their replacement, and user rules."""
 
 import hashlib
 from collections.abc import Callable, Sequence
@@ -54,38 +54,41 @@ def assemble(
     used_up: bool = False,
     problem: Problem | None = None,
 ) -> Program:
-    """Find, read and check the encodings and constraints of settings, and return them as a program.
+    """Return the program of a question: the encodings and constraints of settings, read and checked.
 
-    With ``used_up``, the encodings are those of plans in which items are used up. ``warn`` receives warnings;
-    with a ``problem``, also about names in rules that do not occur in its network. Raises :class:`UserError`
-    for files that are missing or at fault, for ``#script``, for constants that no encoding has and for clingo
-    options that would change what an answer means.
+    ``used_up`` selects the encodings of plans, in which items are used up. ``warn`` receives warnings. With a
+    ``problem``, these also name words in rules that do not occur in its network. If grounding user rules may
+    not terminate, a worker process is started in advance.
+
+    Raises :class:`UserError` for files that are missing or at fault, for ``#script``, for constants that no
+    encoding has, and for clingo options that would change what an answer means.
     """
-    ours = encodings_folder() / USED_UP if used_up else encodings_folder()
-    folder = _find_encodings(settings.encodings, ours)
-    is_replaced = folder != ours
+    built_in_folder = encodings_folder() / USED_UP if used_up else encodings_folder()
+    folder = _encodings_folder_for(settings.encodings, built_in_folder)
+    is_replaced = folder != built_in_folder
     base = tuple(
-        folder / name if is_replaced and (folder / name).is_file() else ours / name for name in ENCODING_FILES
+        folder / name if is_replaced and (folder / name).is_file() else built_in_folder / name
+        for name in ENCODING_FILES
     )
     added = tuple(dict.fromkeys(map(find_constraint, settings.constraints)))
     relaxed, bounded = settings.relaxed, settings.bounded
-    kept, rules = added, ""
-    questions: tuple[Path, ...] = ()
+    unrelaxed, rules = added, ""
+    question_files: tuple[Path, ...] = ()
     if relaxed is not None:
-        kept = tuple(constraint for constraint in added if constraint not in relaxed.constraints)
+        unrelaxed = tuple(constraint for constraint in added if constraint not in relaxed.constraints)
         added = tuple(dict.fromkeys((*added, *relaxed.constraints)))
-        questions = (relaxed.encoding,)
+        question_files = (relaxed.encoding,)
         rules = relaxed.rules
     if bounded is not None:
-        questions += bounded.files
+        question_files += bounded.files
         rules += bounded.rules
     looked_at: frozenset[tuple[str, int]] = frozenset()
     text, named = "", frozenset[str]()
     understood: Rules | None = None
     replaced = not all(map(is_own, base))
-    endless = replaced or not all(map(_is_own, added))
+    endless = replaced or not all(map(_is_ready_made, added))
     files: dict[Constraint, Loaded] = {}
-    extra, theirs, constants = list["Encoding"](), list["Encoding"](), list[str]()
+    added_encodings, user_encodings, constants = list["Encoding"](), list["Encoding"](), list[str]()
     encodings = folder if settings.encodings is None and replaced else settings.encodings
     if added or encodings or settings.constants:
         # parsing takes some milliseconds, so it is skipped where all files are built-in ones
@@ -93,34 +96,42 @@ def assemble(
         from foon_asp.rules import stating  # noqa: PLC0415
 
         if endless:
-            from foon_asp.encoding.worker_process import prepare  # noqa: PLC0415
+            from foon_asp.encoding.program_client import prepare  # noqa: PLC0415
 
             prepare()  # while files are parsed
 
         parsed = [encoding.read_encoding(file) for file in base if endless]
-        question_encodings = [encoding.read_encoding(file) for file in questions]
+        question_encodings = [encoding.read_encoding(file) for file in question_files]
         files = stating.loaded(added)
-        extra = [encoding.read_encoding(files[constraint]) for constraint in added]
-        faults = map(str, encoding.check_encodings(extra, parsed, question_encodings))
-        for message in (*faults, *encoding.unset_constants(extra, settings.constants)):
+        added_encodings = [encoding.read_encoding(files[constraint]) for constraint in added]
+        faults = map(str, encoding.check_encodings(added_encodings, parsed, question_encodings))
+        for message in (*faults, *encoding.unset_constants(added_encodings, settings.constants)):
             warn(message)
-        constants = encoding.constant_arguments(settings.constants, [*parsed, *extra])
-        theirs = [*extra, *(read for file, read in zip(base, parsed, strict=False) if not is_own(file))]
-        looked_at = frozenset(signature for read in theirs for signature in read.used)
-        named = frozenset(name for read in (*parsed, *extra) for name in read.constants)
-        text = "\n".join(read.text for read in (*parsed, *question_encodings, *extra))
-        if extra and not encodings and relaxed is None:
+        constants = encoding.constant_arguments(settings.constants, [*parsed, *added_encodings])
+        user_encodings = [
+            *added_encodings,
+            *(read for file, read in zip(base, parsed, strict=False) if not is_own(file)),
+        ]
+        looked_at = frozenset(signature for read in user_encodings for signature in read.used)
+        named = frozenset(name for read in (*parsed, *added_encodings) for name in read.constants)
+        text = "\n".join(read.text for read in (*parsed, *question_encodings, *added_encodings))
+        if added_encodings and not encodings and relaxed is None:
             from foon_asp.rules import rules as user_rules  # noqa: PLC0415
 
-            understood = user_rules.Rules(extra, constants[1::2], endless=endless)
-    _warn_of_names(problem, settings, extra, constants[1::2], warn)
+            understood = user_rules.Rules(added_encodings, constants[1::2], endless=endless)
+    _warn_of_names(problem, settings, added_encodings, constants[1::2], warn)
     arguments = (*constants, *_clingo_options(settings.clingo_options))
     if settings.clingo_options:  # checked now, since clingo may not run
         from foon_asp.encoding.clingo_run import check  # noqa: PLC0415
 
         check(arguments)
     return Program(
-        (*base, *(files[constraint] for constraint in kept), *questions, *_checks(theirs)),
+        (
+            *base,
+            *(files[constraint] for constraint in unrelaxed),
+            *question_files,
+            *_overflow_checks(user_encodings),
+        ),
         exact_success(),
         arguments,
         replaced=replaced,
@@ -132,22 +143,23 @@ def assemble(
         endless=endless,
         constants=tuple(constants),
         encodings=encodings,
-        ours=(*base, *questions),
+        ours=(*base, *question_files),
         understood=understood,
         named=named,
-        reads=_reads([read for read in theirs if read.rules not in base]),
+        reads=_optional_predicates([read for read in user_encodings if read.rules not in base]),
     )
 
 
 def program_of(problem: Problem, settings: Settings, warn: Callable[[str], None]) -> Program:
-    """Return the program of a question as :func:`assemble` does, without clingo where possible."""
-    return ready_made(problem, settings, warn) or assemble(settings, warn, problem=problem)
+    """Return the program of a question: by :func:`ready_made_program`, or else by :func:`assemble`."""
+    return ready_made_program(problem, settings, warn) or assemble(settings, warn, problem=problem)
 
 
-def ready_made(problem: Problem, settings: Settings, warn: Callable[[str], None]) -> Program | None:
+def ready_made_program(problem: Problem, settings: Settings, warn: Callable[[str], None]) -> Program | None:
     """Return the program of a question whose user rules are all ready-made constraints, without clingo.
 
-    ``None`` for other rules, for items that are used up, and for large networks, unless these are parts of a
+    Ready-made constraints come with this program, so their effect is computed without their text. ``None`` if
+    there are other rules or items are used up. Also ``None`` for a large network, unless it is a part of a
     store or the rules require units.
     """
     rules = _ready_made_rules(settings)
@@ -157,20 +169,20 @@ def ready_made(problem: Problem, settings: Settings, warn: Callable[[str], None]
     from foon_asp.rules.parameter_names import unknown_parameters  # noqa: PLC0415
 
     network = problem.network  # reading a part of a store takes longer than searching it
-    large = len(network) > SEARCH.units_without_clingo and not network.object_numbers
-    if (large and rules.shrinking) or not rules.fit(problem):
+    is_large = len(network) > SEARCH.units_without_clingo and not network.object_numbers
+    if (is_large and rules.shrinking) or not rules.fit(problem):
         return None
     for message in unknown_parameters(settings.constraints, settings.constants, FactValues(problem)):
         warn(message)
-    plain = assemble(settings._replace(constraints=(), constants=()), warn, problem=problem)
+    without_rules = assemble(settings._replace(constraints=(), constants=()), warn, problem=problem)
     constants = [word for setting in rules.constants.items() for word in ("-c", "=".join(setting))]
-    whole = plain._replace(
-        files=(*plain.files, *rules.files),
-        arguments=(*constants, *plain.arguments),
+    whole_program = without_rules._replace(
+        files=(*without_rules.files, *rules.files),
+        arguments=(*constants, *without_rules.arguments),
         own=False,
         looked_at=rules.looked_at,
     )
-    return plain._replace(own=False, ready_made=rules, whole=whole)
+    return without_rules._replace(own=False, ready_made=rules, whole=whole_program)
 
 
 def _warn_of_names(
@@ -180,7 +192,10 @@ def _warn_of_names(
     constants: Sequence[str],
     warn: Callable[[str], None],
 ) -> None:
-    """Warn of names in rules, measures and parameters that do not occur in the network of a problem."""
+    """Warn of names in rules, measures and parameters that do not occur in the network of a problem.
+
+    Without a problem, nothing is checked.
+    """
     if problem is None:
         return
     measures = {(measure.place, measure.text): None for measure in problem.measures.values() if measure.text}
@@ -191,29 +206,30 @@ def _warn_of_names(
     from foon_asp.rules.unmatched import unmatched  # noqa: PLC0415
 
     values = FactValues(problem)
-    theirs = [encoding for encoding in added if not _is_ours(encoding)]
-    ours = [encoding for encoding in added if _is_ours(encoding)]
-    if ours:
+    user_encodings = [encoding for encoding in added if not _is_built_in(encoding)]
+    built_in = [encoding for encoding in added if _is_built_in(encoding)]
+    if built_in:
         from foon_asp.rules.parameter_names import unknown_parameters  # noqa: PLC0415
 
         relaxed = settings.relaxed.constraints if settings.relaxed is not None else ()
         for message in unknown_parameters((*settings.constraints, *relaxed), settings.constants, values):
             warn(message)
-    for diagnostic in unmatched(theirs, ours, constants, values):
+    for diagnostic in unmatched(user_encodings, built_in, constants, values):
         warn(str(diagnostic))
     for origin, text in measures:
         for diagnostic in unmatched([read_encoding(Stated(origin, text))], [], (), values):
             warn(str(diagnostic))
 
 
-def _is_ours(encoding: "Encoding") -> bool:
+def _is_built_in(encoding: "Encoding") -> bool:
+    """Whether an encoding is a file of this program."""
     rules = encoding.rules
     file = rules.file if isinstance(rules, Stated) else rules
     return file is not None and is_own(file)
 
 
 def _ready_made_rules(settings: Settings) -> "ReadyMade | None":
-    """Return the added rules if all are ready-made constraints, else ``None``.
+    """Return the user rules if all are ready-made constraints, else ``None``.
 
     Also ``None`` without reductions, with other encodings, and with rewritten constraints or bounds.
     """
@@ -221,25 +237,29 @@ def _ready_made_rules(settings: Settings) -> "ReadyMade | None":
         return None
     if settings.relaxed is not None or settings.bounded is not None:
         return None
-    from foon_asp.rules.ready_made import ready_made as known  # noqa: PLC0415 (only of use with constraints)
+    from foon_asp.rules.ready_made import ready_made  # noqa: PLC0415 (only of use with constraints)
 
-    return known(settings.constraints, settings.constants)
+    return ready_made(settings.constraints, settings.constants)
 
 
-def _reads(encodings: "Sequence[Encoding]") -> frozenset[tuple[str, str]]:
-    """Return the predicates that user rules read and that have no facts in some questions.
+def _optional_predicates(encodings: "Sequence[Encoding]") -> frozenset[tuple[str, str]]:
+    """Return the predicates that user rules read and that have facts only in some questions.
 
-    Pairs of the name and its first argument, which is empty if it is no name.
+    Each is a pair of the predicate's name and its first argument; the latter is empty if it is no name. An
+    example is ``("cost", "price")``.
     """
     predicates: set[tuple[str, str]] = set()
     for encoding in encodings:
-        if not _is_ours(encoding) and not _OF_SOME_QUESTIONS.isdisjoint(encoding.used):
+        if not _is_built_in(encoding) and not _OF_SOME_QUESTIONS.isdisjoint(encoding.used):
             predicates.update(encoding.first_names(_OF_SOME_QUESTIONS))
     return frozenset(predicates)
 
 
-def _checks(encodings: "Sequence[Encoding]") -> list[Stated]:
-    """Return the rules that detect overflow of numbers in user encodings."""
+def _overflow_checks(encodings: "Sequence[Encoding]") -> list[Stated]:
+    """Return rules that detect numbers beyond clingo's integers in user encodings.
+
+    The list is empty if there is nothing to check.
+    """
     if not encodings:
         return []
     from foon_asp.encoding.number_checks import CHECKS_FILE  # noqa: PLC0415
@@ -249,13 +269,13 @@ def _checks(encodings: "Sequence[Encoding]") -> list[Stated]:
     return [Stated(CHECKS_FILE, checks)] if checks else []
 
 
-def _understood(settings: Settings) -> "Rules | None":
-    """Return the added rules as analysed, ``None`` without any; raises as :func:`assemble` does."""
+def _analysed_rules(settings: Settings) -> "Rules | None":
+    """Return the user rules as analysed, ``None`` without any; raises as :func:`assemble` does."""
     return assemble(settings, lambda _: None).understood
 
 
 class ReachOfRules(Enum):
-    """The units that rules may be about.
+    """The units that user rules can depend on or require.
 
     ``NEEDED``: units that a goal can need.
     ``TREE``: units of the tree. Rules read facts about the tree alone, and may require units that no goal
@@ -269,49 +289,49 @@ class ReachOfRules(Enum):
 
 
 def reach_of_rules(settings: Settings) -> ReachOfRules:
-    """Return the units that the added rules are about; raises as :func:`assemble` does."""
-    rules = _ready_made_rules(settings) or _understood(settings)
+    """Return which units the user rules can depend on or require; raises as :func:`assemble` does."""
+    rules = _ready_made_rules(settings) or _analysed_rules(settings)
     if rules is None or not rules.local:
         return ReachOfRules.ALL
     return ReachOfRules.NEEDED if rules.shrinking else ReachOfRules.TREE
 
 
-def hold_for_parts(settings: Settings) -> bool:
-    """Whether the added rules are antimonotone, so that they hold for every subtree as well.
+def hold_for_subtrees(settings: Settings) -> bool:
+    """Whether the user rules are antimonotone: if a tree keeps to them, each of its subtrees does, too.
 
-    They have to be so in every part of the network, and also if more object nodes are available than the
-    kitchen has. ``True`` without rules. Raises as :func:`assemble` does.
+    This has to be so in every part of the network, and also if more object nodes are available than the
+    kitchen has. True without rules, false with replaced encodings. Raises as :func:`assemble` does.
     """
     if settings.replaced is not None:
         return False
-    rules = _ready_made_rules(settings) or varying_available(settings)
+    rules = _ready_made_rules(settings) or rules_for_varying_kitchens(settings)
     if rules is None:
         return not settings.constraints
     return rules.local and rules.shrinking
 
 
-def leave_unsettled(settings: Settings) -> bool:
-    """Whether clingo has to enforce added rules, since they do more than remove and require units.
+def need_clingo(settings: Settings) -> bool:
+    """Whether clingo has to enforce user rules, since they do more than remove and require units.
 
     Raises as :func:`assemble` does.
     """
-    rules = _ready_made_rules(settings) or _understood(settings)
+    rules = _ready_made_rules(settings) or _analysed_rules(settings)
     return rules is not None and bool(rules.unsettled)
 
 
-def varying_available(settings: Settings) -> "Rules | None":
-    """Return the added rules, analysed for questions that differ in which object nodes are available.
+def rules_for_varying_kitchens(settings: Settings) -> "Rules | None":
+    """Return the user rules, analysed for questions that differ in which object nodes are available.
 
     ``None`` without rules. Raises as :func:`assemble` does.
     """
-    rules = _understood(settings)
+    rules = _analysed_rules(settings)
     return None if rules is None else rules.varying({("available", 1)})
 
 
 def need_whole_network(problem: Problem, settings: Settings) -> bool:
-    """Whether added rules may be about units beyond those that the goals can need.
+    """Whether user rules may be about units beyond those that the goals can need.
 
-    Then a part of a store is not enough for the question. It is enough if every rule is local and none
+    Then a part of a store is not enough for the question. A part is enough if every rule is local and none
     requires units that no goal needs.
     """
     if not settings.constraints and settings.replaced is None:
@@ -323,9 +343,9 @@ def need_whole_network(problem: Problem, settings: Settings) -> bool:
 def rules_digest(
     settings: Settings, warn: Callable[[str], None] = lambda _: None, problem: Problem | None = None
 ) -> dict[str, str]:
-    """Return a digest of the added rules under the key ``rules``; empty without rules.
+    """Return ``{"rules": DIGEST}`` with a digest of the user rules and encodings; empty without any.
 
-    Every row of results has it. Warns and raises as :func:`assemble` does.
+    Every row of results has the digest. Warns and raises as :func:`assemble` does.
     """
     if not (settings.constraints or settings.constants or settings.encodings):
         return {}
@@ -334,32 +354,36 @@ def rules_digest(
     return {"rules": hashlib.sha256(content.encode()).hexdigest()[:16]}
 
 
-def _find_encodings(path: Path | None, ours: Path) -> Path:
+def _encodings_folder_for(path: Path | None, built_in_folder: Path) -> Path:
     """Return the folder of encodings: ``path``, a built-in folder of that name, or ``ours`` without a path.
 
-    Raises :class:`UserError` if it has no encodings.
+    Raises :class:`UserError` if the folder has no encodings.
     """
     if path is None:
-        return ours
-    folder = ours / path.name if not path.is_dir() and path.name == str(path) else path
+        return built_in_folder
+    folder = built_in_folder / path.name if not path.is_dir() and path.name == str(path) else path
     if any((folder / name).is_file() for name in ENCODING_FILES):
         return folder
     names = ", ".join(ENCODING_FILES)
     raise UserError(f"{path}: expected a folder with encodings to use instead of the built-in ones: {names}")
 
 
-def _is_own(constraint: Constraint) -> bool:
+def _is_ready_made(constraint: Constraint) -> bool:
     """Whether a constraint is an unchanged ready-made one, under any constants."""
     file = constraint.file if isinstance(constraint, LibraryUse) else constraint
     return isinstance(file, Path) and is_own(file)
 
 
 def _clingo_options(options: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the options of clingo: the user's, and each default whose name the user did not set."""
+    """Return clingo's options: the defaults that the user did not set, then the user's ``options``.
+
+    Raises :class:`UserError` for a word that is no option, and for an option that would change what an answer
+    means.
+    """
     names = [option.partition("=")[0] for option in options]
     for option, name in zip(options, names, strict=True):
         if not (name.startswith("--") and len(name) > 2) and not name.startswith("-t"):
             raise UserError(f"found {option!r} after --, expected options of clingo, --NAME=VALUE")
         if any(reserved.startswith(name) for reserved in _RESERVED):
             raise UserError(f"the option {option!r} would change what an answer means, so it cannot be set")
-    return (*(ours for ours in CLINGO_OPTIONS if ours.partition("=")[0] not in names), *options)
+    return (*(default for default in CLINGO_OPTIONS if default.partition("=")[0] not in names), *options)

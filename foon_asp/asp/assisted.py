@@ -1,4 +1,4 @@
-"""Units done by a person: a bound on their number, and constraints that read them."""
+"""Assistance: units that a person does instead of the robot, in at most a given number."""
 
 from collections.abc import Mapping, Sequence
 
@@ -15,17 +15,17 @@ _AS_FACTS = "_by_person(U) :- motion(U,_). _takes_over(P,U) :- motion(P,M), moti
 _OF_DOERS = {("rate", 2), ("risk", 2), ("_takes_over", 2), ("_by_person", 1)}
 
 
-def assisted(twins: Mapping[int, int], max_assisted: int) -> Bounded:
-    """Return bounds on trees: a person does at most ``max_assisted`` units, and no unit is done twice.
+def assistance_bounds(twins: Mapping[int, int], max_assisted: int) -> Bounded:
+    """Return bounds by which a person does at most ``max_assisted`` units, and no unit is done twice.
 
-    ``twins`` maps each unit done by the person to the same unit done by the robot, by ids in the whole
+    ``twins`` maps each unit that the person does to the same unit done by the robot, by ids in the whole
     network. The result is for ``bounded`` of :class:`foon_asp.asp.Settings`.
     """
     return Bounded(write_assisted(twins, max_assisted), (question_encoding("assist.lp"),))
 
 
-def sees_who_does_it(constraints: Sequence[Constraint]) -> bool:
-    """Whether constraints read who does a unit: success rates, or units done by a person.
+def read_who_does_units(constraints: Sequence[Constraint]) -> bool:
+    """Whether constraints read who does a unit: its success rate, or that a person does it.
 
     Raises as :func:`foon_asp.encoding.encoding.read_encoding` does.
     """
@@ -39,10 +39,10 @@ def sees_who_does_it(constraints: Sequence[Constraint]) -> bool:
 
 
 def require_local(settings: Settings) -> None:
-    """Require that constraints are local and name no unit by number.
+    """Raise :class:`UserError` for constraints that are not local, or that name a unit by number.
 
-    Each unit may exist twice: done by the robot and by the person. Raises :class:`UserError` with the place
-    of the first rule that is not local or names a unit by number.
+    They would be wrong where each unit may exist twice: done by the robot and by a person. The error has the
+    place of the first such rule.
     """
     from foon_asp.encoding.encoding import read_encoding  # noqa: PLC0415 (takes clingo along)
     from foon_asp.rules.numbered_units import numbered_unit  # noqa: PLC0415

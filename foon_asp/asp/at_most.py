@@ -9,20 +9,20 @@ from foon_asp.problem import Costs, Objective
 
 
 def better_than(incumbents: Iterable[Costs], objectives: Iterable[Objective]) -> Bounded:
-    """Return bounds that a tree meets if it is better than each incumbent by some objective.
+    """Return bounds that a tree meets if, for each incumbent, it is better by at least one objective.
 
-    They exclude trees that an incumbent dominates. The result is for ``bounded`` of
-    :class:`foon_asp.asp.Settings`. The objectives are without ``success``. Raises :class:`UserError` for
-    numbers beyond those of clingo.
+    They exclude the trees that an incumbent dominates. The objectives must not include ``success``. The
+    result is for ``bounded`` of :class:`foon_asp.asp.Settings`. Raises :class:`UserError` for numbers beyond
+    those of clingo.
     """
-    by = tuple(objectives)
-    if all(objective.row.whole for objective in by):
-        return _bounded({o: int(costs.measure(o)) - 1 for o in by} for costs in incumbents)
-    below = tuple({o: costs.measure(o) for o in by} for costs in incumbents)
+    summed = tuple(objectives)
+    if all(objective.row.whole for objective in summed):
+        return _integer_bounds({o: int(costs.measure(o)) - 1 for o in summed} for costs in incumbents)
+    below = tuple({o: costs.measure(o) for o in summed} for costs in incumbents)
     return Bounded("", (question_encoding("at_most.lp"),), below)
 
 
-def _bounded(bounds: Iterable[Mapping[Objective, int]]) -> Bounded:
-    """Return bounds on trees in whole numbers: of each mapping, a tree has to meet at least one bound."""
+def _integer_bounds(bounds: Iterable[Mapping[Objective, int]]) -> Bounded:
+    """Return bounds from mappings of objectives to integers: a tree has to meet one bound of each mapping."""
     rules = "".join(write_at_most(number, bound) for number, bound in enumerate(bounds))
     return Bounded(rules, (question_encoding("at_most.lp"),))

@@ -1,4 +1,4 @@
-"""A question for bare clingo: files, constants, and the text of ``foon-asp facts``."""
+"""Programs for bare clingo: clingo run by a user or an engine, without the reductions of this program."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -16,16 +16,17 @@ from foon_asp.encoding.scales import Scales
 from foon_asp.encoding.stated import Stated
 from foon_asp.errors import UserError
 from foon_asp.plans.most_executions import executions_as_good, most_executions
-from foon_asp.problem import Objective, Problem, levels, reach, relevant
+from foon_asp.problem import Objective, Problem, levels, reach, relevant_units
 from foon_asp.rules.passed_constraint import Constraint
 
 
 class BareProgram(NamedTuple):
     """The files, arguments and text for a command line of clingo.
 
-    ``files`` are encodings and constraints, ``constants`` the arguments that set constants. ``facts``, and
-    ``rules`` that are in no file, are the text of one more file, as ``foon-asp facts`` prints it. The program
-    has no reduction, bound or second step.
+    ``files``: the encodings and constraints.
+    ``constants``: the arguments that set constants.
+    ``facts``, ``rules``: the facts, and the rules that are in no file. They are the text of one more file, as
+    ``foon-asp facts`` prints it.
     """
 
     files: tuple[Path, ...]
@@ -42,11 +43,11 @@ class BareProgram(NamedTuple):
 def bare_program(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, soft: Mapping[Constraint, int]
 ) -> BareProgram:
-    """Return a question for bare clingo, which finds the same optimum.
+    """Return a program with which bare clingo finds the optimum of a question.
 
-    ``soft`` has the weight of each constraint that may be broken; then the first objective is the least sum
-    of weights. Under ``success`` clingo compares rounded weights alone. Raises :class:`UserError` like
-    :func:`foon_asp.asp.solve`.
+    ``soft`` has the weight of each constraint that may be broken. Then the first objective is the least sum
+    of the weights of broken rules. Under ``success``, clingo compares rounded weights, so its optimum may
+    differ in the last digits. Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
     """
     penalty = ""
     # limits of time do not apply to bare clingo
@@ -63,37 +64,40 @@ def bare_program(
         if soft:
             raise UserError("soft constraints are not built for items that are used up")
         executions = most_executions(problem, objectives, settings)
-        by = levels(tuple(objectives))
-        scales = Scales(problem, list(executions), by)
-        facts = write_facts(problem, list(executions), scales, program.looked_at) + write_objectives(by)
-        number = problem.network.unit_number
-        return _written(
-            program, facts + write_times({number(unit): bounds for unit, bounds in executions.items()})
+        objective_levels = levels(tuple(objectives))
+        scales = Scales(problem, list(executions), objective_levels)
+        facts = write_facts(problem, list(executions), scales, program.looked_at) + write_objectives(
+            objective_levels
+        )
+        unit_number = problem.network.unit_number
+        return _bare_program_of(
+            program, facts + write_times({unit_number(unit): bounds for unit, bounds in executions.items()})
         )
     prepared = prepare(problem, objectives, settings, program._replace(understood=None))
     if prepared.tree is None:  # with all units, bare clingo can prove that a goal cannot be made
-        everything = reach(problem)._replace(units=tuple(range(len(problem.network))))
-        units = relevant(problem, everything) if program.own else everything.units
+        all_reached = reach(problem)._replace(units=tuple(range(len(problem.network))))
+        units = relevant_units(problem, all_reached) if program.own else all_reached.units
         prepared = replace(prepared, units=units)
-    return _written(program, prepared.facts + write_objectives(prepared.levels) + penalty)
+    return _bare_program_of(program, prepared.facts + write_objectives(prepared.levels) + penalty)
 
 
-def printed_program(
+def printable_program(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, soft: Mapping[Constraint, int]
 ) -> BareProgram:
-    """Return a question as :func:`bare_program` does; if there are rules, for the whole network."""
+    """Return what :func:`bare_program` returns; with user rules or encodings, for the whole network."""
     ruled = settings.constraints or settings.encodings or soft
     return bare_program(problem.whole if ruled else problem, objectives, settings, soft)
 
 
-def bare_plans(
+def bare_plan_program(
     outcome: Outcome, objectives: Sequence[Objective], settings: Settings
 ) -> tuple[BareProgram | None, dict[int, tuple[int, int]]]:
-    """Return the program of a question about plans for bare clingo, and the most executions of each unit.
+    """Return a program with which bare clingo finds the optimum of a question about plans.
 
-    ``outcome`` is an optimal plan. The program leaves the numbers of executions open. The second value maps
-    each unit id to its public number and its most executions in any plan that is as good by the first
-    objective. Returns ``None`` and an empty mapping if these are unbounded.
+    ``outcome`` is an optimal plan. The program has no facts that limit how often units are executed. The
+    second value maps the id of each unit to two numbers: its id in the whole network, and its greatest number
+    of executions in any plan that is as good by the first objective. Returns ``None`` and an empty mapping if
+    these numbers of executions are unbounded.
     """
     settings = settings._replace(deadline=None)
     executions = executions_as_good(outcome, settings)
@@ -104,19 +108,25 @@ def bare_plans(
     facts = write_facts(
         problem, list(executions), Scales(problem, list(executions), objectives), program.looked_at
     )
-    number = problem.network.unit_number
-    caps = {unit: (number(unit), cap) for unit, cap in executions.items()}
-    return _written(program, facts + write_objectives(objectives)), caps
+    unit_number = problem.network.unit_number
+    caps = {unit: (unit_number(unit), cap) for unit, cap in executions.items()}
+    return _bare_program_of(program, facts + write_objectives(objectives)), caps
 
 
 def _require_no_amounts(problem: Problem) -> None:
-    """Raise :class:`UserError` if amounts are counted: the encodings have one copy of each output."""
+    """Raise :class:`UserError` if a unit takes or makes several copies of a node, or several are wanted.
+
+    The encodings have one copy of each output.
+    """
     if problem.counts_amounts:
         raise UserError("amounts are not built for bare clingo, whose encodings have one copy of each output")
 
 
-def _written(program: Program, facts: str) -> BareProgram:
-    """Return a program for bare clingo with these facts and the program's rules as text."""
+def _bare_program_of(program: Program, facts: str) -> BareProgram:
+    """Return a program for bare clingo: the files of ``program``, these facts, and its rules as text.
+
+    Rules that check for overflow of numbers are left out.
+    """
     files = tuple(file for file in program.files if isinstance(file, Path))
     rules = (
         stated_rules

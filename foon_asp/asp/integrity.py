@@ -1,4 +1,4 @@
-"""Integrity constraints of the user, one by one, and their relaxation."""
+"""Integrity constraints of the user (rules without a head), one by one, and their relaxation."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -26,9 +26,10 @@ _PASSED_OVER = {ASTType.Program, ASTType.Comment}
 
 
 class IntegrityConstraint(NamedTuple):
-    """One rule without a head: its number, the constraint it belongs to, its place and text.
+    """A rule without a head: its number, the constraint that it belongs to, its source and text.
 
-    ``constants`` are the constants in it that were set, as ``NAME=VALUE``.
+    ``number`` counts from 1. ``constants`` are the user's settings, ``NAME=VALUE``, of the constants in the
+    rule.
     """
 
     number: int
@@ -39,7 +40,7 @@ class IntegrityConstraint(NamedTuple):
 
     @property
     def listed(self) -> ListedConstraint:
-        """The rule as a value of results."""
+        """The rule in the form in which results list it."""
         return ListedConstraint(self.number, *self.source[:2], self.text, self.constants)
 
     def __str__(self) -> str:
@@ -55,18 +56,22 @@ def relax(
 ) -> tuple[tuple[IntegrityConstraint, ...], Relaxed]:
     """Number integrity constraints from 1, and rewrite them so that trees may break them.
 
-    Without ``soft``, integrity constraint number C holds unless ``_dropped(C)`` does
+    Without ``soft``, integrity constraint number C need not hold if the atom ``_dropped(C)`` is true
     (``questions/clash.lp``). With ``soft``, it becomes a rule for ``_broken(C,Way)``, where ``Way`` has the
     values of its variables (``questions/soft.lp``). Other rules of the ``constraints`` stay as they are.
-    ``before`` are other constraints of the question; in messages, their texts are numbered before these.
-    Raises as :func:`foon_asp.encoding.encoding.read_encoding` does.
+    ``constants`` are the user's settings of constants.
+
+    ``before`` are other constraints of the question, which are not rewritten; in messages, their texts are
+    numbered before those of ``constraints``. Each constraint is first parsed and grounded without facts, so
+    that its errors are raised with their places. Raises as :func:`foon_asp.encoding.encoding.read_encoding`
+    does.
     """
     numbered: list[IntegrityConstraint] = []
     rules: dict[str, Source] = {}
-    checked = tuple(dict.fromkeys(map(find_constraint, constraints)))
-    files = loaded((*map(find_constraint, before), *checked))
-    for constraint in checked:
-        _look_over(files[constraint], deadline or Deadline())
+    distinct = tuple(dict.fromkeys(map(find_constraint, constraints)))
+    files = loaded((*map(find_constraint, before), *distinct))
+    for constraint in distinct:
+        _check_alone(files[constraint], deadline or Deadline())
         settings, original_rules = constants, files[constraint]
         if isinstance(constraint, LibraryUse):
             settings, original_rules = (
@@ -80,15 +85,15 @@ def relax(
                 rules.setdefault(str(statement), source_of(statement))
                 continue
             number = len(numbered) + 1
-            names = set(_names(original))
+            names = set(_possible_constants(original))
             set_here = tuple(setting for setting in settings if setting.partition("=")[0] in names)
             text = written(original, original_rules)
             numbered.append(IntegrityConstraint(number, constraint, source_of(original), text, set_here))
-            rule = _broken(statement, number) if soft else _unless_dropped(statement, number)
+            rule = _rule_for_broken(statement, number) if soft else _rule_unless_dropped(statement, number)
             rules[rule] = source_of(statement)
     encoding = question_encoding("soft.lp" if soft else "clash.lp")
     text = "".join(f"{rule}\n" for rule in rules)
-    return tuple(numbered), Relaxed(checked, text, encoding, rules, tuple(files.values()))
+    return tuple(numbered), Relaxed(distinct, text, encoding, rules, tuple(files.values()))
 
 
 def _statements(rules: Loaded) -> list[AST]:
@@ -99,7 +104,7 @@ def _statements(rules: Loaded) -> list[AST]:
 
 
 @contextmanager
-def placed(relaxed: Relaxed, text: str) -> Iterator[None]:
+def errors_at_sources(relaxed: Relaxed, text: str) -> Iterator[None]:
     """Return a context in which errors in the rewritten ``text`` are raised with places in the files."""
     try:
         yield
@@ -117,10 +122,10 @@ def placed(relaxed: Relaxed, text: str) -> Iterator[None]:
         raise InputError(diagnostics) from None
 
 
-def _look_over(rules: Loaded, deadline: Deadline) -> None:
-    """Parse and ground one constraint without facts, so that its errors are raised with their places.
+def _check_alone(rules: Loaded, deadline: Deadline) -> None:
+    """Parse and ground one constraint without facts, to raise its errors with their places.
 
-    Later it is only rewritten text.
+    Later it is only a part of a rewritten text.
     """
     read_encoding(rules)
     try:  # without facts, for unsafe variables alone
@@ -130,32 +135,41 @@ def _look_over(rules: Loaded, deadline: Deadline) -> None:
 
 
 def _is_constraint(statement: AST) -> bool:
+    """Whether a statement is a rule without a head."""
     if statement.ast_type != ASTType.Rule or statement.head.ast_type != ASTType.Literal:
         return False
     atom = statement.head.atom
     return atom.ast_type == ASTType.BooleanConstant and not atom.value
 
 
-def _unless_dropped(rule: AST, number: int) -> str:
-    """Return the rule with ``not _dropped(number)`` added to its body."""
-    return str(rule.update(body=[*rule.body, *_parsed(f":- not _dropped({number}).").body]))
+def _rule_unless_dropped(rule: AST, number: int) -> str:
+    """Return the text of a rule with ``not _dropped(number)`` added to its body."""
+    return str(rule.update(body=[*rule.body, *_parse_statement(f":- not _dropped({number}).").body]))
 
 
-def _broken(rule: AST, number: int) -> str:
-    """Return the rule with a head: ``_broken(number,Way)``, where ``Way`` has its global variables."""
+def _rule_for_broken(rule: AST, number: int) -> str:
+    """Return the text of a rule with the head ``_broken(number,Way)``; ``Way`` has its global variables."""
     way = ",".join(sorted(set(_global_variables(rule.body))))
-    head = _parsed(f"_broken({number},_way({way})).") if way else _parsed(f"_broken({number},_way).")
+    head = (
+        _parse_statement(f"_broken({number},_way({way})).")
+        if way
+        else _parse_statement(f"_broken({number},_way).")
+    )
     return str(rule.update(head=head.head))
 
 
-def _parsed(text: str) -> AST:
+def _parse_statement(text: str) -> AST:
+    """Return the last statement of a text."""
     statements: list[AST] = []
     parse_string(text, statements.append)
     return statements[-1]
 
 
 def _global_variables(body: Sequence[AST]) -> Iterator[str]:
-    """Return the global variables of a body: those outside the elements of aggregates and conditions."""
+    """Yield the names of the global variables of a body, with repeats.
+
+    They are those outside the elements of aggregates and outside conditional literals.
+    """
     for literal in body:
         if literal.ast_type == ASTType.ConditionalLiteral:
             continue
@@ -168,8 +182,8 @@ def _global_variables(body: Sequence[AST]) -> Iterator[str]:
             yield from variables(atom)
 
 
-def _names(statement: AST) -> Iterator[str]:
-    """Return the names in the terms of a statement that may be constants."""
+def _possible_constants(statement: AST) -> Iterator[str]:
+    """Yield the names in the terms of a statement that may be constants."""
     for node in nodes(statement):
         if node.ast_type == ASTType.SymbolicTerm and node.symbol.type is SymbolType.Function:
             yield node.symbol.name

@@ -18,11 +18,11 @@ def solve(
     mattered: set[int] | None = None,
     solved: SolvedGoals | None = None,
 ) -> Outcome:
-    """Find the best tree or plan under a lexicographic list of objectives, and prove it.
+    """Return the best tree, or the best plan where items are used up, with what is proved about it.
 
-    ``units`` decides last. At a limit, the outcome has the best tree so far. The other arguments are those of
-    :func:`foon_asp.asp.solver.solve`. Raises :class:`UserError` as that function and
-    :func:`foon_asp.plans.plan_search.solve_used_up` do.
+    ``objectives`` are lexicographic; ``units`` decides last. At a limit, the outcome has the best tree so
+    far. The other parameters are those of :func:`foon_asp.asp.solver.solve`. Raises :class:`UserError` as
+    that function and :func:`foon_asp.plans.plan_search.solve_used_up` do.
     """
     if problem.items is None:
         return solver.solve(problem, objectives, settings, reporter, mattered, solved)

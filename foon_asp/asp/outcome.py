@@ -12,10 +12,12 @@ if TYPE_CHECKING:  # few questions need it
 
 
 class Status(StrEnum):
-    """What is proved about an answer.
+    """The status of an answer: whether there is a tree, and what is proved.
 
-    ``OPTIMAL``: no tree is better, proved. ``FEASIBLE``: a limit was reached with a tree found.
-    ``INFEASIBLE``: no tree exists, proved. ``UNKNOWN``: a limit was reached without a tree.
+    ``OPTIMAL``: it is proved that no tree is better.
+    ``FEASIBLE``: a tree was found, and a limit was reached before a proof.
+    ``INFEASIBLE``: it is proved that there is no tree.
+    ``UNKNOWN``: a limit was reached before a tree was found.
 
     Example:
         >>> foon_asp.solve(foon_asp.load().problem("apple pie")).status
@@ -29,11 +31,12 @@ class Status(StrEnum):
 
 
 class Proof(StrEnum):
-    """What proves a claim.
+    """The kind of proof that a claim has.
 
-    ``solver``: an exhausted search. ``cuts``: landmark cuts that leave nothing to search, at once or case by
-    case; see docs/dev/reductions.md. ``counts``: where items are used up, no whole counts of executions cost
-    less; see docs/plans.md. ``certificate``: a certificate that was verified without either.
+    ``solver``: an exhausted search.
+    ``cuts``: landmark cuts that leave nothing to search, at once or case by case; see docs/dev/reductions.md.
+    ``counts``: where items are used up, no integer numbers of executions cost less; see docs/plans.md.
+    ``certificate``: a certificate that was verified without any of these.
     """
 
     SOLVER = "solver"
@@ -45,18 +48,22 @@ class Proof(StrEnum):
 class Outcome(NamedTuple):
     """The answer to one ``problem`` under a list of ``objectives``, the most important first.
 
-    ``status`` tells what is proved. ``units`` is the tree, by unit id in an order that executes, and
-    ``costs`` what it costs; both are ``None`` if there is no tree. ``bounds`` gives for each objective in
-    order the best value that any tree can still have (for ``success`` the greatest), as far as it is proved;
-    an objective counts only among the trees that are best by those before it. ``seconds`` has the time of
-    each phase. ``proof`` is what an ``optimal`` or ``infeasible`` answer is based on, otherwise ``None``.
-    ``encodings`` is the folder that replaced the built-in encodings, if any: they then define what is best.
-    ``certified`` are the objectives, from the first on, by which a certificate proves the tree the best.
-    ``left`` counts the units that were left for the search, 0 if it was not needed. ``cuts`` are the sets of
-    object nodes whose landmarks the reductions used for bounds; see :mod:`foon_asp.hypergraph`; goals that
-    share landmarks leave them out. ``stopped`` names the limit that stopped an unproved answer, and what was
-    being done. ``cases`` is the case split of a proof by cuts, if it has one: a unit, then the cases without
-    the unit and the cases with it.
+    ``status``: what is proved.
+    ``units``, ``costs``: the tree, as unit ids in an order that executes, and its costs; ``None`` without a
+    tree.
+    ``bounds``: for each objective in order, the best value that any tree can still have, as far as it is
+    proved. An objective counts only among the trees that are best by those before it.
+    ``seconds``: the time of each phase.
+    ``encodings``: the folder that replaced the built-in encodings, which then define what is best; else
+    ``None``.
+    ``proof``: what proves an ``optimal`` or ``infeasible`` answer; ``None`` for other answers.
+    ``certified``: the objectives, from the first on, by which a certificate proves the tree the best.
+    ``left``: the number of units that were left for the search; 0 if no search was needed.
+    ``cuts``: sets of object nodes, by id, whose landmarks the reductions used for bounds; see
+    :mod:`foon_asp.hypergraph`. Goals that share landmarks leave them out.
+    ``stopped``: the limit that stopped an unproved answer, and what was being done.
+    ``cases``: the case split of a proof by cuts, if it has one: a unit, then the cases without it and with
+    it.
 
     Example:
         >>> answer = foon_asp.solve(foon_asp.load().problem("ice"))

@@ -1,4 +1,4 @@
-"""Postconditions of every answer, independent of how it was found."""
+"""Postconditions: checks of each answer before it is returned, whatever search found it."""
 
 import shlex
 from collections.abc import Callable, Collection, Sequence
@@ -17,10 +17,10 @@ from foon_asp.rules.passed_constraint import RuleText
 
 
 class Postconditions:
-    """Checks of the answers to one question.
+    """Checks of the answers to one question; a check that fails raises :class:`BugError` with the question.
 
-    ``levels`` are the objectives as optimized. ``own`` says that all rules are built-in: then a tree
-    that does not execute is a bug. A violated check raises :class:`BugError` with the question.
+    ``levels`` are the objectives as optimized. ``own`` says that all rules are built-in; then a tree that
+    does not execute is a bug of this program.
     """
 
     def __init__(
@@ -30,15 +30,15 @@ class Postconditions:
         self._settings, self._own = settings, own
 
     def require(self, holds: bool, otherwise: Callable[[], str]) -> None:
-        """Raise :class:`BugError` with a message and the question unless ``holds``."""
+        """Raise :class:`BugError` with the message of ``otherwise`` and the question, unless ``holds``."""
         if not holds:
             raise BugError(f"{otherwise()}\n{self._question()}")
 
-    def tree(self, units: Collection[int]) -> tuple[int, ...]:
-        """Require that units execute and make the goals; return them in an executable order.
+    def require_executable(self, units: Collection[int]) -> tuple[int, ...]:
+        """Require that units can be executed and make the goals; return them in an executable order.
 
-        If there is an order in which each item can even be used up, that order is returned. Raises
-        :class:`UserError` where user rules made a tree that does not execute.
+        Among the executable orders, one is preferred that also executes if items are used up. Raises
+        :class:`UserError` where user rules allowed a tree that does not execute.
         """
         problem = self.problem
         order = executable_order(problem, units)
@@ -57,10 +57,10 @@ class Postconditions:
         run = used_up_run(problem, problem.tree(listed))
         return listed if run.order is None else tuple(listed[position] for position in run.order)
 
-    def no_tree(self) -> None:
-        """Require that no tree makes all goals, by forward reachability over the units relevant for them.
+    def require_no_tree(self) -> None:
+        """Require that no tree makes all goals and required sets of the restriction.
 
-        The required sets of a restriction are goals as well.
+        This is checked by forward reachability over the units that are relevant for them.
         """
         needs, gives, producers = self.problem.needs, self.problem.gives, self.problem.makers
         kitchen = self.problem.kitchen
@@ -101,82 +101,92 @@ class Postconditions:
             lambda: "the answer is that there is no tree, but the goals can be made",
         )
 
-    def outcome(self, outcome: Outcome, best: Costs | None = None, reduced: Reduced | None = None) -> None:
-        """Require that the claims of an outcome with a tree are true.
+    def require_true_claims(
+        self, outcome: Outcome, best: Costs | None = None, reduced: Reduced | None = None
+    ) -> None:
+        """Require that the claims of an outcome with a tree are true: its costs, its bounds and its proof.
 
-        ``best`` has the costs of the incumbent of the search, ``reduced`` is the result of the reductions;
-        both may be ``None``.
+        ``best`` has the costs of the incumbent of the search: the tree must not cost more. ``reduced`` is the
+        result of the reductions: it must agree with the costs. Both may be ``None``.
         """
         assert outcome.units is not None
         assert outcome.costs is not None
         units, costs = outcome.units, outcome.costs
         self.require(len(set(units)) == len(units), lambda: f"a unit is twice in the tree {list(units)}")
-        anew = self.problem.costs(units)
+        recomputed = self.problem.costs(units)
         self.require(
-            costs == anew,
-            lambda: f"the answer says {_shown(costs)}, but the tree {list(units)} costs {_shown(anew)}",
+            costs == recomputed,
+            lambda: (
+                f"the answer says {_costs_text(costs)}, "
+                f"but the tree {list(units)} costs {_costs_text(recomputed)}"
+            ),
         )
         self.require(
             best is None or costs.key(self.levels) <= best.key(self.levels),
-            lambda: f"the tree {list(units)} costs {_shown(costs)}, but one was found for {_shown(best)}",
-        )
-        self._bounds(outcome, costs)
-        if reduced is not None and reduced.costs is not None:
-            self._reduced(outcome, costs, reduced, reduced.costs)
-
-    def settled(self, tree: Collection[int], chosen: Collection[int], by: Sequence[Objective]) -> None:
-        """Require that a tree costs the same as the ``chosen`` one by some objectives."""
-        ours, theirs = self.problem.costs(tree), self.problem.costs(chosen)
-        self.require(
-            ours.key(by) == theirs.key(by),
             lambda: (
-                f"the tree {sorted(tree)} is to be as good as {sorted(chosen)} by {', '.join(by)}, "
-                f"but costs {_shown(ours)} and not {_shown(theirs)}"
+                f"the tree {list(units)} costs {_costs_text(costs)}, "
+                f"but one was found for {_costs_text(best)}"
+            ),
+        )
+        self._require_bounds(outcome, costs)
+        if reduced is not None and reduced.costs is not None:
+            self._require_agreement(outcome, costs, reduced, reduced.costs)
+
+    def require_equal_costs(
+        self, tree: Collection[int], chosen: Collection[int], objectives: Sequence[Objective]
+    ) -> None:
+        """Require that two trees, given by unit ids, cost the same by some objectives."""
+        tree_costs, chosen_costs = self.problem.costs(tree), self.problem.costs(chosen)
+        self.require(
+            tree_costs.key(objectives) == chosen_costs.key(objectives),
+            lambda: (
+                f"the tree {sorted(tree)} is to be as good as {sorted(chosen)} by {', '.join(objectives)}, "
+                f"but costs {_costs_text(tree_costs)} and not {_costs_text(chosen_costs)}"
             ),
         )
 
-    def no_better(self, harder: Outcome, easier: Outcome, by: str) -> None:
-        """Require that a tree is not better than the proved optimum of an easier question.
+    def require_no_better(self, harder: Outcome, easier: Outcome, description: str) -> None:
+        """Require that the tree of ``harder`` is no better than the proved optimum of ``easier``.
 
-        The easier question allows more trees; ``by`` names it in the message. Checks nothing if its optimum
-        is not proved.
+        The question of ``easier`` allows more trees; ``description`` names it in the message. Nothing is
+        checked if its optimum is not proved, or if ``harder`` has no tree.
         """
         if harder.costs is None or easier.status not in {Status.OPTIMAL, Status.INFEASIBLE}:
             return
-        theirs = easier.costs
+        easier_costs = easier.costs
         self.require(
-            theirs is not None and harder.costs.key(self.levels) >= theirs.key(self.levels),
+            easier_costs is not None and harder.costs.key(self.levels) >= easier_costs.key(self.levels),
             lambda: (
-                f"the best tree {by} costs {_shown(theirs)}, but a question with fewer trees has one for "
-                f"{_shown(harder.costs)}"
+                f"the best tree {description} costs {_costs_text(easier_costs)}, "
+                f"but a question with fewer trees has one for {_costs_text(harder.costs)}"
             ),
         )
 
-    def _bounds(self, outcome: Outcome, costs: Costs) -> None:
-        """Require that the bounds allow the tree, and meet its costs if it is called optimal."""
+    def _require_bounds(self, outcome: Outcome, costs: Costs) -> None:
+        """Require that the bounds allow the tree, and equal its costs if it is called optimal."""
         exact = {objective: costs.measure(objective) for objective in self.levels}
         self.require(
             outcome.status is not Status.OPTIMAL or outcome.bounds == exact,
             lambda: (
-                f"the tree is called optimal and costs {_shown(costs)}, "
-                f"but the bounds are {list(map(_text, outcome.bounds.values()))}"
+                f"the tree is called optimal and costs {_costs_text(costs)}, "
+                f"but the bounds are {list(map(_number_text, outcome.bounds.values()))}"
             ),
         )
-        for objective, have in exact.items():
+        for objective, cost in exact.items():
             bound = outcome.bounds.get(objective)
-            if bound is None or (bound > have if multiplies(objective) else bound < have):
+            if bound is None or (bound > cost if multiplies(objective) else bound < cost):
                 return  # later objectives count among better trees only
             self.require(
-                bound == have,
+                bound == cost,
                 partial(
                     "the tree has {} by {}, which the bound {} rules out".format,
-                    _text(have),
+                    _number_text(cost),
                     objective,
-                    _text(bound),
+                    _number_text(bound),
                 ),
             )
 
-    def _reduced(self, outcome: Outcome, costs: Costs, reduced: Reduced, exact: ExactCosts) -> None:
+    def _require_agreement(self, outcome: Outcome, costs: Costs, reduced: Reduced, exact: ExactCosts) -> None:
         """Require that reductions and outcome agree on the costs, and that the bound allows the tree."""
         assert outcome.units is not None
         units = frozenset(outcome.units)
@@ -196,7 +206,7 @@ class Postconditions:
                 else exact.total(objective, total) == costs.measure(objective)
                 for objective, total in totals.items()
             ),
-            lambda: f"the tree {actions} costs {_shown(costs)}, but the reductions make it {totals}",
+            lambda: f"the tree {actions} costs {_costs_text(costs)}, but the reductions make it {totals}",
         )
         total = sum(map(exact, actions))
         self.require(
@@ -213,7 +223,7 @@ class Postconditions:
         )
 
     def _question(self) -> str:
-        """Return the question as a command and its settings, to reproduce it."""
+        """Return the question as a command with its settings, by which it can be reproduced."""
         problem, settings = self.problem, self._settings
         words = ["foon-asp", "facts"]
         for goal in problem.goals:
@@ -225,7 +235,7 @@ class Postconditions:
             words += ["--rule" if isinstance(constraint, RuleText) else "--constraint", str(constraint)]
         if settings.replaced is not None:
             words += ["--encodings", str(settings.replaced)]
-        others = {
+        other_settings = {
             "constants": ", ".join(settings.constants),
             "reductions": ", ".join(sorted(settings.reductions)) or "none",
             "options of clingo": " ".join(settings.clingo_options),
@@ -239,20 +249,21 @@ class Postconditions:
             [
                 "what was asked, with the network, kitchen and rates of your command:",
                 f"  {shlex.join(words)}",
-                *(f"  {name}: {text}" for name, text in others.items() if text),
+                *(f"  {name}: {text}" for name, text in other_settings.items() if text),
             ]
         )
 
 
-def _shown(costs: Costs | None) -> str:
+def _costs_text(costs: Costs | None) -> str:
+    """Return costs as text: ``units 2, inputs 6``."""
     if costs is None:
         return "nothing"
-    return ", ".join(f"{name} {_text(figure)}" for name, figure in costs.measures.items())
+    return ", ".join(f"{name} {_number_text(figure)}" for name, figure in costs.measures.items())
 
 
-def _text(figure: int | Fraction | None) -> str:
-    """Return a figure as text, also if it has more digits than Python converts at once."""
+def _number_text(figure: int | Fraction | None) -> str:
+    """Return a number as text, ``3/5`` or ``unknown``, even if it has more digits than ``str`` allows."""
     if figure is None:
         return "unknown"
-    above, below = Decimal(figure.numerator), Decimal(figure.denominator)
-    return f"{above}" if below == 1 else f"{above}/{below}"
+    numerator, denominator = Decimal(figure.numerator), Decimal(figure.denominator)
+    return f"{numerator}" if denominator == 1 else f"{numerator}/{denominator}"

@@ -1,4 +1,4 @@
-"""Preparation of every question: the units that the cut keeps, their scales, and the program."""
+"""Preparation of a question: the units that can matter, the scales of their costs, and the program."""
 
 from collections.abc import Collection, Sequence
 from contextlib import ExitStack
@@ -24,7 +24,7 @@ from foon_asp.hypergraph import (
     reduce,
     reduce_under_rules,
 )
-from foon_asp.problem import Contradiction, Objective, Problem, first_tree, levels, reach, relevant
+from foon_asp.problem import Contradiction, Objective, Problem, first_tree, levels, reach, relevant_units
 
 if TYPE_CHECKING:  # often clingo need not run
     from foon_asp.encoding.run import Run
@@ -38,13 +38,13 @@ class Prepared:
     """A question, prepared for the search.
 
     ``levels``: the objectives as optimized.
-    ``units``: the units of the network that remain after the cut.
-    ``tree``: a tree of the units, ``None`` if nothing makes the goals.
-    ``reduced``: the result of the reductions, ``None`` if none ran.
-    ``stopped``: whether a limit or ctrl-C interrupted the cut, so that nothing is known.
+    ``units``: the units of the network that remain after the reductions, by id.
+    ``tree``: a tree of these units; ``None`` if they do not make the goals.
+    ``reduced``: the result of the reductions; ``None`` if none ran.
+    ``stopped``: whether a limit or ctrl-C interrupted the preparation, so that nothing is known.
     ``kept``: the problem restricted by user rules, if rules were applied before the search.
     ``contradicted``: whether user rules allow no tree.
-    ``full_program``: the program with all user rules, if rules were applied.
+    ``full_program``: the program with all user rules, if rules were applied before the search.
     ``unsettled``: whether clingo has to enforce some rules; ``tree`` and ``reduced`` ignore these.
     ``redundant``: whether trees under these rules may need units that lead to no goal.
     """
@@ -66,28 +66,29 @@ class Prepared:
 
     @cached_property
     def holds(self) -> Postconditions:
-        """The postcondition checks for answers to this question."""
+        """The postconditions that answers to this question have to satisfy."""
         return Postconditions(self.kept or self.problem, self.levels, self.settings, self.program.own)
 
     @cached_property
     def scales(self) -> "Scales":
-        """The scales by which costs of units become integers of clingo; raises like :class:`Scales`."""
+        """The scales by which costs of the units become integers of clingo; raises like :class:`Scales`."""
         from foon_asp.encoding.scales import Scales  # noqa: PLC0415
 
         return Scales(self.problem, self.units, self.levels)
 
     @cached_property
     def facts(self) -> str:
-        """The facts of the problem, as text, except the facts about objectives.
+        """The facts of the problem, as text, without the facts about objectives.
 
-        Raises ``KeyboardInterrupt`` at a limit.
+        They include bounds on costs and, where needed, the sets of units that rules require. Raises
+        ``KeyboardInterrupt`` at a limit.
         """
         from foon_asp.encoding import fact_writer as writing  # noqa: PLC0415
 
         with self.deadline.watched("writing facts"):
             if self.full_program is not None:  # the predicates that rules read are known
-                read = writing.READ_BY_OURS | self.program.looked_at
-                facts = writing.write_facts_read(self.problem, self.units, read, self.scales)
+                predicates_read = writing.READ_BY_OURS | self.program.looked_at
+                facts = writing.write_facts_read(self.problem, self.units, predicates_read, self.scales)
             else:
                 looked_at = None if self.program.own else self.program.looked_at
                 facts = writing.write_facts(self.problem, self.units, self.scales, looked_at)
@@ -100,9 +101,10 @@ class Prepared:
             return facts + writing.write_required([map(number, sorted(remaining & units)) for units in sets])
 
     def keeps(self, units: Collection[int]) -> bool | None:
-        """Whether a tree keeps to all user rules, which have to be local.
+        """Whether a tree keeps to all user rules. ``None`` if a limit was reached first.
 
-        ``None`` if a limit was reached first. Raises :class:`UserError` for a fault in a rule.
+        The rules have to be local: units outside the tree must not matter for them. clingo decides, unless
+        all rules are ready-made. Raises :class:`UserError` for a fault in a rule.
         """
         program = self.full_program or self.program
         if program.ready_made is not None:
@@ -111,11 +113,14 @@ class Prepared:
 
         tree = replace(self, units=tuple(sorted(units)), program=program)
         numbers = list(map(self.problem.network.unit_number, tree.units))
-        ended = tree.run(write_given(numbers), "ignore", (question_encoding("second_opinion.lp"),))
-        return True if ended.units is not None else (False if ended.exhausted else None)
+        run = tree.run(write_given(numbers), "ignore", (question_encoding("second_opinion.lp"),))
+        return True if run.units is not None else (False if run.exhausted else None)
 
     def require_kept(self, units: Collection[int]) -> None:
-        """Require that a tree keeps to the rules applied before the search, if these are local."""
+        """Require that a tree keeps to the user rules that were applied before the search.
+
+        Nothing is checked if these rules are not local, or if clingo enforced some of them.
+        """
         rules = self.full_program.added if self.full_program else None
         if rules is not None and rules.local and not self.unsettled:
             kept = self.keeps(units)
@@ -131,9 +136,10 @@ class Prepared:
         encodings: Sequence[Path] = (),
         predicates: Sequence[tuple[str, int]] = (),
     ) -> "Run":
-        """Run clingo with additional facts and encodings, as :func:`foon_asp.encoding.clingo_run.run` does.
+        """Run clingo with additional facts and encodings; see :func:`foon_asp.encoding.clingo_run.run`.
 
-        Returns an empty run if a limit is reached before that.
+        Returns an empty run if a limit is reached while the facts are written. Errors in rewritten
+        constraints have their places in the files.
         """
         from foon_asp.encoding.clingo_run import run  # noqa: PLC0415 (both take clingo along)
         from foon_asp.encoding.run import Run  # noqa: PLC0415
@@ -146,9 +152,9 @@ class Prepared:
             return Run()
         with ExitStack() as stack:
             if relaxed is not None:
-                from foon_asp.asp.integrity import placed  # noqa: PLC0415 (which parses)
+                from foon_asp.asp.integrity import errors_at_sources  # noqa: PLC0415 (which parses)
 
-                stack.enter_context(placed(relaxed, text))
+                stack.enter_context(errors_at_sources(relaxed, text))
             return run(
                 (*program.files, *encodings),
                 text,
@@ -170,54 +176,56 @@ def prepare(
     brief: bool = False,
     solved: SolvedGoals | None = None,
 ) -> Prepared:
-    """Prepare a question: cut the network down to the units that can matter.
+    """Prepare a question: find the units that can matter, and where possible a tree and reductions.
 
-    Without user rules, these are the units that the goals can need; with user rules, all units that can
-    execute, since a constraint may require units that no goal needs. User rules that are understood are
-    applied first, unless ``settings`` are without reductions. Raises :class:`UserError` if an objective needs
-    rates that are not known.
+    Without user rules, the units that can matter are those that the goals can need. With user rules, they are
+    all units that can be executed, since a constraint may require units that no goal needs. User rules that
+    only remove or require units are applied first, unless ``settings`` are without reductions.
 
-    ``listener``: receives trees and bounds. With one, there are reductions, which may exclude every tree but
-    one of the best. If ``program`` has bounds on trees, there are none, since perhaps only excluded trees
-    meet the bounds.
-    ``for_sale``: object nodes that may be added to the kitchen.
-    ``brief``: whether the best tree without the unsettled rules is not needed.
-    ``solved``: solved goals of the same question.
+    ``listener``: receives trees and bounds. Without one, no reductions by costs are made, so that all trees
+    remain. With one, they may exclude every tree except one of the best. If ``program`` has bounds on trees,
+    none are made either, since perhaps only excluded trees meet the bounds.
+    ``for_sale``: ids of object nodes that may be added to the kitchen.
+    ``brief``: whether to skip the search for the best tree without the rules that clingo has to enforce.
+    ``solved``: goals of the same question that are solved already, by which reductions save work.
+
+    At a limit, a question with ``stopped`` is returned. Raises :class:`UserError` if an objective needs data
+    that are missing, and for items that are used up.
     """
     if problem.items is not None:
         raise UserError("this question is not built for items that are used up")
-    by = levels(tuple(objectives))
-    problem.require_known_for(by)
-    program.require_facts(problem, by)
-    for objective in program.named.intersection(by):
+    objective_levels = levels(tuple(objectives))
+    problem.require_known_for(objective_levels)
+    program.require_facts(problem, objective_levels)
+    for objective in program.named.intersection(objective_levels):
         raise UserError(
             f"found #const {objective} in a constraint or an encoding, but that is the name of a measure: "
             "give one of them another name"
         )
-    if sum(not objective.row.whole for objective in by) > 1:
+    if sum(not objective.row.whole for objective in objective_levels) > 1:
         from foon_asp.encoding.scales import require_one_rounded  # noqa: PLC0415 (few questions have two)
 
-        require_one_rounded(problem, by)
+        require_one_rounded(problem, objective_levels)
     deadline = settings.begun
-    prepared = Prepared(problem, by, settings, deadline, program)
+    prepared = Prepared(problem, objective_levels, settings, deadline, program)
     try:
         if problem.measures:
             with deadline.watched("measuring units"):
                 problem.apply_measures(deadline)
         if program.added and settings.reductions and not for_sale:
             with deadline.watched("cutting the network"):
-                prepared = _applied(prepared, program.added)
+                prepared = _apply_rules(prepared, program.added)
         if prepared.contradicted:
             return prepared
         program, kept = prepared.program, prepared.kept or problem
-        if listener is not None and (program.own or _limits_unsettled(prepared)):
+        if listener is not None and (program.own or _can_reduce_unsettled(prepared)):
             presolve = partial(reduce, solved=None if prepared.kept else solved)
             if prepared.unsettled:
                 course = BOUND if brief else None
                 presolve = partial(reduce_under_rules, redundant=prepared.redundant, course=course)
             reduced = presolve(
                 kept,
-                by,
+                objective_levels,
                 NONE if program.bounded else settings.reductions,
                 lambda: deadline.passed,
                 Bounds(listener) if prepared.unsettled else listener,
@@ -233,18 +241,18 @@ def prepare(
             tree = first_tree(stocked, reached)
             # backwards with the kitchen as it is: items for sale may also be made
             cut = program.own or (prepared.unsettled and not prepared.redundant)
-            units = relevant(kept, reached) if cut else tuple(sorted(reached.units))
+            units = relevant_units(kept, reached) if cut else tuple(sorted(reached.units))
         return replace(prepared, units=units, tree=None if tree is None else frozenset(tree))
     except KeyboardInterrupt:
         deadline.interrupt()
         return replace(prepared, stopped=True)
 
 
-def _applied(prepared: Prepared, rules: "Rules | ReadyMade") -> Prepared:
+def _apply_rules(prepared: Prepared, rules: "Rules | ReadyMade") -> Prepared:
     """Apply the user rules that remove units or require sets of units, and return the question.
 
-    If other rules remain, the question is ``unsettled``; if rules are not local, it may be returned
-    unchanged.
+    If other rules remain, the question is ``unsettled``; if no tree can satisfy the rules, it is
+    ``contradicted``. It is returned unchanged if the rules cannot be applied because they are not local.
     """
     if rules.unsettled and not rules.local:
         return prepared
@@ -264,8 +272,8 @@ def _applied(prepared: Prepared, rules: "Rules | ReadyMade") -> Prepared:
     return replace(prepared, kept=kept, unsettled=True, redundant=rules.redundant)
 
 
-def _limits_unsettled(prepared: Prepared) -> bool:
-    """Whether reductions by cost run although clingo has to enforce some rules."""
+def _can_reduce_unsettled(prepared: Prepared) -> bool:
+    """Whether reductions by costs are possible although clingo has to enforce some rules."""
     return (
         prepared.unsettled and not prepared.program.bounded and Reduction.DEAR in prepared.settings.reductions
     )

@@ -1,4 +1,4 @@
-"""The encodings of one question, put together."""
+"""The clingo program of one question."""
 
 from collections.abc import Collection
 from pathlib import Path
@@ -17,23 +17,27 @@ if TYPE_CHECKING:  # clingo, which is not needed where no rule is added
 class Program(NamedTuple):
     """Encodings in the order of loading, and clingo's arguments.
 
+    ``files``: the encodings and user rules.
     ``exact_success``: an encoding for exact comparison of products of rates, loaded after ``files``.
-    ``arguments``, ``constants``: all arguments, and those of them that set constants, which come first.
+    ``arguments``: clingo's arguments; those that set constants come first.
+    ``constants``: the arguments that set constants.
     ``replaced``: whether some of the first three files differ from the built-in ones.
     ``own``: whether every rule is built in, so that units that the goals do not need cannot matter.
-    ``rules``: rules as text, besides the files.
-    ``bounded``: whether a tree of the unbounded question may be excluded.
+    ``rules``: rules as text, in addition to the files.
+    ``bounded``: whether bounds on costs may exclude trees.
     ``looked_at``: the predicates that user rules read, by name and arity.
     ``text``: the content of the files when they were checked.
     ``endless``: whether grounding may not terminate.
-    ``encodings``: the folder that replaces the built-in encodings, ``None`` without one.
+    ``encodings``: the folder that replaces the built-in encodings; ``None`` without one.
     ``ours``: the files without those that the user added.
-    ``understood``: the added rules, analysed. ``None`` if there are none, if encodings are replaced, or if
+    ``understood``: the user rules, analysed. ``None`` if there are none, if encodings are replaced, or if
     rules may be broken or dropped.
     ``named``: the names of constants that files define.
-    ``reads``: the predicates that user rules read and that have no facts in some questions, with their first
-    argument where it is a name.
-    ``ready_made``: the added rules if all are ready-made constraints; clingo then runs the ``whole`` program.
+    ``reads``: the predicates that user rules read and that have facts only in some questions. Each is a pair
+    of its name and its first argument, which is empty if it is no name.
+    ``ready_made``: the user rules, if all are ready-made constraints; else ``None``. Then ``files`` are
+    without them.
+    ``whole``: for ready-made constraints, the program with these rules, which clingo runs.
     """
 
     files: tuple[Loaded, ...]
@@ -57,11 +61,11 @@ class Program(NamedTuple):
 
     @property
     def added(self) -> "Rules | ReadyMade | None":
-        """The added rules as analysed, ``None`` without any."""
+        """The user rules as ready-made or analysed ones, ``None`` without any."""
         return self.ready_made or self.understood
 
     def require_facts(self, problem: Problem, objectives: Collection[Objective]) -> None:
-        """Raise :class:`UserError` for facts that rules read and that the question lacks."""
+        """Raise :class:`UserError` if user rules read facts that a question by these objectives lacks."""
         terms = {objective.row.term for objective in objectives if objective.row.is_fact}
         for name, first in sorted(self.reads):
             if name == "cost" and (first not in terms if first else not terms):
@@ -77,7 +81,7 @@ class Program(NamedTuple):
 
     @property
     def settled(self) -> "Program":
-        """The program without user rules, for a problem to which these rules were applied."""
+        """The program without user rules, for a problem whose restriction has their effect."""
         return self._replace(
             files=(*self.ours, question_encoding("required.lp")),
             arguments=self.arguments[len(self.constants) :],

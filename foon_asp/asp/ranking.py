@@ -1,4 +1,4 @@
-"""Trees in order of their costs, one by one; none contains another."""
+"""Enumeration of trees in order of their costs; no tree contains another."""
 
 from bisect import insort
 from collections.abc import Iterator, Sequence
@@ -19,6 +19,8 @@ Rounded = tuple[int, ...]  # by level: costs rounded as in clingo
 
 
 class _Tree(NamedTuple):
+    """A tree: its units by id in an executable order, its exact costs, and its costs rounded as in clingo."""
+
     units: tuple[int, ...]
     costs: Costs
     rounded: Rounded
@@ -27,10 +29,13 @@ class _Tree(NamedTuple):
 class Ranked:
     """The trees of a question, the best first, under a lexicographic list of objectives.
 
-    Trees that contain an earlier one are excluded. Construction cuts the network down. Iterate to get each
-    tree as unit ids in an executable order, with its costs. After iteration, ``complete`` is true if there
-    are no other trees; after a limit or ctrl-C it is false. Then ``pending`` has the other trees found, in
-    order, but better trees may be missing. Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
+    Trees that contain an earlier one are excluded. Iteration yields each tree as unit ids in an executable
+    order, with its costs. After iteration, ``complete`` is true if there are no other trees. After a limit or
+    ctrl-C it is false. Then ``pending`` has the trees that were found but not yielded, in order; better trees
+    may be missing.
+
+    The constructor assembles the program and prepares the question. Raises :class:`UserError` like
+    :func:`foon_asp.asp.solve`.
     """
 
     def __init__(
@@ -40,6 +45,7 @@ class Ranked:
         settings: Settings,
         reporter: Reporter | None = None,
     ) -> None:
+        """Assemble the program and prepare the question; only warnings are reported."""
         self._program = assemble(settings, (reporter or Reporter()).warning, problem=problem)
         self._prepared = prepare(problem, objectives, settings, self._program)
         self._holds = self._prepared.holds
@@ -49,9 +55,9 @@ class Ranked:
         self.pending: list[tuple[tuple[int, ...], Costs]] = []
 
     def __iter__(self) -> Iterator[tuple[tuple[int, ...], Costs]]:
-        """Iterate over trees in order of exact costs.
+        """Yield trees in order of their exact costs.
 
-        clingo finds trees in order of rounded costs. A tree is yielded once no better tree can be found
+        clingo finds trees in order of their rounded costs. A tree is yielded once no better tree can be found
         later. With rounded costs, a tree found later can be better if its weight is higher by less than the
         number of units whose weight is rounded down (docs/dev/exact-success.md).
         """
@@ -62,35 +68,38 @@ class Ranked:
         avoided = ""
         while True:
             text = write_objectives(self.levels) + avoided
-            ended = self._prepared.run(text, encodings=(question_encoding("other_trees.lp"),))
-            if ended.units is None:
+            run = self._prepared.run(text, encodings=(question_encoding("other_trees.lp"),))
+            if run.units is None:
                 break
-            tree = self._tree(ended.units)
+            tree = self._tree_of_numbers(run.units)
             insort(waiting, tree, key=lambda entry: (entry.costs.key(self.levels), sorted(entry.units)))
-            if not ended.exhausted:
+            if not run.exhausted:
                 break
-            self._check(ended, tree, found)
+            self._require_in_order(run, tree, found)
             while waiting and self._is_settled(waiting[0], tree.rounded):
                 yield self._next_in_order(waiting)
             if not tree.units:  # every other tree contains it
                 break
             avoided += write_avoided(len(found), map(self.problem.network.unit_number, tree.units))
             found.append(tree)
-        if not ended.exhausted:
+        if not run.exhausted:
             self.pending = [(tree.units, tree.costs) for tree in waiting]
             return
         self.complete = True
         while waiting:
             yield self._next_in_order(waiting)
 
-    def _tree(self, numbers: frozenset[int]) -> _Tree:
-        """Return a tree from the public numbers of its units, with exact and rounded costs."""
+    def _tree_of_numbers(self, numbers: frozenset[int]) -> _Tree:
+        """Return the tree of units that are given by id in the whole network, with exact and rounded costs.
+
+        Raises :class:`UserError` for an id of no unit, :class:`BugError` for a tree that does not execute.
+        """
         network = self.problem.network
         units = [network.unit_of_number(number) for number in sorted(numbers)]
         ids = [unit for unit in units if unit is not None]
         if len(ids) < len(units):
             raise UserError("a tree was found with units that are not in the network: check the encodings")
-        order = self._holds.tree(ids)
+        order = self._holds.require_executable(ids)
         self._prepared.require_kept(order)
         costs, scales = self.problem.costs(order), self._prepared.scales
         rounded = (
@@ -99,24 +108,25 @@ class Ranked:
         )
         return _Tree(order, costs, tuple(rounded))
 
-    def _check(self, ended: Run, tree: _Tree, earlier: Sequence[_Tree]) -> None:
-        """Require right rounded costs of a tree, in order, and that it contains no earlier tree.
+    def _require_in_order(self, run: Run, tree: _Tree, earlier: Sequence[_Tree]) -> None:
+        """Require that clingo's costs of a tree are right and in order, and that it contains no earlier tree.
 
         Raises :class:`UserError` where replaced encodings measure something else.
         """
         units, _, rounded = tree
-        agree = [cost % 2**32 for cost in rounded] == [cost % 2**32 for cost in ended.cost]
-        last = earlier[-1].rounded if earlier else ()
-        if not (agree and last <= rounded) and self._program.replaced:
+        agree = [cost % 2**32 for cost in rounded] == [cost % 2**32 for cost in run.cost]
+        last_rounded = earlier[-1].rounded if earlier else ()
+        if not (agree and last_rounded <= rounded) and self._program.replaced:
             raise UserError(
                 f"{self._program.files[1]} does not measure what the objectives {', '.join(self.levels)} "
                 "measure here, so trees cannot be ordered"
             )
         self._holds.require(
-            agree, lambda: f"clingo reports the costs {list(ended.cost)}, the units {units} cost {rounded}"
+            agree, lambda: f"clingo reports the costs {list(run.cost)}, the units {units} cost {rounded}"
         )
         self._holds.require(
-            last <= rounded, lambda: f"the tree {units} costs {rounded}, but comes after one for {last}"
+            last_rounded <= rounded,
+            lambda: f"the tree {units} costs {rounded}, but comes after one for {last_rounded}",
         )
         self._holds.require(
             not any(set(units).issuperset(before.units) for before in earlier),
@@ -134,11 +144,11 @@ class Ranked:
         return units, costs
 
     def _is_settled(self, tree: _Tree, last: Rounded) -> bool:
-        """Whether a tree is at least as good as every tree with rounded costs of ``last`` or more."""
-        by = self._prepared.scales.rounded
-        if by is None:
+        """Whether a tree is at least as good as every tree whose rounded costs are ``last`` or more."""
+        rounded_objective = self._prepared.scales.rounded
+        if rounded_objective is None:
             return True
-        position = self.levels.index(by)
+        position = self.levels.index(rounded_objective)
         if last[:position] > tree.rounded:  # with equal prefixes, the prefix is less
             return True
         return last[position] >= tree.rounded[position] + self._prepared.scales.doubt(tree.units)

@@ -24,21 +24,21 @@ class Reporter:
         """
 
     def statistics(self, text: str) -> None:
-        """Receive clingo's statistics of one search, where its option ``--stats`` asks for them.
+        """Receive clingo's statistics of one search, if the option ``--stats`` asks for them.
 
         Parameters:
             text: A line for each statistic; a single line where clingo did not run.
         """
 
     def tree(self, costs: Costs) -> None:
-        """Receive a tree that was found, the best so far.
+        """Receive the costs of a tree that was found, the best so far.
 
         Parameters:
-            costs: What the tree costs.
+            costs: The costs of the tree.
         """
 
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
-        """Receive a proved bound.
+        """Receive a proved bound on an objective.
 
         Parameters:
             objective: The objective that is being optimized.
@@ -46,10 +46,10 @@ class Reporter:
         """
 
     def step(self, word: str, done: int, total: int) -> None:
-        """Receive how many answers of several are found: once at the start, then after each.
+        """Receive the number of answers found so far: once at the start, then after each answer.
 
         Parameters:
-            word: What is being done.
+            word: What is being done, as a word for people.
             done: The number of answers found.
             total: The number of answers asked for.
         """

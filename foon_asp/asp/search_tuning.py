@@ -6,15 +6,19 @@ from typing import NamedTuple
 class SearchTuning(NamedTuple):
     """Sizes of the programs that clingo gets, and of the results that are stored.
 
-    ``nearest_units``: units of the first reduced-cost neighbourhood, and of landmarks explored at once.
-    ``nearest_growth``: factor by which the neighbourhood grows if it has no tree.
-    ``explored_units``: explored units, at most, not counting units that mattered before.
-    ``explored_growth``: factor by which the explored units grow in each round.
-    ``open_rounds``: searches for trees with open preconditions, each with more units explored.
-    ``cut_objects``: object nodes of the cuts that a certificate tries first; it finds others by itself.
-    ``units_without_clingo``: units of a network that is searched faster than clingo is imported.
-    ``max_weight``: greatest weight of a constraint that may be broken or dropped, so that sums of weights fit
-    clingo.
+    ``nearest_units``: the number of units in the first reduced-cost neighbourhood, and of units of landmarks
+    explored at once.
+    ``nearest_growth``: the factor by which the neighbourhood grows if it has no tree.
+    ``explored_units``: the greatest number of explored units, without those that mattered before.
+    ``explored_growth``: the factor by which the explored units grow in each round.
+    ``open_rounds``: the greatest number of searches for trees with open preconditions; each explores more
+    units.
+    ``cut_objects``: the number of object nodes in the cuts that a certificate tries first; it finds others by
+    itself.
+    ``units_without_clingo``: the greatest number of units of a network that is searched faster than clingo is
+    imported.
+    ``max_weight``: the greatest weight of a constraint that may be broken or dropped, so that sums of weights
+    fit clingo.
     """
 
     nearest_units: int = 200

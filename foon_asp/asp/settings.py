@@ -1,4 +1,4 @@
-"""How to solve, and under which constraints."""
+"""Settings of the search: constraints, encodings, reductions and limits."""
 
 from collections.abc import Mapping
 from fractions import Fraction
@@ -17,10 +17,13 @@ from foon_asp.rules.passed_constraint import Constraint
 
 
 class Relaxed(NamedTuple):
-    """Constraints that are loaded rewritten.
+    """Constraints that are rewritten, so that a tree may break them or the search may drop them.
 
-    They are checked like others, but replaced by ``rules`` and the built-in ``encoding``, a file of
-    ``encodings/questions``. ``places`` maps the text of each rule to its place in ``files``.
+    ``constraints``: the original constraints, which are checked like others, but not loaded.
+    ``rules``: their rewritten text.
+    ``encoding``: the built-in file of ``encodings/questions`` that is loaded with it.
+    ``places``: the source of each rewritten rule, by its text.
+    ``files``: the files that the places are in.
     """
 
     constraints: tuple[Constraint, ...]
@@ -33,15 +36,15 @@ class Relaxed(NamedTuple):
 class Bounded(NamedTuple):
     """Upper bounds on the costs of a tree, as built-in encodings.
 
+    ``rules``: the facts that the encodings read.
     ``files``: encodings of ``encodings/questions``.
-    ``rules``: the facts that these read.
-    ``below``: mappings of costs with fractions, by objective; of each, a tree has to be below at least one
-    cost. They are written once their scale is known.
-    ``incomparable``: known plans, as executions by unit; no plan may contain one.
+    ``below``: mappings from objectives to costs with fractions. A tree has to be below at least one cost of
+    each mapping. They are written as facts once their scale is known.
+    ``incomparable``: known plans, as numbers of executions by unit id; no plan may contain one.
 
-    The bounds are antimonotone: every subtree of a tree that meets them meets them, too, so units that the
-    goals do not need cannot matter. If items are used up, there are no rules and files, and each of ``below``
-    has one cost.
+    Every subtree of a tree that meets the bounds meets them, too (they are antimonotone), so units that the
+    goals do not need cannot matter. If items are used up, there are no rules and files, and each mapping of
+    ``below`` has one cost.
     """
 
     rules: str = ""
@@ -53,11 +56,15 @@ class Bounded(NamedTuple):
 class Settings(NamedTuple):
     """Settings of the search: constraints, encodings, reductions and limits.
 
-    ``constraints`` are added to the encodings; ``encodings`` is a folder whose files replace the built-in
-    ones; ``constants`` are ``NAME=VALUE`` settings; ``clingo_options`` go to clingo unchanged.
-    ``reductions`` come before the search as far as constraints allow, and not with bounds or other encodings.
-    ``relaxed`` are rewritten constraints, ``bounded`` are upper bounds on costs. ``deadline`` is for
-    everything from the cut to the last proof, and has begun.
+    ``constraints``: user rules, which are added to the encodings.
+    ``encodings``: a folder whose files replace the built-in ones; ``None`` without one.
+    ``constants``: settings of constants, ``NAME=VALUE``.
+    ``clingo_options``: options that go to clingo unchanged.
+    ``reductions``: those to make before the search. They are made as far as constraints allow, and not with
+    bounds or other encodings.
+    ``relaxed``: rewritten constraints.
+    ``bounded``: upper bounds on costs.
+    ``deadline``: the limits on everything from the reductions to the last proof; they have begun.
     """
 
     constraints: tuple[Constraint, ...] = ()
@@ -71,10 +78,13 @@ class Settings(NamedTuple):
 
     @property
     def replaced(self) -> Path | None:
-        """The folder of encodings that replace the built-in ones, ``None`` where these are unchanged."""
+        """The folder of encodings that replace the built-in ones; ``None`` if these are unchanged.
+
+        If files of the built-in folder itself were changed, this is the built-in folder.
+        """
         if self.encodings is None:
-            ours = encodings_folder()
-            return None if all(is_own(ours / name) for name in ENCODING_FILES) else ours
+            built_in_folder = encodings_folder()
+            return None if all(is_own(built_in_folder / name) for name in ENCODING_FILES) else built_in_folder
         return self.encodings
 
     @property
@@ -84,5 +94,5 @@ class Settings(NamedTuple):
 
     @property
     def begun(self) -> Deadline:
-        """The deadline that has begun, or one without limits that begins now."""
+        """The ``deadline``; without one, a deadline without limits that begins now."""
         return self.deadline or Deadline()

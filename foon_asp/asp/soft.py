@@ -1,4 +1,4 @@
-"""Soft constraints: the least penalty first, then the best tree among those that have it."""
+"""Soft constraints: trees of the least penalty, and the best tree among these."""
 
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
@@ -18,7 +18,7 @@ from foon_asp.rules.passed_constraint import Constraint, find_constraint
 
 
 class Broken(NamedTuple):
-    """A soft constraint, its weight, and the number of its instances that the tree breaks."""
+    """An integrity constraint that may be broken, its weight, and how many of its instances a tree breaks."""
 
     constraint: IntegrityConstraint
     weight: int
@@ -29,8 +29,9 @@ class SoftOutcome(NamedTuple):
     """An answer under soft constraints.
 
     ``penalty`` is the sum of ``weight`` times ``ways`` over all soft ``constraints``, for the tree of
-    ``outcome``. Without a tree, ``penalty`` is ``None`` and ``constraints`` is empty. An ``optimal`` outcome
-    has the least penalty of all trees, and is the best by the objectives among the trees with that penalty.
+    ``outcome``. Without a tree, ``penalty`` is ``None`` and ``constraints`` is empty. The tree of an
+    ``optimal`` outcome has the least penalty, and is the best by the objectives among the trees with this
+    penalty.
     """
 
     outcome: Outcome
@@ -41,10 +42,10 @@ class SoftOutcome(NamedTuple):
 def soft_rules(
     settings: Settings, weights: Mapping[Constraint, int]
 ) -> tuple[tuple[IntegrityConstraint, ...], dict[int, int], Relaxed]:
-    """Number the integrity constraints of soft constraints, with their weights, and rewrite them.
+    """Return the integrity constraints of soft constraints, their weights by number, and rewritten rules.
 
-    Returns the constraints, the weight by number, and the rewritten rules. Raises :class:`UserError` for a
-    soft constraint that is also a constraint of ``settings``.
+    ``weights`` are by soft constraint. The rewritten rules count the instances that a tree breaks. Raises
+    :class:`UserError` for a soft constraint that is also a constraint of ``settings``.
     """
     weight_of = {find_constraint(constraint): weight for constraint, weight in weights.items()}
     both = weight_of.keys() & set(map(find_constraint, settings.constraints))
@@ -54,7 +55,7 @@ def soft_rules(
     constraints, relaxed = relax(
         weights, settings.constants, soft=True, deadline=settings.begun, before=settings.constraints
     )
-    by_number = {c.number: weight_of[c.constraint] for c in constraints}
+    by_number = {constraint.number: weight_of[constraint.constraint] for constraint in constraints}
     return constraints, by_number, relaxed._replace(rules=relaxed.rules + write_soft(by_number))
 
 
@@ -65,10 +66,10 @@ def solve_soft(
     weights: Mapping[Constraint, int],
     reporter: Reporter | None = None,
 ) -> SoftOutcome:
-    """Find the tree with the least penalty, and among these the best by a lexicographic list of objectives.
+    """Find the tree with the least penalty, and among these the best by lexicographic objectives.
 
     ``weights`` are by soft constraint; the constraints of ``settings`` are hard. Each instance of a rule that
-    a tree breaks costs the weight of the rule; instances differ in the values of global variables. Raises
+    a tree breaks costs the weight of the rule. Two instances differ in the values of global variables. Raises
     :class:`UserError` like :func:`foon_asp.asp.solve`.
     """
     settings = settings._replace(deadline=settings.begun)
@@ -77,50 +78,61 @@ def solve_soft(
     program = assemble(settings, (reporter or Reporter()).warning, problem=problem)
     prepared = prepare(problem, objectives, settings, program)
     holds = prepared.holds
-    spent: dict[str, float] = {}
-    least: int | None = None
-    proved = True
-    ended = Run()
+    seconds: dict[str, float] = {}
+    least_penalty: int | None = None
+    is_least_proved = True
+    penalty_run = Run()
 
-    def ask(question_facts: str) -> Run:
+    def run_with_penalty(question_facts: str) -> Run:
+        """Run clingo for the least penalty, under additional facts."""
         return prepared.run(question_facts + write_least_penalty(1), predicates=[("_broken", 2)])
 
     def soft_outcome(outcome: Outcome, ways: Mapping[int, int]) -> SoftOutcome:
-        broken = tuple(Broken(c, by_number[c.number], ways.get(c.number, 0)) for c in constraints)
+        """Return an outcome with its penalty; ``ways`` has the number of broken instances by constraint."""
+        broken = tuple(
+            Broken(constraint, by_number[constraint.number], ways.get(constraint.number, 0))
+            for constraint in constraints
+        )
         return SoftOutcome(outcome, sum(rule.weight * rule.ways for rule in broken), broken)
 
     if prepared.tree is not None:
-        ended = ask("")
-        proved = ended.exhausted
-        spent["soft"] = ended.ground_seconds + ended.solve_seconds
-        if ended.units is not None:
-            least = sum(by_number[number] * ways for number, ways in ended.atoms["_broken"].items())
-    bound = "" if least is None else write_greatest_penalty(least)
+        penalty_run = run_with_penalty("")
+        is_least_proved = penalty_run.exhausted
+        seconds["soft"] = penalty_run.ground_seconds + penalty_run.solve_seconds
+        if penalty_run.units is not None:
+            least_penalty = sum(
+                by_number[number] * ways for number, ways in penalty_run.atoms["_broken"].items()
+            )
+    bound = "" if least_penalty is None else write_greatest_penalty(least_penalty)
     outcome = solve_prepared(prepared, objectives, bound)
     holds.require(
-        least is None or outcome.status is not Status.INFEASIBLE, lambda: "the least penalty was lost"
+        least_penalty is None or outcome.status is not Status.INFEASIBLE, lambda: "the least penalty was lost"
     )
-    if not proved and outcome.status is Status.OPTIMAL:
+    if not is_least_proved and outcome.status is Status.OPTIMAL:
         outcome = outcome._replace(status=Status.FEASIBLE, proof=None, bounds={})
-    outcome.seconds.update(spent)
+    outcome.seconds.update(seconds)
     if outcome.units is not None:
         # auxiliary predicates may leave the broken instances of a tree open: the least penalty counts
-        checked = ask(write_tree(outcome.units))
-        if checked.exhausted:
+        check_run = run_with_penalty(write_tree(outcome.units))
+        if check_run.exhausted:
             holds.require(
-                checked.units == frozenset(outcome.units),
+                check_run.units == frozenset(outcome.units),
                 lambda: f"the tree {outcome.units} does not hold when its soft constraints are checked",
             )
-            answer = soft_outcome(outcome, checked.atoms["_broken"])
+            answer = soft_outcome(outcome, check_run.atoms["_broken"])
             holds.require(
-                least is None or answer.penalty in range(least if proved else 0, least + 1),
+                least_penalty is None
+                or answer.penalty in range(least_penalty if is_least_proved else 0, least_penalty + 1),
                 lambda: (
-                    f"the penalty of {outcome.units} is {answer.penalty}, but the least one was to be {least}"
+                    f"the penalty of {outcome.units} is {answer.penalty}, "
+                    f"but the least one was to be {least_penalty}"
                 ),
             )
             return answer
-    if ended.units is not None:  # stopped: the incumbent
-        tree = holds.tree(ended.units)
-        stopped = outcome._replace(status=Status.FEASIBLE, units=tree, costs=problem.costs(tree), bounds={})
-        return soft_outcome(stopped, ended.atoms["_broken"])
+    if penalty_run.units is not None:  # stopped: the incumbent
+        tree = holds.require_executable(penalty_run.units)
+        incumbent_outcome = outcome._replace(
+            status=Status.FEASIBLE, units=tree, costs=problem.costs(tree), bounds={}
+        )
+        return soft_outcome(incumbent_outcome, penalty_run.atoms["_broken"])
     return SoftOutcome(outcome, None, ())

@@ -1,4 +1,4 @@
-"""Optimal task trees: the cut, the runs of clingo, and the resulting claim."""
+"""Optimal task trees: reductions, runs of clingo, and the resulting outcome."""
 
 import itertools
 import time
@@ -45,13 +45,18 @@ def solve(
     mattered: set[int] | None = None,
     solved: SolvedGoals | None = None,
 ) -> Outcome:
-    """Find the best task tree under a lexicographic list of objectives, and prove it.
+    """Return the best task tree under lexicographic objectives, with what is proved about it.
 
-    ``units`` decides last, so that the tree is irredundant. At the time limit or ctrl-C, the outcome has the
-    incumbent. ``mattered`` are public numbers of units that mattered in a similar question; the units that
-    matter in this question are added to it. ``solved`` are solved goals of the same question; this goal is
-    added. Raises :class:`UserError` for faults in constraints, encodings and options, and for ``success``
-    without known rates.
+    ``units`` decides last, so that the tree is irredundant. At a limit or ctrl-C, the outcome has the
+    incumbent.
+
+    ``mattered``: units, by id in the whole network, that the search for a similar question explored. They are
+    explored first, and the units that this search explores are added.
+    ``solved``: goals of the same question that are solved already, by which reductions save work; this goal
+    is added.
+
+    Raises :class:`UserError` for faults in constraints, encodings and options, and for ``success`` without
+    known rates. Raises :class:`BugError` if stand-ins that the best tree may need are not in the network.
     """
     settings, reporter = settings or Settings(), reporter or Reporter()
     if not problem.has_stand_ins_for(objectives):
@@ -68,14 +73,17 @@ def solve(
 
 
 def solve_prepared(prepared: Prepared, objectives: Sequence[Objective], rules: str = "") -> Outcome:
-    """Find the best task tree of a prepared question under additional rules, and prove it."""
+    """Return the best task tree of a prepared question under additional ``rules``, with what is proved.
+
+    Nothing is reported.
+    """
     return _Solver(
         prepared, objectives, _IncumbentListener(prepared.problem, objectives, Reporter()), {}, rules
     ).solve()
 
 
 class _IncumbentListener(Listener):
-    """Listener that stores the incumbent, and reports better trees and bounds."""
+    """Listener that keeps the incumbent, and reports better trees, bounds and statistics."""
 
     def __init__(self, problem: Problem, objectives: Sequence[Objective], reporter: Reporter) -> None:
         self.problem, self.levels, self.reporter = problem, levels(tuple(objectives)), reporter
@@ -84,16 +92,18 @@ class _IncumbentListener(Listener):
         self._last_costed: tuple[Units, Costs] | None = None  # cache of one tree
 
     def tree(self, units: Units) -> None:
+        """Receive a tree; if it is better than the incumbent, keep and report it."""
         costs = self.costs(units)
         if self.incumbent is None or costs.key(self.levels) < self.incumbent[1].key(self.levels):
             self.incumbent = units, costs
             self.reporter.tree(costs)
 
     def bound(self, costs: ExactCosts, bound: int) -> None:
+        """Receive a proved lower bound, and report it as one on the first objective."""
         self.reporter.bound(self.levels[0], costs.first(bound))
 
-    def ended(self, run: "Run") -> None:
-        """Receive the statistics of a finished run of clingo, and report them."""
+    def run_ended(self, run: "Run") -> None:
+        """Receive a finished run of clingo; if it has statistics, report them and note that clingo ran."""
         if run.statistics:
             self.clingo_ran = True
             self.reporter.statistics(run.statistics)
@@ -117,6 +127,12 @@ class _Solver:
         rules: str = "",
         mattered: set[int] | None = None,
     ) -> None:
+        """Take a prepared question.
+
+        ``listener`` has the incumbent of the reductions, and receives better trees. ``seconds``, the time by
+        phase, is added to. ``rules`` are additional rules as text. ``mattered`` are units to explore first,
+        by id in the whole network; explored units are added to it.
+        """
         self.prepared, self.objectives, self.listener, self.seconds = (
             prepared,
             tuple(objectives),
@@ -129,10 +145,14 @@ class _Solver:
         self._scales: Scales | None = None  # None before the first run of clingo
         self._ground: tuple[object, Grounded] | None = None  # the last question grounded, and its program
         self._open_preconditions = False  # whether trees found may have open preconditions
-        self._mattered = set() if mattered is None else mattered  # public numbers of the units explored first
+        # units to explore first, by id in the whole network
+        self._mattered = set() if mattered is None else mattered
 
     def solve(self) -> Outcome:
-        """Return the outcome; at a limit or ctrl-C, the outcome with the incumbent."""
+        """Return the outcome of the search; at a limit or ctrl-C, the outcome with the incumbent.
+
+        The ground program is closed at the end.
+        """
         deadline = self.deadline
         try:
             with deadline.watched(deadline.doing, late=True, grace=True):
@@ -142,14 +162,18 @@ class _Solver:
             if self.listener.incumbent is None and self._initial_incumbent is not None:
                 self.listener.tree(self._initial_incumbent)
             best = self.listener.incumbent
-            return self._outcome(Status.UNKNOWN, None, {}) if best is None else self._limited(best[0], ())
+            return (
+                self._outcome(Status.UNKNOWN, None, {})
+                if best is None
+                else self._outcome_at_limit(best[0], ())
+            )
         finally:
             if self._ground:
                 self._ground[1].close()
 
     @property
     def _initial_incumbent(self) -> Units | None:
-        """The tree found while the network was cut down; ``None`` if user rules or bounds may exclude it."""
+        """The tree of the prepared question; ``None`` if user rules or bounds may exclude it."""
         decided = self.program.own and not self.program.bounded
         return self.prepared.tree if decided else None
 
@@ -162,7 +186,7 @@ class _Solver:
             if prepared.full_program is not None:
                 prepared.keeps(Units())  # to say what is wrong with a rule, though no tree depends on it
             if not prepared.contradicted:
-                self.holds.no_tree()
+                self.holds.require_no_tree()
             return self._outcome(Status.INFEASIBLE, None, {})
         if prepared.unsettled and prepared.reduced and prepared.reduced.subproblem:
             return self._solve_unsettled(prepared.reduced, prepared.reduced.subproblem, prepared.tree)
@@ -174,14 +198,15 @@ class _Solver:
             incumbent = run.units
         self.listener.tree(incumbent)
         if prepared.reduced and prepared.reduced.settled:
-            return self._optimal(incumbent)
+            return self._optimal_outcome(incumbent)
         # at a limit, not even what clingo would be given is written
-        return self._limited(incumbent, ()) if self.deadline.passed else self._search(incumbent)
+        return self._outcome_at_limit(incumbent, ()) if self.deadline.passed else self._search(incumbent)
 
     def _solve_unsettled(self, reduced: Reduced, subproblem: Subproblem, tree: Units) -> Outcome:
         """Find the best tree under rules that the reductions ignored.
 
-        ``tree`` is the best one without these rules, if that is proved; if it keeps to them, it is optimal.
+        ``tree`` is the best tree without these rules, if that is proved. If it also keeps to the rules, it is
+        optimal.
         """
         if self._mattered:  # the tree breaks rules, as in the similar question
             return self._solve_violated(subproblem, tree)
@@ -189,38 +214,43 @@ class _Solver:
         if keeps:
             self.listener.tree(tree)
             if reduced.settled:
-                return self._optimal(tree)
+                return self._optimal_outcome(tree)
         self.prepared = replace(self.prepared, reduced=reduced._replace(settled=False))
         if keeps:
-            return self._gap_bounded(subproblem, tree, None)
+            return self._search_gap_bounded(subproblem, tree, None)
         return self._solve_violated(subproblem, tree)
 
     def _solve_violated(self, subproblem: Subproblem, tree: Units) -> Outcome:
-        """Find the best tree under rules that the given tree breaks.
+        """Find the best tree under rules that ``tree`` breaks; ``tree`` is the best one without the rules.
 
-        Searches trees with open preconditions first, and then ever larger neighbourhoods of the goals.
+        Three searches are tried in turn: by a price on a limited sum, for trees with open preconditions, and
+        in ever larger neighbourhoods of the goals.
         """
         if (
             not subproblem.redundant
             and not self._mattered
-            and (outcome := self._with_priced_limit(subproblem, tree)) is not None
+            and (outcome := self._solve_by_priced_limit(subproblem, tree)) is not None
         ):
             return outcome
-        run = None if subproblem.redundant else self._with_open_preconditions(subproblem, tree)
+        run = None if subproblem.redundant else self._search_with_open_preconditions(subproblem, tree)
         is_best = run is not None
         if run is None:
-            run = self._near_goals(subproblem, tree)
+            run = self._search_near_goals(subproblem, tree)
         if run.units is None:
             return self._outcome(Status.INFEASIBLE if run.exhausted else Status.UNKNOWN, None, {})
         self.listener.tree(run.units)
         if is_best:
-            return self._optimal(self._best_reported(run.units))
+            return self._optimal_outcome(self._best_reported(run.units))
         if not run.exhausted:
-            return self._limited(run.units, ())
-        return self._gap_bounded(subproblem, self._best_reported(run.units), run)
+            return self._outcome_at_limit(run.units, ())
+        return self._search_gap_bounded(subproblem, self._best_reported(run.units), run)
 
-    def _with_priced_limit(self, subproblem: Subproblem, tree: Units) -> Outcome | None:
-        """Find the best tree by a Lagrangian price on a limited sum; ``None`` if no price decides."""
+    def _solve_by_priced_limit(self, subproblem: Subproblem, tree: Units) -> Outcome | None:
+        """Find the best tree under a limit on a sum by putting a Lagrangian price on the sum.
+
+        This is tried for each sum of the rules whose limit ``tree`` exceeds. ``None`` if no price yields a
+        tree that keeps to all rules.
+        """
         from foon_asp.hypergraph.priced_limit import limited  # noqa: PLC0415 (of use with few rules)
 
         program = self.prepared.full_program
@@ -244,43 +274,49 @@ class _Solver:
                 if result.units is not None:
                     self._restrict_to(result.units | result.tree)
                     return self._search(result.tree)
-                return self._gap_bounded(subproblem, result.tree, None)
+                return self._search_gap_bounded(subproblem, result.tree, None)
         return None
 
-    def _near_goals(self, subproblem: Subproblem, tree: Units) -> "Run":
-        """Search ever larger neighbourhoods of the goals for the best tree; return the last run."""
-        everything, size = subproblem.everything(), SEARCH.nearest_units
+    def _search_near_goals(self, subproblem: Subproblem, tree: Units) -> "Run":
+        """Search ever larger neighbourhoods of the goals until one has a tree; return the last run.
+
+        The last neighbourhood is the whole subproblem. If a limit is reached, the run is not exhausted.
+        """
+        all_units, size = subproblem.everything(), SEARCH.nearest_units
         while True:
-            among = everything if size >= len(everything) else subproblem.nearest(size) | tree
+            neighbourhood = all_units if size >= len(all_units) else subproblem.nearest(size) | tree
             size *= SEARCH.nearest_growth
-            self._restrict_to(among)
+            self._restrict_to(neighbourhood)
             run = self._run(self.levels)
-            if run.units is not None or not run.exhausted or among >= everything:
+            if run.units is not None or not run.exhausted or neighbourhood >= all_units:
                 return run
 
-    def _gap_bounded(self, subproblem: Subproblem, tree: Units, run: "Run | None") -> Outcome:
+    def _search_gap_bounded(self, subproblem: Subproblem, tree: Units, run: "Run | None") -> Outcome:
         """Search the gap-bounded subproblem: all units that trees up to the cost of ``tree`` can have.
 
-        ``run`` is the search that found the tree, ``None`` if the tree was found without clingo.
+        ``run`` is the search that found the tree, ``None`` if the tree was found without clingo. If that
+        search was over all these units, it is not repeated.
         """
         try:
             with self.deadline.watched("cutting the network", late=True):
                 candidates = subproblem.units_within(subproblem.total(tree), lambda: self.deadline.passed)
         except KeyboardInterrupt:
-            return self._limited(tree, ())
+            return self._outcome_at_limit(tree, ())
         if run is not None and run.units is not None and candidates <= set(self.prepared.units):
             return self._conclude(run, run.units)
         self._restrict_to(candidates)
         return self._search(tree)
 
-    def _with_open_preconditions(self, subproblem: Subproblem, tree: Units) -> "Run | None":
-        """Search a relaxation: preconditions of units outside ``explored`` may stay open.
+    def _search_with_open_preconditions(self, subproblem: Subproblem, tree: Units) -> "Run | None":
+        """Search a relaxation in which preconditions of unexplored units may stay open.
 
-        Every tree that keeps to the rules has a part that is feasible in the relaxation. So an infeasible
-        relaxation proves that there is no tree, and a best tree without open preconditions is optimal.
-        Landmarks are required as well, since every tree has a unit of each. Units of best trees are explored
-        in further rounds. Returns the run with a proof, ``None`` if no run has one within
-        ``SEARCH.open_rounds``.
+        An open precondition is one that no unit of the tree makes. Every tree that keeps to the rules has a
+        part that is feasible in the relaxation. So an infeasible relaxation proves that there is no tree, and
+        a best tree without open preconditions is optimal. A unit of each landmark is required as well, since
+        every tree has one. The units of the best tree and their rivals are explored in the next round.
+
+        Returns the run with a proof; ``None`` if no run has one within ``SEARCH.open_rounds``. The explored
+        units are added to ``_mattered``.
         """
         from foon_asp.encoding.fact_writer import write_known, write_objectives, write_required  # noqa: PLC0415
 
@@ -288,17 +324,23 @@ class _Solver:
         program, number = self.program, self.problem.network.unit_number
         files = (question_encoding("loose_ends.lp"), *program.files[1:], question_encoding("required.lp"))
         # shrinking cores takes longer than it saves here
-        others, quick = (
+        replaced_options, quick_options = (
             ((SHRINKING,), ()) if self.prepared.settings.clingo_options else (CLINGO_OPTIONS, _QUICK_OPTIONS)
         )
-        arguments = (*(argument for argument in program.arguments if argument not in others), *quick)
+        arguments = (
+            *(argument for argument in program.arguments if argument not in replaced_options),
+            *quick_options,
+        )
         program = program._replace(files=files, arguments=arguments)
         landmarks = subproblem.landmarks()
         required = write_required([map(number, sorted(landmark)) for landmark in landmarks])
         before = subproblem.left_of(self._mattered)
         max_units = SEARCH.explored_units + len(before)
         explored = subproblem.with_only_achievers(
-            before.union(tree, *(e for e in landmarks if len(e) <= SEARCH.nearest_units)), max_units
+            before.union(
+                tree, *(landmark for landmark in landmarks if len(landmark) <= SEARCH.nearest_units)
+            ),
+            max_units,
         )
         by, fewest = _UNITS_ONLY, 0  # fast, and enough to prove that there is no tree
         for _ in range(SEARCH.open_rounds):
@@ -307,17 +349,17 @@ class _Solver:
             prepared = replace(self.prepared, program=program)
             text = required + write_known(map(number, sorted(explored)))
             run = prepared.run(text + write_objectives(by))
-            self.listener.ended(run)
+            self.listener.run_ended(run)
             if by != self.levels and run.exhausted and run.units is not None:
-                tree = self._ids(run.units)
+                tree = self._unit_ids(run.units)
                 if tree <= explored:  # it keeps to all rules: its cost bounds the optimum
                     by, fewest = self.levels, len(tree)
-                    worst = self._scaled().weight(by[0], tree)
+                    worst = self._current_scales().weight(by[0], tree)
                     run = prepared.run(text + write_objectives(by), f"opt,{worst}")
-                    self.listener.ended(run)
+                    self.listener.run_ended(run)
             if not run.exhausted or run.units is None:
                 return run if run.exhausted else None
-            run.units = self._ids(run.units)
+            run.units = self._unit_ids(run.units)
             if run.units <= explored:
                 return self._settle_open_preconditions(run, program, text, explored, fewest)
             if len(explored) > max_units:
@@ -335,14 +377,15 @@ class _Solver:
     def _settle_open_preconditions(
         self, run: "Run", program: Program, text: str, explored: Collection[int], fewest: int
     ) -> "Run | None":
-        """Find the exactly best tree of a relaxation with open preconditions, where costs are rounded.
+        """Find the best tree of a relaxation with open preconditions by exact costs.
 
-        Every tree has at least ``fewest`` units. Returns the run with the best tree; ``None`` if it is not
-        proved best, or if it has units outside ``explored``, so that it may have open preconditions.
+        ``run`` found its best tree by rounded costs. Every tree has at least ``fewest`` units. Returns the
+        run, with the tree that is best by exact costs. ``None`` if the tree is not proved best, or if it has
+        units that are not ``explored``, so that it may have open preconditions.
         """
         assert run.units is not None
         self._measures_agree(run.units, run.cost, self.levels)
-        if self._scaled().rounded is None:
+        if self._current_scales().rounded is None:
             return run
         before, rules = self.program, self.rules
         self.program, self.rules, self._open_preconditions = program, rules + text, True
@@ -354,13 +397,13 @@ class _Solver:
         return run if proved and best <= set(explored) else None
 
     def _take_whole_program(self) -> None:
-        """Switch to the whole program, in which clingo enforces ready-made constraints."""
+        """Switch to the program in which clingo enforces ready-made constraints, if there is one."""
         if self.program.whole is not None:
             self.program = self.program.whole
             self.prepared = replace(self.prepared, program=self.program)
 
     def _restrict_to(self, units: Collection[int]) -> None:
-        """Restrict all later searches to these units."""
+        """Restrict all later searches to these units; close the ground program."""
         self.prepared = replace(self.prepared, units=tuple(sorted(units)))
         self._scales = None
         if self._ground:
@@ -368,34 +411,38 @@ class _Solver:
             self._ground = None
 
     def _search(self, incumbent: Units) -> Outcome:
-        """Search for a tree better than the incumbent, and return the outcome."""
-        wanted, strict = self._opt_mode(incumbent)
-        run = self._run(self.levels, opt_mode=wanted, bounds=True)
+        """Search for a tree better than the incumbent, and return the outcome.
+
+        If there is none, the incumbent is optimal.
+        """
+        opt_mode, strict = self._opt_mode(incumbent)
+        run = self._run(self.levels, opt_mode=opt_mode, bounds=True)
         if run.units is None:
             if not run.exhausted:
-                return self._limited(incumbent, run.lower)
+                return self._outcome_at_limit(incumbent, run.lower)
             self.holds.require(strict, lambda: "a tree is at hand, but the encodings say that there is none")
-            return self._optimal(incumbent)
+            return self._optimal_outcome(incumbent)
         return self._conclude(run, run.units)
 
     def _conclude(self, run: "Run", units: Units) -> Outcome:
-        """Return the outcome of a search that ended with a tree."""
+        """Return the outcome of a run that found a tree; settle ties that rounded costs leave."""
         best, proved = self._best_reported(units), run.exhausted
         if self._measures_agree(units, run.cost, self.levels) and proved:
             best, proved = self._settle(best)
-        return self._optimal(best) if proved else self._limited(best, run.lower)
+        return self._optimal_outcome(best) if proved else self._outcome_at_limit(best, run.lower)
 
     def _best_reported(self, units: Units) -> Units:
-        """Return the incumbent; ``units`` with replaced encodings, which may define another order."""
+        """Return the incumbent; with replaced encodings ``units``, since these may define another order."""
         assert self.listener.incumbent is not None
         return units if self.program.replaced else self.listener.incumbent[0]
 
     def _opt_mode(self, incumbent: Units) -> tuple[str, bool]:
-        """Return clasp's ``--opt-mode`` bounded by the incumbent, and whether the bound is strict.
+        """Return clasp's ``--opt-mode``, such as ``opt,2,5``, and whether only better trees satisfy it.
 
-        After the reductions, trees as good as the incumbent need not be among the remaining units, so only
-        better trees are searched. Where rates multiply, rounded weights do not decide, so the bound is not
-        strict. No bound is below 0, which some strategies of clasp do not support.
+        The mode bounds costs by those of the incumbent. After reductions by costs, trees as good as the
+        incumbent need not be among the remaining units, so only better trees are searched. If costs are
+        rounded, they do not decide, so equal rounded costs are allowed. Without such reductions, the mode is
+        ``opt``. No bound is below 0, which some strategies of clasp do not support.
         """
         prepared = self.prepared
         if (
@@ -404,7 +451,7 @@ class _Solver:
             or Reduction.BOUNDS not in prepared.settings.reductions
         ):
             return "opt", False
-        scales = self._scaled()
+        scales = self._current_scales()
         level = len(self.levels) if scales.rounded is None else self.levels.index(scales.rounded)
         figures = [scales.weight(objective, incumbent) for objective in self.levels[:level]]
         if scales.rounded is not None:
@@ -416,13 +463,17 @@ class _Solver:
         figures[-1] -= 1
         return ",".join(["opt", *map(str, figures)]), True
 
-    def _optimal(self, units: Units) -> Outcome:
+    def _optimal_outcome(self, units: Units) -> Outcome:
+        """Return the outcome in which a tree is optimal, so that its costs are the bounds."""
         costs = self.listener.costs(units)
         return self._outcome(Status.OPTIMAL, units, {o: costs.measure(o) for o in self.levels})
 
-    def _limited(self, units: Units, lower: Sequence[int]) -> Outcome:
-        """Return the outcome at a limit, without bounds where encodings are replaced."""
-        bounds = {} if self.program.replaced else self._bounds(lower)
+    def _outcome_at_limit(self, units: Units, lower: Sequence[int]) -> Outcome:
+        """Return the outcome with the incumbent at a limit; with replaced encodings, it has no bounds.
+
+        ``lower`` are clingo's lower bounds.
+        """
+        bounds = {} if self.program.replaced else self._objective_bounds(lower)
         return self._outcome(Status.FEASIBLE, self._best_reported(units), bounds)
 
     def _run(
@@ -434,23 +485,25 @@ class _Solver:
         bounds: bool = False,
         fewer: Mapping[int, int] | None = None,
     ) -> "Run":
-        """Run clingo for the best tree by some of the levels, and report trees.
+        """Run clingo for the best tree by ``objectives``, and report trees; return the run.
 
-        ``products``: products of success rates, given by exponents. Trees with one of them are excluded.
-        ``wanted``: the index of a product that is required instead.
-        ``fewer``: by index of a product, a number of units; trees with the product and fewer units are
-        allowed.
-        ``bounds``: whether to report bounds on the question, too.
+        ``products``: totals by the rounded objective, such as products of success rates, each as the vector
+        of :meth:`Scales.vector`. Trees with one of these totals are excluded.
+        ``wanted``: the index of a total that is required instead.
+        ``fewer``: numbers of units by index of a total. Trees with this total and fewer units are allowed.
+        ``opt_mode``: the ``--opt-mode`` of clasp.
+        ``bounds``: whether to report bounds, too.
         """
         on_bound = self._report_bound if bounds and not self.program.replaced else None
 
         def on_tree(units: Units) -> None:
+            """Report a tree, given by ids in the whole network, unless it may have open preconditions."""
             if not self._open_preconditions:
-                self.listener.tree(self._ids(units))
+                self.listener.tree(self._unit_ids(units))
 
         self._take_whole_program()
         try:
-            run = self._grounded(objectives, products, wanted, fewer or {}).search(
+            run = self._ground_program(objectives, products, wanted, fewer or {}).search(
                 self.deadline, opt_mode, on_tree, on_bound
             )
         except KeyboardInterrupt:  # before the search began
@@ -459,34 +512,37 @@ class _Solver:
 
             run = Run()
         self.seconds["solve"] = self.seconds.get("solve", 0.0) + run.solve_seconds
-        self.listener.ended(run)
+        self.listener.run_ended(run)
         if run.units is not None:
-            run.units = self._ids(run.units)
+            run.units = self._unit_ids(run.units)
         return run
 
-    def _grounded(
+    def _ground_program(
         self,
         objectives: Sequence[Objective],
         products: Sequence[Mapping[int, int]],
         wanted: int | None,
         fewer: Mapping[int, int],
     ) -> "Grounded":
-        """Return the ground program of a question; ground it unless the last question was the same."""
+        """Return the ground program for the parameters of :meth:`_run`.
+
+        The last program is kept, and returned if the question is the same.
+        """
         question = objectives, len(products), wanted, fewer
         if self._ground:
-            before, program = self._ground
-            if before == question:
+            last_question, program = self._ground
+            if last_question == question:
                 return program
             program.close()
         from foon_asp.encoding import fact_writer  # noqa: PLC0415 (often there is nothing left to ask)
 
         began = time.perf_counter()
         text = self.prepared.facts + self.rules + fact_writer.write_objectives(objectives)
-        self._spent("facts", began)
+        self._add_seconds("facts", began)
         files = self.program.files
         if products:
             files = (*files, self.program.exact_success)
-            text += fact_writer.write_exponents(self.problem, self._scaled())
+            text += fact_writer.write_exponents(self.problem, self._current_scales())
             text += "".join(itertools.starmap(fact_writer.write_product, enumerate(products)))
             text += (
                 fact_writer.write_seen(range(len(products)))
@@ -502,18 +558,21 @@ class _Solver:
                 files, text, self.program.arguments, self.deadline, len(products), self.program.endless
             )
         finally:
-            self._spent("ground", began)
+            self._add_seconds("ground", began)
         self._ground = question, program
         return program
 
-    def _scaled(self) -> "Scales":
-        """Return the scales of the remaining units in clingo."""
+    def _current_scales(self) -> "Scales":
+        """Return the scales by which costs of the remaining units become clingo's integers."""
         if self._scales is None:
             self._scales = self.prepared.scales
         return self._scales
 
-    def _ids(self, numbers: Units) -> Units:
-        """Return the ids of units by public number; raises :class:`UserError` for numbers of no unit."""
+    def _unit_ids(self, numbers: Units) -> Units:
+        """Return the ids of units that are given by id in the whole network.
+
+        Raises :class:`UserError` for an id of no unit.
+        """
         units: set[int] = set()
         for number in sorted(numbers):
             unit = self.problem.network.unit_of_number(number)
@@ -527,19 +586,23 @@ class _Solver:
     def _settle(self, best: Units, fewest: int = 0) -> tuple[Units, bool]:
         """Find the best tree by exact costs where clingo compares rounded ones (docs/dev/exact-success.md).
 
-        Examines every total that rounding may have hidden. No tree has fewer units than ``fewest``. Returns
-        the best tree, and whether it is proved best.
+        ``best`` is the best tree by rounded costs. Every total that rounding may have hidden is examined. No
+        tree has fewer units than ``fewest``. Returns the best tree, and whether it is proved best.
         """
-        scales = self._scaled()
+        scales = self._current_scales()
         if scales.rounded not in self.levels:  # a kept program has other levels, too
             return best, True
         position = self.levels.index(scales.rounded)
-        before, by, after = self.levels[:position], self.levels[: position + 1], self.levels[position + 1 :]
+        earlier_levels, rounded_levels, later_levels = (
+            self.levels[:position],
+            self.levels[: position + 1],
+            self.levels[position + 1 :],
+        )
         totals: list[dict[int, int]] = []
-        fixed = [scales.weight(objective, best) for objective in before]
+        fixed = [scales.weight(objective, best) for objective in earlier_levels]
         chosen, rival, wanted = best, best, [0]  # indices of the totals as good as that of the chosen tree
         # a second search with open preconditions is slow
-        at_once = self._open_preconditions and after == _UNITS_ONLY
+        at_once = self._open_preconditions and later_levels == _UNITS_ONLY
         while True:
             # A total that is better or as good has a weight of at most W + n - 1, where n units of the tree
             # weigh less than they cost, and of at most W where none does.
@@ -550,29 +613,33 @@ class _Solver:
             band = scales.weight(scales.rounded, chosen) + max(0, doubt - 1)
             mode = ",".join(["opt", *map(str, fixed), str(band)])
             fewer = wanted if at_once and len(chosen) > fewest else ()
-            run = self._run(by, totals, opt_mode=mode, fewer=dict.fromkeys(fewer, len(chosen)))
+            run = self._run(rounded_levels, totals, opt_mode=mode, fewer=dict.fromkeys(fewer, len(chosen)))
             if not run.exhausted or (at_once and run.units is None):
                 return chosen, run.exhausted
             if run.units is None:
                 break
             rival = run.units
-            self._require_measures(self._measures_agree(rival, run.cost, by))
-            ours, theirs = (self.listener.costs(tree).key(by) for tree in (chosen, rival))
-            if theirs < ours:
+            self._require_measures(self._measures_agree(rival, run.cost, rounded_levels))
+            chosen_costs, rival_costs = (
+                self.listener.costs(tree).key(rounded_levels) for tree in (chosen, rival)
+            )
+            if rival_costs < chosen_costs:
                 chosen, wanted = rival, []
-            elif theirs == ours and at_once:
+            elif rival_costs == chosen_costs and at_once:
                 chosen = min(chosen, rival, key=len)
-            if theirs <= ours:
+            if rival_costs <= chosen_costs:
                 wanted.append(len(totals))
-        if not after or (after == _UNITS_ONLY and len(chosen) == fewest):
+        if not later_levels or (later_levels == _UNITS_ONLY and len(chosen) == fewest):
             return chosen, True
         for number in wanted:
-            limits = (scales.weight(objective, chosen) for objective in after)
+            limits = (scales.weight(objective, chosen) for objective in later_levels)
             mode = ",".join(["opt", *map(str, fixed), *map(str, limits)])
-            run = self._run((*before, *after), totals, number, mode)
+            run = self._run((*earlier_levels, *later_levels), totals, number, mode)
             if run.units is not None:
-                self._require_measures(self._measures_agree(run.units, run.cost, (*before, *after)))
-                self.holds.settled(run.units, chosen, by)
+                self._require_measures(
+                    self._measures_agree(run.units, run.cost, (*earlier_levels, *later_levels))
+                )
+                self.holds.require_equal_costs(run.units, chosen, rounded_levels)
                 chosen = run.units
             if not run.exhausted:
                 return chosen, False
@@ -584,11 +651,11 @@ class _Solver:
     def _measures_agree(self, units: Units, cost: Sequence[int], objectives: Sequence[Objective]) -> bool:
         """Return whether clingo's costs (modulo 2^32) are the weights of the units.
 
-        Also requires that the weights fit the exact costs. A replaced objectives.lp may measure something
-        else: then its optimum is returned, with a warning. clingo may report all levels, with 0 for those not
+        If they are not, objectives.lp must have been replaced; then a warning is reported. In any case the
+        weights are required to fit the exact costs. ``cost`` may have all levels, with 0 for those not
         optimized.
         """
-        scales, costs = self._scaled(), self.listener.costs(units)
+        scales, costs = self._current_scales(), self.listener.costs(units)
         weights = {objective: scales.weight(objective, units) for objective in objectives}
         self.holds.require(
             all(scales.allows(o, weight, costs.measure(o)) for o, weight in weights.items()),
@@ -598,11 +665,11 @@ class _Solver:
             ),
         )
         listed = self.levels if len(cost) == len(self.levels) else objectives
-        ours = [weights.get(objective, 0) for objective in listed]
-        agree = [mine % 2**32 for mine in ours] == [theirs % 2**32 for theirs in cost]
+        our_weights = [weights.get(objective, 0) for objective in listed]
+        agree = [weight % 2**32 for weight in our_weights] == [clingo_cost % 2**32 for clingo_cost in cost]
         self.holds.require(
             agree or self.program.replaced,
-            lambda: f"clingo reports the costs {list(cost)}, the units {sorted(units)} cost {ours}",
+            lambda: f"clingo reports the costs {list(cost)}, the units {sorted(units)} cost {our_weights}",
         )
         if not agree:
             self.listener.reporter.warning(
@@ -613,20 +680,24 @@ class _Solver:
         return agree
 
     def _require_measures(self, agree: bool) -> None:
-        """Raise :class:`UserError` if a replaced objectives.lp measures only some trees as usual."""
+        """Raise :class:`UserError` unless ``agree``: clingo's costs are the weights of a tree.
+
+        It is called after they were so for an earlier tree. If they are not, a replaced objectives.lp
+        measures only some trees as usual, so that trees cannot be compared.
+        """
         if not agree:
             raise UserError(
                 f"{self.program.files[1]} measures some trees as the objectives {', '.join(self.levels)} do, "
                 "and others not: they cannot be compared"
             )
 
-    def _bounds(self, lower: Sequence[int]) -> dict[Objective, int | Fraction]:
-        """Turn clingo's lower bounds, highest priority first, into bounds on the objectives.
+    def _objective_bounds(self, lower: Sequence[int]) -> dict[Objective, int | Fraction]:
+        """Return bounds on the objectives from clingo's lower bounds, which begin with the highest priority.
 
-        Without a bound of clingo, costs are at least 0 and success at most 1. The bound of the cuts on the
-        first objective counts, too. A bound on a cost is capped by the incumbent, since clingo may search for
-        better trees alone. Objectives after a rounded one have no bound, since rounded weights do not decide
-        among which trees they count.
+        Without a bound of clingo, costs are at least 0 and success is at most 1. The bound of the cuts on the
+        first objective counts, too. A bound on a cost is at most the cost of the incumbent, since clingo may
+        search for better trees only. Objectives after a rounded one have no bound, since it is not known
+        which trees they count among.
         """
         bounds: dict[Objective, int | Fraction] = {}
         for objective, value in zip(self.levels, lower or [0], strict=False):
@@ -655,13 +726,14 @@ class _Solver:
         )
 
     def _report_bound(self, lower: Sequence[int]) -> None:
-        for objective, bound in self._bounds(lower).items():
+        """Report the bounds that follow from clingo's lower bounds."""
+        for objective, bound in self._objective_bounds(lower).items():
             self.listener.reporter.bound(objective, bound)
 
     def _outcome(
         self, status: Status, units: Units | None, bounds: dict[Objective, int | Fraction]
     ) -> Outcome:
-        """Return the outcome after its postconditions hold."""
+        """Return the outcome of this question, after its postconditions are checked if it has a tree."""
         prepared, reduced = self.prepared, self.prepared.reduced
         proof = Proof.SOLVER if status in {Status.OPTIMAL, Status.INFEASIBLE} else None
         if status is Status.OPTIMAL and reduced and reduced.settled:
@@ -683,39 +755,43 @@ class _Solver:
         began = time.perf_counter()
         size = len(self.problem.network.objects)  # larger ids are required sets of units
         outcome = outcome._replace(
-            units=self.holds.tree(units),
+            units=self.holds.require_executable(units),
             costs=self.listener.costs(units),
             left=0 if proof is Proof.CUTS else len(prepared.units),
             cases=reduced.cases if reduced else None,
-            cuts=tuple(tuple(sorted(objects)) for objects in _cuts(reduced) if max(objects) < size),
+            cuts=tuple(tuple(sorted(objects)) for objects in _cut_objects(reduced) if max(objects) < size),
         )
         assert self.listener.incumbent is not None
-        self.holds.outcome(outcome, None if self.program.replaced else self.listener.incumbent[1], reduced)
+        self.holds.require_true_claims(
+            outcome, None if self.program.replaced else self.listener.incumbent[1], reduced
+        )
         prepared.require_kept(units)
-        self._spent("check", began)
+        self._add_seconds("check", began)
         return outcome
 
-    def _spent(self, phase: str, began: float) -> None:
+    def _add_seconds(self, phase: str, began: float) -> None:
+        """Add the time since ``began`` to the seconds of a phase."""
         self.seconds[phase] = self.seconds.get(phase, 0.0) + time.perf_counter() - began
 
 
-def _cuts(reduced: Reduced | None) -> list[frozenset[int]]:
-    """Return the objects of the cuts of the best bound, and of cuts that hold for more actions.
+def _cut_objects(reduced: Reduced | None) -> list[frozenset[int]]:
+    """Return the objects of each cut that a certificate can start from; empty without reductions.
 
-    Excluded actions may cross many cuts of the best bound. The cuts found before any reduction count all
-    actions, and tight cuts the actions remaining at the time.
+    These are the cuts of the best bound, those found before any reduction, and tight ones. Excluded actions
+    may cross many cuts of the best bound. The cuts found before any reduction count all actions. Tight cuts
+    count the actions that remained when they were found.
     """
     if reduced is None:
         return []
-    best = _few_objects(reduced.cuts)
+    best = _first_cut_objects(reduced.cuts)
     if reduced.shared:
         best = [objects for objects, _ in reduced.shared.cuts]
-    first = _few_objects(reduced.subproblem.cuts if reduced.subproblem else None)
+    first = _first_cut_objects(reduced.subproblem.cuts if reduced.subproblem else None)
     return [*dict.fromkeys([*best, *first, *reduced.tight])]
 
 
-def _few_objects(cuts: Cuts | None) -> list[frozenset[int]]:
-    """Return the objects of cuts, up to ``SEARCH.cut_objects`` in all."""
+def _first_cut_objects(cuts: Cuts | None) -> list[frozenset[int]]:
+    """Return the objects of each cut, for the first cuts: up to about ``SEARCH.cut_objects`` in all."""
     object_sets, total = list[frozenset[int]](), 0
     for cut in cuts.cuts if cuts else ():
         if total > SEARCH.cut_objects:

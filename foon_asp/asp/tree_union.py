@@ -1,4 +1,4 @@
-"""Units of some tree and of every tree up to a cost, without a list of the trees."""
+"""Units of some tree and of every tree up to a cost, found without listing the trees."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import replace
@@ -23,11 +23,12 @@ _JUST_ABOVE = Fraction(1, 10**30)  # a cost that is this much above a limit is a
 
 
 class TreeUnion(NamedTuple):
-    """The units of some tree and of every tree.
+    """The ids of the units that some tree has, and of those that every tree has.
 
-    ``in_some`` are ids of units that some tree has, ``in_every`` ids of units that every tree has. After a
-    limit, ``undecided`` are the units for which it is not known: those outside ``in_some`` may be in some
-    tree, those in ``in_some`` may be in every tree.
+    ``best``: the outcome with the best tree.
+    ``in_some``, ``in_every``: the units that some tree has, and that every tree has, as far as it is known.
+    ``undecided``: after a limit, the units that may still change this: units outside ``in_some`` that some
+    tree may have, and units in ``in_some`` that every tree may have.
     """
 
     best: Outcome
@@ -46,10 +47,11 @@ def tree_union(
     """Find the units of some and of every tree up to a cost, as brave and cautious consequences.
 
     If ``worse`` is 0, the trees are the optimal ones. Otherwise they are all irredundant trees whose first
-    objective is worse than the best value by at most this share of it. Each search finds a tree that adds a
-    unit to the units of some tree, or removes one from the units of every tree; the last search proves that
-    there is no such tree. Raises :class:`UserError` like :func:`foon_asp.asp.solve`, and for rules if
-    ``worse`` is not 0.
+    objective is worse than the best value by at most this share of it: by 10% for ``Fraction(1, 10)``. Each
+    search finds a tree that adds a unit to the units of some tree, or removes one from the units of every
+    tree. The last search proves that there is no such tree. Without a proved optimum, nothing is searched.
+
+    Raises :class:`UserError` like :func:`foon_asp.asp.solve`, and for user rules if ``worse`` is not 0.
     """
     best = solve(problem, objectives, settings, reporter)
     if best.status is not Status.OPTIMAL or best.units is None or best.costs is None:
@@ -60,14 +62,15 @@ def tree_union(
         raise UserError(
             "with rules or encodings of yours, --union is about the optimal trees only: leave out --within"
         )
-    search = _Union(prepare(problem, objectives, settings, program), best, worse)
+    search = _UnionSearch(prepare(problem, objectives, settings, program), best, worse)
     return search.run()
 
 
-class _Union:
-    """The search: the units seen so far, and the facts that avoid trees that do not count."""
+class _UnionSearch:
+    """The search: the units seen so far, and the facts that exclude trees that do not count."""
 
     def __init__(self, prepared: Prepared, best: Outcome, worse: Fraction) -> None:
+        """Begin with the units of the ``best`` tree; for ``worse``, see :func:`tree_union`."""
         assert best.units is not None
         assert best.costs is not None
         self._prepared, self._costs, self._worse = prepared, best.costs, worse
@@ -78,17 +81,17 @@ class _Union:
         self._avoided = 0
 
     def run(self) -> TreeUnion:
-        """Search until no unit is undecided or a limit is reached."""
+        """Search until no unit is undecided or a limit is reached; return the result."""
         candidates = self._candidates()
         self._prepared = replace(self._prepared, units=candidates)
         undecided = set[int]()
         while unseen := set(candidates) - self._in_some:
-            is_added = self._next(write_unseen(map(self._number, sorted(unseen))))
+            is_added = self._add_next_tree(write_unseen(map(self._number, sorted(unseen))))
             if not is_added:
                 undecided |= unseen if is_added is None else set()
                 break
         while self._in_every:
-            is_added = self._next(write_in_all(map(self._number, sorted(self._in_every))))
+            is_added = self._add_next_tree(write_in_all(map(self._number, sorted(self._in_every))))
             if not is_added:
                 undecided |= self._in_every if is_added is None else set()
                 break
@@ -96,26 +99,36 @@ class _Union:
         return TreeUnion(self._best, in_some, in_every, frozenset(undecided))
 
     def _candidates(self) -> tuple[int, ...]:
-        """Return the units that trees up to the cost limit can have; with added rules a superset."""
+        """Return the ids of the units that trees up to the cost limit can have; with user rules, maybe more.
+
+        At a limit, all units of the prepared question are returned.
+        """
         prepared, deadline = self._prepared, self._prepared.deadline
         if not prepared.program.own or prepared.unsettled or not prepared.settings.reductions:
             return prepared.units
-        problem, by = prepared.kept or prepared.problem, prepared.levels
+        problem, levels = prepared.kept or prepared.problem, prepared.levels
         try:
             reduced = reduce_under_rules(
-                problem, by, expired=lambda: deadline.passed, redundant=prepared.redundant
+                problem, levels, expired=lambda: deadline.passed, redundant=prepared.redundant
             )
             subproblem, costs = reduced.subproblem, reduced.costs
             if subproblem is None or costs is None:
                 return prepared.units
             if self._worse:
-                none = dict.fromkeys(by, Fraction(0)) | {o: Fraction(1) for o in by if multiplies(o)}
-                limit = costs.of(Costs({**none, by[0]: self._limit()}))
+                zero_costs = dict.fromkeys(levels, Fraction(0)) | {
+                    o: Fraction(1) for o in levels if multiplies(o)
+                }
+                limit = costs.of(Costs({**zero_costs, levels[0]: self._limit()}))
             else:
                 limit = subproblem.total(self._in_some) + costs.doubt
             with deadline.watched("cutting the network"):
                 kept = at_costs(
-                    subproblem, by, costs, lambda: deadline.passed, self._in_some, below=limit + 1
+                    subproblem,
+                    levels,
+                    costs,
+                    lambda: deadline.passed,
+                    self._in_some,
+                    below=limit + 1,
                 ).units
         except KeyboardInterrupt:
             deadline.interrupt()
@@ -124,84 +137,85 @@ class _Union:
 
     @cached_property
     def _opt_mode(self) -> str:
-        """The ``--opt-mode`` of clasp, bounded by the costs of the best tree unless costs are rounded.
+        """The ``--opt-mode`` of clasp: ``opt,2,6`` excludes trees that cost more than the best one.
 
-        Without a bound if worse trees count, too.
+        It is ``opt``, without a bound, if worse trees count or costs are rounded.
         """
-        scales, by = self._prepared.scales, self._prepared.levels
+        scales, levels = self._prepared.scales, self._prepared.levels
         if self._worse or scales.rounded is not None:
             return "opt"
         assert self._best.units is not None
-        return ",".join(["opt", *(str(scales.weight(objective, self._best.units)) for objective in by)])
+        return ",".join(["opt", *(str(scales.weight(objective, self._best.units)) for objective in levels)])
 
     def _limit(self) -> Fraction:
-        """Return a value of the first objective just worse than the values of all trees that count."""
+        """Return a value of the first objective that is just worse than that of every tree that counts."""
         first = self._prepared.levels[0]
         best = Fraction(self._costs.measure(first))
         if multiplies(first):
             return best * (1 - self._worse) * (1 - _JUST_ABOVE)
         return best * (1 + self._worse) + _JUST_ABOVE
 
-    def _next(self, question: str) -> bool | None:
-        """Find another tree that changes the result, and add its units; return ``True``.
+    def _add_next_tree(self, question: str) -> bool | None:
+        """Find another tree that changes the result, and change the result by it.
 
-        Returns ``False`` if there is no such tree, ``None`` at a limit.
+        ``question`` are facts that ask for such a tree. Returns ``True`` if one was found, ``False`` if there
+        is none, ``None`` at a limit.
         """
-        problem, by = self._prepared.problem, self._prepared.levels
+        problem, levels = self._prepared.problem, self._prepared.levels
         while True:
-            text = write_objectives(by) + question + self._settled
-            ended = self._prepared.run(text, self._opt_mode, encodings=(question_encoding("union.lp"),))
-            if not ended.exhausted:
+            text = write_objectives(levels) + question + self._settled
+            run = self._prepared.run(text, self._opt_mode, encodings=(question_encoding("union.lp"),))
+            if not run.exhausted:
                 return None
-            if ended.units is None:
+            if run.units is None:
                 return False
-            units = {problem.network.unit_of_number(number) for number in ended.units}
-            order = self._prepared.holds.tree([unit for unit in units if unit is not None])
+            units = {problem.network.unit_of_number(number) for number in run.units}
+            order = self._prepared.holds.require_executable([unit for unit in units if unit is not None])
             self._prepared.require_kept(order)
-            if self._is_beyond(order):
+            if self._is_above_limit(order):
                 return False
-            tree = self._without_spare(order) if self._worse else frozenset(order)
-            counts = self._counts(tree)
+            tree = self._irredundant_subtree(order) if self._worse else frozenset(order)
+            counts = self._is_within_limit(tree)
             if counts:
-                before = len(self._in_some), len(self._in_every)
+                sizes = len(self._in_some), len(self._in_every)
                 self._in_some |= tree
                 self._in_every &= tree
-            if not counts or (len(self._in_some), len(self._in_every)) == before:
+            if not counts or (len(self._in_some), len(self._in_every)) == sizes:
                 self._settled += write_avoided(self._avoided, map(self._number, sorted(tree)))
                 self._avoided += 1
                 continue
             return True
 
-    def _is_beyond(self, tree: Sequence[int]) -> bool:
-        """Whether this tree and all trees not found yet cost too much to count, by rounded weights."""
+    def _is_above_limit(self, tree: Sequence[int]) -> bool:
+        """Whether this tree and all trees not found yet cost too much to count, by rounded costs."""
         prepared, costs = self._prepared, self._prepared.problem.costs(tree)
         scales = prepared.scales
         for objective in prepared.levels[:1] if self._worse else prepared.levels:
             figure: int | Fraction = costs.measure(objective)
-            best = self._limit() if self._worse else self._costs.measure(objective)
+            limit = self._limit() if self._worse else self._costs.measure(objective)
             if objective is scales.rounded:
                 figure = scales.bound(objective, scales.weight(objective, tree))
-            if figure != best:
-                return figure < best if multiplies(objective) else figure > best
+            if figure != limit:
+                return figure < limit if multiplies(objective) else figure > limit
             if objective is scales.rounded:
                 return False
         return False
 
-    def _counts(self, tree: Collection[int]) -> bool:
-        """Whether a tree is within the cost limit, by its exact costs."""
-        by, costs = self._prepared.levels, self._prepared.problem.costs(tree)
+    def _is_within_limit(self, tree: Collection[int]) -> bool:
+        """Whether the exact costs of a tree are within the cost limit, so that the tree counts."""
+        levels, costs = self._prepared.levels, self._prepared.problem.costs(tree)
         if not self._worse:
-            return costs.key(by) == self._costs.key(by)
-        figure, limit = costs.measure(by[0]), self._limit()
-        return figure > limit if multiplies(by[0]) else figure < limit
+            return costs.key(levels) == self._costs.key(levels)
+        figure, limit = costs.measure(levels[0]), self._limit()
+        return figure > limit if multiplies(levels[0]) else figure < limit
 
-    def _without_spare(self, tree: Sequence[int]) -> frozenset[int]:
-        """Return an irredundant subtree of a tree."""
+    def _irredundant_subtree(self, tree: Sequence[int]) -> frozenset[int]:
+        """Return the unit ids of an irredundant subtree of a tree."""
         problem, kept = self._prepared.problem, set(tree)
         for unit in reversed(tree):
-            restriction = Restriction(lambda u, kept=kept, unit=unit: u == unit or u not in kept)  # type: ignore[misc]
-            fewer = replace(problem, restriction=restriction)
-            reached = reach(fewer)
+            restriction = Restriction(lambda other, kept=kept, unit=unit: other == unit or other not in kept)  # type: ignore[misc]
+            without_unit = replace(problem, restriction=restriction)
+            reached = reach(without_unit)
             if all(reached.available[goal] for goal in problem.goals):
                 kept = set(reached.units)
         return frozenset(kept)

@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Collection
 
 from foon_asp.asp.assembly import assemble
-from foon_asp.asp.integrity import IntegrityConstraint, placed
+from foon_asp.asp.integrity import IntegrityConstraint, errors_at_sources
 from foon_asp.asp.prepared import Prepared
 from foon_asp.asp.settings import Settings
 from foon_asp.asp.soft import soft_rules
@@ -18,15 +18,15 @@ from foon_asp.problem import Objective, Problem, levels, reach
 
 
 class UserRuleCheck:
-    """Constraints, read once, by which executable trees are checked; or plans, if items are used up.
+    """A check of executable trees by constraints, which are read once; of plans, if items are used up.
 
     ``local`` says that units outside a tree do not decide whether it breaks a constraint.
     """
 
     def __init__(self, settings: Settings, used_up: bool = False) -> None:
-        """Read the constraints of settings.
+        """Read the constraints of settings; ``used_up`` says that plans will be checked.
 
-        Raises :class:`UserError` for faults in them.
+        Raises :class:`UserError` for faults in the constraints.
         """
         program = assemble(settings, lambda _: None, used_up)
         if used_up:
@@ -38,41 +38,46 @@ class UserRuleCheck:
         self._settings = settings._replace(constraints=(), relaxed=self._relaxed)
         self._program = assemble(self._settings, lambda _: None, used_up)
 
-    def broken(self, problem: Problem, tree: Collection[int]) -> tuple[IntegrityConstraint, ...]:
-        """Return the rules that a tree or plan breaks.
+    def broken_rules(self, problem: Problem, tree: Collection[int]) -> tuple[IntegrityConstraint, ...]:
+        """Return the integrity constraints that a tree or plan breaks.
 
         ``tree`` has unit ids; for a plan, the id of a unit comes once per execution. Raises
-        ``KeyboardInterrupt`` at a limit, and :class:`UserError` for a rule without a value.
+        ``KeyboardInterrupt`` at a limit. Raises :class:`UserError` if a rule reads facts that the question
+        lacks, or if rules of another form exclude the tree.
         """
         self._program.require_facts(problem, (Objective.UNITS,))
-        ended = self._tree(problem, tree) if problem.items is None else self._plan(problem, tree)
-        if not ended.exhausted:
+        clingo_run = (
+            self._run_on_tree(problem, tree) if problem.items is None else self._run_on_plan(problem, tree)
+        )
+        if not clingo_run.exhausted:
             self._settings.begun.check()
             raise KeyboardInterrupt
-        if ended.units is None:
+        if clingo_run.units is None:
             raise UserError(
                 "the rules that are added exclude every tree by more than rules that begin with :-, so it "
                 "cannot be said which of them a tree breaks"
             )
-        ways = ended.atoms["_broken"]
+        ways = clingo_run.atoms["_broken"]
         return tuple(rule for rule in self._rules if ways.get(rule.number))
 
-    def _tree(self, problem: Problem, tree: Collection[int]) -> Run:
-        """Run clingo on a tree, with constraints that count the rules that it breaks."""
+    def _run_on_tree(self, problem: Problem, tree: Collection[int]) -> Run:
+        """Run clingo on the facts of a tree, with constraints rewritten to count their broken instances."""
         used = set(tree)
         units = sorted(used if self.local else used.union(reach(problem).units))
-        by = levels((Objective.UNITS,))
-        prepared = Prepared(problem, by, self._settings, self._settings.begun, self._program, tuple(units))
+        objective_levels = levels((Objective.UNITS,))
+        prepared = Prepared(
+            problem, objective_levels, self._settings, self._settings.begun, self._program, tuple(units)
+        )
         numbers = list(map(problem.network.unit_number, sorted(used)))
         return prepared.run(write_tree(numbers) + write_least_penalty(1), predicates=[("_broken", 2)])
 
-    def _plan(self, problem: Problem, plan: Collection[int]) -> Run:
-        """Run clingo on a plan, with constraints that count the rules that it breaks."""
+    def _run_on_plan(self, problem: Problem, plan: Collection[int]) -> Run:
+        """Run clingo on the facts of a plan, with constraints rewritten to count their broken instances."""
         counts, program = Counter(plan), self._program
         text = write_facts(problem, sorted(counts), Scales(problem, counts), program.looked_at)
         text += write_times({problem.network.unit_number(unit): (n, n) for unit, n in counts.items()})
         text += program.rules + write_least_penalty(1)
-        with placed(self._relaxed, text):
+        with errors_at_sources(self._relaxed, text):
             return run(
                 program.files,
                 text,

@@ -16,7 +16,7 @@ from foon_asp.hypergraph.cut import Cut
 from foon_asp.hypergraph.lexicographic import Vector
 from foon_asp.hypergraph.optimality_proof import CheaperError, Prover
 from foon_asp.hypergraph.proof_tree import Broken, Cases, CostFixing, Hopeless, Packing, Proof
-from foon_asp.problem import Costs, Known, Objective, Problem
+from foon_asp.problem import Costs, Objective, OptionalData, Problem
 from foon_asp.proof import verifier
 from foon_asp.proof.verify_plan import verify_any
 from foon_asp.text.json_value import json_line
@@ -92,7 +92,7 @@ def certify(
     """
     if covered.rules and problem.own_rates:
         return None
-    if any(objective.row.needs is Known.RATES for objective in objectives) and (
+    if any(objective.row.needs is OptionalData.RATES for objective in objectives) and (
         problem.own_rates or not all(map(problem.rate, range(len(problem.network))))
     ):
         return None

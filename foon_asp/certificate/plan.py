@@ -27,14 +27,14 @@ from foon_asp.plans.conditions import (
 from foon_asp.plans.count_proof import Claim, CountProof, PlanProver, Split
 from foon_asp.plans.flows import Flows, flows_of
 from foon_asp.problem import (
-    Known,
     Objective,
+    OptionalData,
     Problem,
     Restriction,
     first_tree,
     multiplies,
     reach,
-    relevant_to_plans,
+    units_relevant_to_plans,
 )
 from foon_asp.proof import verifier
 from foon_asp.proof.rule_meaning import OWN
@@ -63,12 +63,14 @@ def certify_plan(
     up, and where an objective needs rates of units that differ from those of their motions. An objective that
     needs rates is not proved if a rate is 0.
     """
-    if problem.own_rates and (covered.rules or any(o.row.needs is Known.RATES for o in objectives)):
+    if problem.own_rates and (covered.rules or any(o.row.needs is OptionalData.RATES for o in objectives)):
         return None
     question = _Question(problem, covered_for_plans(covered), plan, expired)
     certified: list[Objective] = []
     for objective in objectives:
-        if objective.row.needs is Known.RATES and not all(map(problem.rate, range(len(problem.network)))):
+        if objective.row.needs is OptionalData.RATES and not all(
+            map(problem.rate, range(len(problem.network)))
+        ):
             break
         proved = question.prove(objective, certified)
         if proved is None:
@@ -118,7 +120,7 @@ class _Question:
         restriction = Restriction(ruled.removed.__contains__, required)
         self._lasting = replace(problem, kitchen=initial, restriction=restriction)
         self._reached = reached = reach(self._lasting)
-        self._units = sorted(reached.units if required else relevant_to_plans(problem, reached))
+        self._units = sorted(reached.units if required else units_relevant_to_plans(problem, reached))
         self._limits: list[tuple[int, SumLimit, int]] = []  # place of the rule, the sum and its scale
         for rule_number, limit in ruled.limits.items():
             scale = math.lcm(

@@ -194,7 +194,9 @@ def judge(
     }
     executes = simulation.verdict is not Verdict.NEVER
     check_rules = rules.constraints and executes
-    broken = _user_rule_check(rules, not lasting).broken(problem, retrieval.units) if check_rules else ()
+    broken = (
+        _user_rule_check(rules, not lasting).broken_rules(problem, retrieval.units) if check_rules else ()
+    )
     return SearchResult(
         search.name,
         retrieval.ending,

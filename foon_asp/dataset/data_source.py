@@ -17,7 +17,7 @@ from foon_asp.network import (
     starting_kitchen,
 )
 from foon_asp.network import Source as Place
-from foon_asp.problem import ContainerRule, Objective, Unpriced, count_unpriced, first_places
+from foon_asp.problem import ContainerRule, Objective, Unpriced, count_unpriced, first_sources
 from foon_asp.text.object_list import ListedObject
 from foon_asp.text.repeated_node import RepeatedNode
 
@@ -76,7 +76,7 @@ class Source:
 
     def motion_places(self) -> Iterable[tuple[str, Place]]:
         """Return pairs of a motion and a place of a unit with it; each motion's first place is among them."""
-        return first_places(self._network)
+        return first_sources(self._network)
 
     def whole(self) -> Network:
         """Return the whole network."""

@@ -5,13 +5,22 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, NamedTuple
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status
-from foon_asp.asp.assembly import hold_for_parts, leave_unsettled, program_of
+from foon_asp.asp.assembly import hold_for_subtrees, need_clingo, program_of
 from foon_asp.asp.optimum import solve
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.deadline import Deadline
 from foon_asp.hypergraph import ALL
 from foon_asp.hypergraph.reduction import h_add_tree
-from foon_asp.problem import Costs, Objective, Problem, executable_order, follow, levels, multiplies, reach
+from foon_asp.problem import (
+    Costs,
+    Objective,
+    Problem,
+    executable_order,
+    follow_achievers,
+    levels,
+    multiplies,
+    reach,
+)
 
 if TYPE_CHECKING:  # plain answers do not need it
     from foon_asp.dataset.nearby import Nearby
@@ -45,7 +54,7 @@ def near_goals(problem: Problem, objectives: Sequence[Objective], settings: Sett
     if nearby_of is None or settings.reductions != ALL or settings.clingo_options:
         return None
     only_units_add = all(objective in Objective and not objective.row.item for objective in objectives)
-    return nearby_of() if only_units_add and hold_for_parts(settings) else None
+    return nearby_of() if only_units_add and hold_for_subtrees(settings) else None
 
 
 def solve_nearby(
@@ -74,7 +83,7 @@ def solve_nearby(
     units_of_rules = set[int]()  # units, by number, on which the rules depend
     smallest: list[int] | None = None  # with the rules, by number; ``None`` before the search
     unconstrained: Outcome | None = None
-    if leave_unsettled(settings):  # the optimum without rules is needed anyway, and read quickly
+    if need_clingo(settings):  # the optimum without rules is needed anyway, and read quickly
         unconstrained = solve_nearby(nearby, objectives, without_rules, _OnlyWarnings(reporter))
         if unconstrained is None:
             return None
@@ -123,7 +132,7 @@ def solve_nearby(
             )
         if outcome.units is not None:
             holds = Postconditions(problem, levels(tuple(objectives)), settings)
-            outcome = outcome._replace(units=holds.tree(outcome.units))
+            outcome = outcome._replace(units=holds.require_executable(outcome.units))
             assert outcome.costs is not None
             reporter.tree(outcome.costs)
         return outcome
@@ -134,7 +143,7 @@ def _has_tree(nearby: "Nearby", deadline: Deadline) -> bool:
     while True:
         relaxed = nearby.relaxed
         reached = reach(relaxed)
-        tree = follow(relaxed.goals, reached.makers, relaxed.needs, relaxed.kitchen)
+        tree = follow_achievers(relaxed.goals, reached.makers, relaxed.needs, relaxed.kitchen)
         if tree is None:
             return False
         lacking = nearby.lacking(unit for unit in reached.units if unit in tree)
@@ -179,7 +188,7 @@ def _read_more(
     lacks no node. Such trees mostly lead to the units of an optimal tree, in a tenth of the time of a proof.
     """
     many_read = nearby.units > REFINEMENT.proved_units
-    long_rounds = many_read or leave_unsettled(settings)
+    long_rounds = many_read or need_clingo(settings)
     nearby.grow(lacking, REFINEMENT.wide_step if long_rounds else REFINEMENT.narrow_step)
     if not many_read or settings.constraints:
         return

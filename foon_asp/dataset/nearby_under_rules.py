@@ -15,7 +15,7 @@ from itertools import count
 from typing import NamedTuple
 
 from foon_asp.asp import Outcome, Proof, Reporter, Settings, Status
-from foon_asp.asp.assembly import ReachOfRules, program_of, reach_of_rules, varying_available
+from foon_asp.asp.assembly import ReachOfRules, program_of, reach_of_rules, rules_for_varying_kitchens
 from foon_asp.asp.optimum import solve
 from foon_asp.dataset.nearby import Nearby
 from foon_asp.dataset.nearby_optimum import REFINEMENT, least_with_more, near_goals, solve_nearby
@@ -90,7 +90,7 @@ class _Search:
         distances of units are not known. Raises :class:`LimitError` at a limit while the store is read.
         """
         settings, nearby = self._settings, self._nearby
-        rules = varying_available(settings)
+        rules = rules_for_varying_kitchens(settings)
         if rules is None or not rules.local:
             return None
         with settings.begun.watched("reading"):

@@ -3,7 +3,7 @@
 import time
 
 from foon_asp.dataset.dataset import Dataset, left_out
-from foon_asp.problem import first_places, unrated_remarks
+from foon_asp.problem import first_sources, unrated_remarks
 from foon_asp.text.data_folder import DataFiles, read_data
 from foon_asp.text.diagnostics import brief_summary, summarize
 from foon_asp.text.plain_file import is_store
@@ -24,7 +24,7 @@ def read_dataset(files: DataFiles, lenient: bool = False, level: int = 3) -> Dat
     data = read_data(files, lenient, level)
     remarks = [left_out(data.left_out)] if data.left_out else []
     if data.rates is not None:
-        remarks += unrated_remarks(first_places(data.network), data.rates)
+        remarks += unrated_remarks(first_sources(data.network), data.rates)
     remarks += repeated_note(data.repeated)
     dataset = Dataset.of(data, time.perf_counter() - began)
     has_kitchen = files.kitchen is not None

@@ -11,7 +11,7 @@ from foon_asp.encoding.run import FoundAnswer, Run
 from foon_asp.encoding.stated import Loaded
 
 if TYPE_CHECKING:
-    from foon_asp.encoding.worker_process import WorkerProgram
+    from foon_asp.encoding.program_client import WorkerProgram
 
 
 class Grounded:
@@ -40,9 +40,9 @@ class Grounded:
         self._program: GroundProgram | WorkerProgram
         # the built-in encodings ground facts of that length in a fraction of a second
         if endless or len(text) > 1_500_000 or deadline.memory is not None:
-            from foon_asp.encoding import worker_process  # noqa: PLC0415 (often not needed)
+            from foon_asp.encoding import program_client  # noqa: PLC0415 (often not needed)
 
-            self._program = worker_process.WorkerProgram(names, text, arguments, products, deadline)
+            self._program = program_client.WorkerProgram(names, text, arguments, products, deadline)
         else:
             self._program = GroundProgram(names, text, arguments, products)
 

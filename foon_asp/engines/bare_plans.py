@@ -8,7 +8,7 @@ from our search.
 from itertools import takewhile
 
 from foon_asp.asp import Status
-from foon_asp.asp.bare_program import bare_plans
+from foon_asp.asp.bare_program import bare_plan_program
 from foon_asp.encoding.fact_writer import write_times
 from foon_asp.engines.bare_clingo import BARE_CLINGO, Clingo
 from foon_asp.engines.engine import Asked, DisagreementError, EngineAnswer, NotCheckedError
@@ -32,7 +32,7 @@ def check_plan_with_bare_clingo(claim: Asked, seconds: float) -> tuple[Objective
     whole = tuple(takewhile(lambda objective: objective.row.whole, objectives))
     if not whole:
         raise NotCheckedError(f"plans are compared by whole numbers, and {objectives[0]} is none")
-    program, caps = bare_plans(outcome, whole, claim.settings)
+    program, caps = bare_plan_program(outcome, whole, claim.settings)
     if program is None:
         raise NotCheckedError("nothing says how often units can be executed by a plan that is as good")
     clingo = Clingo(program, seconds, claim.settings.begun.memory)

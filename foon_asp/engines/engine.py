@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import NamedTuple, Protocol
 
 from foon_asp.asp import Outcome, Settings
-from foon_asp.problem import Objective, Problem, backwards, executable_order, multiplies
+from foon_asp.problem import Objective, Problem, executable_order, multiplies, search_backward
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.rules.passed_constraint import Constraint
 
@@ -126,7 +126,7 @@ def scope_of(problem: Problem, forbidden: frozenset[int]) -> Scope:
     It passes through all units that are not forbidden.
     """
     allowed = frozenset(range(len(problem.network))) - forbidden
-    units, objects = backwards(problem.goals, problem.makers, problem.needs, problem.kitchen, allowed)
+    units, objects = search_backward(problem.goals, problem.makers, problem.needs, problem.kitchen, allowed)
     return Scope(sorted(units), sorted(objects), [goal for goal in problem.goals if goal in objects])
 
 

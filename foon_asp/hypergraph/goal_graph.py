@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from heapq import nsmallest
 
 from foon_asp.hypergraph.hypergraph import Hypergraph
-from foon_asp.problem import Left, Objective, Problem, backwards
+from foon_asp.problem import FilteredSets, Objective, Problem, search_backward
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -29,7 +29,7 @@ class GoalGraph(Hypergraph):
 
         Stops at initial objects. If ``allowed`` is ``None``, all actions are allowed.
         """
-        return backwards(self.goals, self.makers, self.needs, self.start, allowed)
+        return search_backward(self.goals, self.makers, self.needs, self.start, allowed)
 
     def thin(self, max_achievers: int, cost: Callable[[int], int]) -> "GoalGraph":
         """Return a graph in which each required set has at most ``max_achievers`` units, for estimates.
@@ -44,8 +44,8 @@ class GoalGraph(Hypergraph):
         kept = {o: tuple(nsmallest(max_achievers, self.makers[o], lacking)) for o in self.required}
         if not kept:
             return self
-        assert isinstance(self.makers, Left)
-        return replace(self, known_makers=self.makers.instead(kept))
+        assert isinstance(self.makers, FilteredSets)
+        return replace(self, known_makers=self.makers.with_sets(kept))
 
 
 def graph_of(problem: Problem, objectives: Iterable[Objective]) -> GoalGraph:
@@ -82,7 +82,7 @@ def graph_of(problem: Problem, objectives: Iterable[Objective]) -> GoalGraph:
             *((o,) for o in range(size)),
         ],
         start=frozenset(),
-        known_makers=achievers.instead(taking)
-        if isinstance(achievers, Left)
+        known_makers=achievers.with_sets(taking)
+        if isinstance(achievers, FilteredSets)
         else [taking.get(o, units_of_set) for o, units_of_set in enumerate(achievers)],
     )

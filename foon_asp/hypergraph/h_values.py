@@ -5,7 +5,7 @@ from heapq import heapify, heappop, heappush
 from typing import NamedTuple
 
 from foon_asp.hypergraph.goal_graph import GoalGraph
-from foon_asp.problem import follow
+from foon_asp.problem import follow_achievers
 
 
 class Derivations(NamedTuple):
@@ -22,7 +22,7 @@ class Derivations(NamedTuple):
 
     def tree(self, graph: GoalGraph, objects: Iterable[int]) -> set[int] | None:
         """Return the actions that derive objects by best achievers; ``None`` if an object is not reached."""
-        return follow(objects, self.maker, graph.needs, graph.start)
+        return follow_achievers(objects, self.maker, graph.needs, graph.start)
 
 
 def derive(

@@ -1,4 +1,4 @@
-"""Action costs of a planning task: whole numbers, exact wherever planners can add them up."""
+"""Action costs of a planning task: integers, exact wherever planners can add them up."""
 
 import math
 from collections.abc import Collection, Sequence
@@ -14,10 +14,11 @@ _MAX_FACTOR = 10**6  # of costs that are rounded: more digits of a logarithm, bu
 
 
 class Scale(NamedTuple):
-    """The scale on which an objective became whole numbers: each cost times ``factor``, ``rounded`` or exact.
+    """The scale by which an objective became integers: each of its costs was multiplied by ``factor``.
 
-    The costs of an objective that multiplies are the negative logarithms of its factors. ``factor`` includes
-    the weight that makes an objective outweigh all less important ones (lexicographic order).
+    ``rounded`` says whether the products had to be rounded, so that sums of costs are not exact. The costs of
+    an objective that multiplies are the negative logarithms of its factors. ``factor`` includes the weight
+    that makes an objective outweigh all less important ones (lexicographic order).
     """
 
     objective: Objective
@@ -26,7 +27,12 @@ class Scale(NamedTuple):
 
 
 class ActionCosts(NamedTuple):
-    """The costs of ``units`` by id, the cost of taking an ``item`` from the kitchen, and the scales."""
+    """The integer costs of actions.
+
+    ``units``: the cost of executing each unit, by unit id.
+    ``item``: the cost of taking a kitchen item.
+    ``scales``: the scale of each objective, in the order of the objectives.
+    """
 
     units: dict[int, int]
     item: int
@@ -34,7 +40,7 @@ class ActionCosts(NamedTuple):
 
     @property
     def unit_cost(self) -> bool:
-        """Whether each action costs 1, which PDDL need not say."""
+        """Whether each action costs 1, so that PDDL needs no costs."""
         return not self.item and set(self.units.values()) <= {1}
 
 
@@ -46,14 +52,14 @@ def action_costs(
     tree: Collection[int],
     repeats: int = 1,
 ) -> ActionCosts:
-    """Scalarize a lexicographic list of objectives: return one cost for each action.
+    """Return integer costs by which a cheapest plan is a best one by a lexicographic list of objectives.
 
     A tree executes each of the ``units`` at most once, and takes at most ``items`` kitchen items. So an
-    objective has a weight above the greatest sum of all less important objectives. ``tree`` is a feasible
-    tree; plans are assumed to cost at most ``repeats`` times as much. Fractions that planners cannot add up
+    objective gets a weight above the greatest sum of all less important objectives. ``tree`` is a feasible
+    tree; plans are assumed to cost at most ``repeats`` times as much. Costs that planners cannot add up
     exactly are rounded.
 
-    Raises :class:`UserError` where rounded costs are too large as well, and for a success rate of 0.
+    Raises :class:`UserError` if even rounded costs are too large, and for a success rate of 0.
     """
     total: dict[int, int] = dict.fromkeys(units, 0)
     item, weight = 0, 1
@@ -78,9 +84,10 @@ def action_costs(
 def _integer_costs(
     problem: Problem, objective: Objective, units: Sequence[int], tree: Collection[int], max_cost: int
 ) -> tuple[dict[int, int], Fraction, bool]:
-    """Return the costs of units by an objective as integers, the factor of this scale, and whether it rounds.
+    """Return the integer costs of units by an objective, their scale's factor, and whether they are rounded.
 
-    The factor is chosen such that a tree and the most expensive unit together cost at most ``max_cost``.
+    The factor is chosen such that a tree and the most expensive unit together cost at most ``max_cost``. For
+    an objective that multiplies, see :func:`_logarithms`.
     """
     if multiplies(objective):
         return _logarithms(problem, units)
@@ -94,7 +101,10 @@ def _integer_costs(
 
 
 def _logarithms(problem: Problem, units: Sequence[int]) -> tuple[dict[int, int], Fraction, bool]:
-    """Return the negative logarithms of success rates as integers, their factor, and ``True``: rounded."""
+    """Return the negative logarithms of success rates as integers, their scale's factor, and ``True``.
+
+    The ``True`` says that they are rounded. Raises :class:`UserError` for a rate of 0.
+    """
     impossible = next((unit for unit in units if not problem.rate(unit)), None)
     if impossible is not None:
         raise UserError(

@@ -36,6 +36,8 @@ class Branch(Value, frozen=True):
 
 
 class _Port(NamedTuple):
+    """An input port of a node: its name, its C++ type, and its meaning for people."""
+
     name: str
     type: str
     meaning: str
@@ -62,22 +64,22 @@ LIST_SEPARATOR = ";"  # BehaviorTree.CPP splits lists at it
 
 
 def node_name(node: Node) -> str:
-    """Return the name of an object node in ports: its name in PDDL, or else its label.
+    """Return the name of an object node in ports: ``o43-ice``, its name in PDDL.
 
-    A node that the network does not have, such as a place that is no object of a unit, has only its label.
+    A node that the network does not have, such as a place that is no object of a unit, is named by its label.
     """
     if node.id is None:
-        return _plain(node.label).replace(LIST_SEPARATOR, ",")
+        return _without_braces(node.label).replace(LIST_SEPARATOR, ",")
     return pddl_name("o", node.id, node.node)
 
 
 def behaviour_tree_text(name: str, branches: Sequence[Branch], is_used_up: bool) -> str:
-    """Return a behaviour tree as XML.
+    """Return a behaviour tree as XML of BehaviorTree.CPP 4, with the definitions of its nodes' ports.
 
     Parameters:
         name: The name of the root, for people.
-        branches: The trees to follow, the first one first; if a branch has failed as often as it may, the
-            next one begins with the nodes available at that moment.
+        branches: The trees to follow, the first one first. If a branch has failed as often as it may, the
+            next one begins with the nodes that are then available.
         is_used_up: Whether items are used up; then there is one branch.
     """
     root = ElementTree.Element("root", BTCPP_format="4", main_tree_to_execute="Plan")
@@ -87,53 +89,63 @@ def behaviour_tree_text(name: str, branches: Sequence[Branch], is_used_up: bool)
         parent = ElementTree.SubElement(tree, "Fallback", name="the plan, and other ways")
     for branch in branches:
         if is_used_up:
-            _sequence(parent, name, branch.robot_steps)
+            _add_sequence(parent, name, branch.robot_steps)
         else:
-            above = parent if branch.failures == 1 else _retry(parent, branch.failures)
-            _reactive_sequence(above, name, branch.robot_steps)
+            branch_parent = parent if branch.failures == 1 else _add_retry(parent, branch.failures)
+            _add_reactive_sequence(branch_parent, name, branch.robot_steps)
     model = ElementTree.SubElement(root, "TreeNodesModel")
     for (kind, node_id), ports in _PORTS.items():
-        described = ElementTree.SubElement(model, kind, ID=node_id)
+        definition = ElementTree.SubElement(model, kind, ID=node_id)
         for port in ports:
             ElementTree.SubElement(
-                described, "input_port", name=port.name, type=port.type
+                definition, "input_port", name=port.name, type=port.type
             ).text = port.meaning
     ElementTree.indent(root)
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{ElementTree.tostring(root, encoding="unicode")}\n'
 
 
-def _reactive_sequence(parent: ElementTree.Element, name: str, steps: Iterable[RobotStep]) -> None:
-    """Add a reactive sequence with the steps of a branch to an element, for items that last."""
+def _add_reactive_sequence(parent: ElementTree.Element, name: str, steps: Iterable[RobotStep]) -> None:
+    """Add to an element the reactive sequence of the steps of a branch, for items that last.
+
+    A step is a fallback: the condition that its outputs are available, or else its action. Without steps, the
+    sequence succeeds.
+    """
     sequence = ElementTree.SubElement(parent, "ReactiveSequence", name=escaped(name))
     for step in steps:
         fallback = ElementTree.SubElement(sequence, "Fallback", name=_step_name(step))
         if step.makes:  # else nothing shows that it is done
-            _condition(fallback, step.makes)
-        _action(fallback, step)
+            _add_condition(fallback, step.makes)
+        _add_action(fallback, step)
     if not len(sequence):
         ElementTree.SubElement(sequence, "AlwaysSuccess")
 
 
-def _sequence(parent: ElementTree.Element, name: str, steps: Iterable[RobotStep]) -> None:
-    """Add a sequence with the steps of a branch to an element, for items that are used up."""
+def _add_sequence(parent: ElementTree.Element, name: str, steps: Iterable[RobotStep]) -> None:
+    """Add to an element the sequence of the steps of a branch, for items that are used up.
+
+    A step is the condition that its inputs are available, then its action, which is repeated until it
+    succeeds. Without steps, the sequence succeeds.
+    """
     sequence = ElementTree.SubElement(parent, "Sequence", name=escaped(name))
     for step in steps:
-        _condition(sequence, step.needs)
-        _action(_retry(sequence, UNTIL_SUCCESS), step)
+        _add_condition(sequence, step.needs)
+        _add_action(_add_retry(sequence, UNTIL_SUCCESS), step)
     if not len(sequence):
         ElementTree.SubElement(sequence, "AlwaysSuccess")
 
 
-def _retry(parent: ElementTree.Element, attempts: int) -> ElementTree.Element:
+def _add_retry(parent: ElementTree.Element, attempts: int) -> ElementTree.Element:
+    """Add a node that repeats its child until it succeeds, up to a number of attempts; return the node."""
     return ElementTree.SubElement(parent, "RetryUntilSuccessful", num_attempts=str(attempts))
 
 
-def _condition(parent: ElementTree.Element, nodes: Iterable[Node]) -> None:
-    ElementTree.SubElement(parent, "Condition", ID=CONDITION, nodes=_names(nodes))
+def _add_condition(parent: ElementTree.Element, nodes: Iterable[Node]) -> None:
+    """Add the condition that object nodes are available."""
+    ElementTree.SubElement(parent, "Condition", ID=CONDITION, nodes=_node_list(nodes))
 
 
-def _action(parent: ElementTree.Element, step: RobotStep) -> None:
-    """Add the action of a step, with its ports."""
+def _add_action(parent: ElementTree.Element, step: RobotStep) -> None:
+    """Add the action that executes the unit of a step, with its ports."""
     numbers = {"rate": step.rate, "duration": step.duration}
     ElementTree.SubElement(
         parent,
@@ -143,26 +155,28 @@ def _action(parent: ElementTree.Element, step: RobotStep) -> None:
             "name": _step_name(step),
             "step": str(step.step),
             "unit": str(step.id),
-            "motion": _plain(step.motion),
-            "needs": _names(step.needs),
-            "makes": _names(step.makes),
-            "acted_on": _names(step.acted_on),
-            "tools": _names(step.tools),
-            "from": _names(step.origins),
-            "to": _names(step.destinations),
+            "motion": _without_braces(step.motion),
+            "needs": _node_list(step.needs),
+            "makes": _node_list(step.makes),
+            "acted_on": _node_list(step.acted_on),
+            "tools": _node_list(step.tools),
+            "from": _node_list(step.origins),
+            "to": _node_list(step.destinations),
             **{port: f"{float(value):.15g}" for port, value in numbers.items() if value is not None},
         },
     )
 
 
-def _plain(name: str) -> str:
-    """Return a name that BehaviorTree.CPP does not read as a blackboard entry, ``{name}``."""
+def _without_braces(name: str) -> str:
+    """Return a name with parentheses for braces, since ``{name}`` would be a blackboard entry."""
     return escaped(name).replace("{", "(").replace("}", ")")
 
 
 def _step_name(step: RobotStep) -> str:
+    """Return the name of a step: its number and motion."""
     return escaped(f"{step.step} {step.motion}")
 
 
-def _names(nodes: Iterable[Node]) -> str:
+def _node_list(nodes: Iterable[Node]) -> str:
+    """Return the names of object nodes as the value of a port."""
     return LIST_SEPARATOR.join(map(node_name, nodes))

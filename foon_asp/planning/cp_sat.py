@@ -1,6 +1,6 @@
 """The process of CP-SAT, OR-Tools' constraint solver, which cannot be in one process with HiGHS.
 
-It minimizes the makespan of a plan, and sends each better schedule and bound, and at last its status.
+It minimizes the makespan of a plan. It sends each better schedule and bound, and at last its status.
 """
 
 import threading
@@ -14,7 +14,10 @@ from foon_asp.proof.timetable import ToolName
 
 
 def serve() -> None:
-    """Solve tasks from standard input, and write schedules, bounds and a status to the pipe of answers."""
+    """Solve tasks from standard input, in an endless loop; send the answers to the pipe of answers.
+
+    Without OR-Tools, send ``missing`` and return.
+    """
     tasks, answers = requests(receive)
     try:
         from ortools.sat.python import cp_model  # noqa: PLC0415 (this process alone may have it)
@@ -29,11 +32,12 @@ def serve() -> None:
 class _Model:
     """The constraint model of a task: a start variable for each step, an interval for each use of a tool.
 
-    ``incumbent`` is a feasible schedule, as the start of each step in ticks: a hint, and an upper bound.
+    ``incumbent`` is a feasible schedule, given as the start of each step in ticks. It is a hint for the
+    solver, and its makespan an upper bound.
     """
 
     def __init__(self, cp_model: Any, task: ScheduleTask, incumbent: Sequence[int]) -> None:
-        """Add the variables of steps, the precedences and the limit on agents."""
+        """Add the variables and intervals of steps, the precedences and the limit on agents."""
         self._library, self._task = cp_model, task
         self._model = model = cp_model.CpModel()
         ends = (start + length for start, length in zip(incumbent, task.lengths, strict=True))
@@ -54,7 +58,10 @@ class _Model:
         model.add_cumulative(occupying_agent, [1] * len(occupying_agent), task.agents)
 
     def minimize_makespan(self, answers: FileIO) -> str:
-        """Search for a schedule of least makespan; return ``proved`` or CP-SAT's other status."""
+        """Search for a schedule of least makespan; return ``proved``, or else the status of CP-SAT.
+
+        Each better schedule is sent as ``found``, each better bound as ``bound``.
+        """
         model, library = self._model, self._library
         self._constrain_tools()
         makespan = model.new_int_var(self._task.bound, self._end, "")
@@ -64,11 +71,15 @@ class _Model:
         starts, send_lock = self._starts, threading.Lock()
 
         def report(kind: str, value: object) -> None:
+            """Send a message; CP-SAT calls this from several threads."""
             with send_lock:
                 send(answers, (kind, value))
 
         class Listener(library.CpSolverSolutionCallback):  # type: ignore[misc, name-defined]
+            """Callback of CP-SAT that sends each better schedule."""
+
             def on_solution_callback(self) -> None:
+                """Send the starts of the steps, in ticks."""
                 report("found", [self.value(start) for start in starts])
 
         solver = self._solver()
@@ -77,30 +88,34 @@ class _Model:
         return "proved" if status == library.OPTIMAL else str(solver.status_name(status))
 
     def _constrain_tools(self) -> None:
-        """Add cumulative constraints: a use of a tool occupies one copy, and its steps do not overlap."""
+        """Add the constraints that a use of a tool occupies one copy, and that its steps do not overlap.
+
+        Steps that share a copy of an item do not overlap either.
+        """
         model = self._model
         in_use: dict[ToolName, list[Any]] = {}
         for name, steps in self._task.uses:
             if len(steps) == 1:
                 in_use.setdefault(name, []).append(self._steps[steps[0]])
                 continue
-            begin, end = (model.new_int_var(0, self._end, "") for _ in range(2))
+            use_start, use_end = (model.new_int_var(0, self._end, "") for _ in range(2))
             for step in steps:
-                model.add(begin <= self._starts[step])
-                model.add(end >= self._end_of(step))
+                model.add(use_start <= self._starts[step])
+                model.add(use_end >= self._end_of(step))
             model.add_no_overlap([self._steps[step] for step in steps])
             length = model.new_int_var(0, self._end, "")
-            in_use.setdefault(name, []).append(model.new_interval_var(begin, length, end, ""))
+            in_use.setdefault(name, []).append(model.new_interval_var(use_start, length, use_end, ""))
         for steps in self._task.sharing:
             model.add_no_overlap([self._steps[step] for step in steps])
         for name, intervals in in_use.items():
             model.add_cumulative(intervals, [1] * len(intervals), self._task.counts[name])
 
     def _end_of(self, step: int) -> Any:
+        """Return the end of a step, as an expression of its start variable."""
         return self._starts[step] + self._task.lengths[step]
 
     def _solver(self) -> Any:
-        """Return a deterministic solver."""
+        """Return a solver that is deterministic: it has one worker and a fixed seed."""
         solver = self._library.CpSolver()
         # more workers find no schedule sooner for plans of some hundred steps, and are not deterministic
         solver.parameters.num_workers = 1

@@ -1,8 +1,8 @@
 """The delete relaxation of a planning task in finite-domain variables.
 
-A fact is a value of a variable; a fact that was reached is never deleted. Conditional effects and axioms keep
-their meaning: an action adds the effects whose conditions hold when it is executed, and an axiom derives its
-fact at no cost.
+A fact is a value of a variable. In the relaxation, a fact that was reached is never deleted. Conditional
+effects and axioms keep their meaning: an action adds the effects whose conditions hold when it is executed,
+and an axiom derives its fact at no cost.
 """
 
 from collections.abc import Iterable, Iterator
@@ -17,20 +17,20 @@ from foon_asp.planning.sas_reader import SasAxiom, SasOperator, SasTask
 from foon_asp.planning.strips_task import DERIVED, StripsAction, StripsTask
 
 
-def relaxed(task: SasTask) -> StripsTask:
-    """Return the delete relaxation of a task.
+def delete_relaxation(task: SasTask) -> StripsTask:
+    """Return the delete relaxation of a task, in STRIPS.
 
-    Raises :class:`UserError` for an operator whose conditional effects have more than 1000 combinations, and
-    for a fact derived by recursion whose negation is a condition.
+    Raises :class:`UserError` for an operator whose conditional effects have more than 1000 combinations. Also
+    for a condition that negates a fact which axioms derive by recursion.
     """
     return _Relaxation(task).strips()
 
 
 class _Relaxation:
-    """Compiles conditional effects and negated derived facts of a task away (Nebel 2000)."""
+    """The compilation of a task, without conditional effects and negated derived facts (Nebel 2000)."""
 
     def __init__(self, task: SasTask) -> None:
-        """Find the default values of derived variables, and the axioms that change each value."""
+        """Find the default values of derived variables, and the axioms that change each default value."""
         self._task = task
         self._facts = list(task.facts)
         self._values = {fact: facts for facts in task.variables for fact in facts}
@@ -43,17 +43,21 @@ class _Relaxation:
             self._rules[default.pop()].append(axiom)
 
     def strips(self) -> StripsTask:
-        """Return the compiled task, with its relevant facts numbered in order."""
+        """Return the compiled task, in which the relevant facts are numbered in order.
+
+        Actions that add no relevant fact are left out.
+        """
         task = self._task
-        useful = self._useful()
-        actions = [action for operator in task.operators for action in self._variants(operator, useful)]
+        relevant = self._relevant_facts()
+        actions = [action for operator in task.operators for action in self._variants(operator, relevant)]
         actions += [self._derivation(axiom.body, axiom.head, axiom.source) for axiom in task.axioms]
         conditions = chain(task.goal, *(action.preconditions for action in actions))
-        actions += self._negations(self._defaults.intersection(conditions))
+        actions += self._default_derivations(self._defaults.intersection(conditions))
         needed = {*task.goal, *chain(*(action.preconditions for action in actions))}
         numbers = {fact: number for number, fact in enumerate(sorted(needed))}
 
         def numbered(facts: Iterable[int]) -> list[int]:
+            """Return the new numbers of the relevant ones among some facts."""
             return [numbers[fact] for fact in facts if fact in numbers]
 
         return StripsTask(
@@ -69,8 +73,12 @@ class _Relaxation:
             self._deletes(needed),
         )
 
-    def _useful(self) -> set[int]:
-        """Return the relevant facts: of the goal, and of conditions of operators, axioms and effects."""
+    def _relevant_facts(self) -> set[int]:
+        """Return the facts of the goal and of the conditions of operators and axioms.
+
+        Conditions of effects that add such facts are included. So are the other values of variables in
+        conditions of axioms, since an axiom may be negated.
+        """
         task = self._task
         bodies = [axiom.body for axiom in task.axioms]
         facts = {*task.goal, *chain(*(operator.preconditions for operator in task.operators), *bodies)}
@@ -78,31 +86,35 @@ class _Relaxation:
         return self._with_effect_conditions(facts)
 
     def _with_effect_conditions(self, facts: set[int]) -> set[int]:
-        """Return facts, closed under the conditions of the effects that add them."""
+        """Return some facts and, transitively, the conditions of all effects that add them."""
         effects = [effect for operator in self._task.operators for effect in operator.effects]
         while True:
-            new = set(chain(*(effect.condition for effect in effects if effect.fact in facts))) - facts
-            if not new:
+            missing = set(chain(*(effect.condition for effect in effects if effect.fact in facts))) - facts
+            if not missing:
                 return facts
-            facts = facts | new
+            facts = facts | missing
 
     def _deletes(self, needed: set[int]) -> bool:
-        """Return whether an operator deletes one of the facts ``needed``."""
+        """Whether an operator deletes a fact of ``needed``, or a condition of an effect that adds one."""
         needed = self._with_effect_conditions(needed)
         for operator in self._task.operators:
             for effect in operator.effects:
                 values = self._values[effect.fact]
-                before = {*operator.preconditions, *effect.condition}.intersection(values) or {*values}
-                if not before.difference([effect.fact]).isdisjoint(needed):
+                possible_before = {*operator.preconditions, *effect.condition}.intersection(values) or {
+                    *values
+                }
+                if not possible_before.difference([effect.fact]).isdisjoint(needed):
                     return True
         return False
 
     def _variants(
-        self, operator: SasOperator, useful: set[int], max_variants: int = 1000
+        self, operator: SasOperator, relevant: set[int], max_variants: int = 1000
     ) -> Iterator[StripsAction]:
-        """Yield an operator as actions without conditional effects: one for each union of their conditions.
+        """Yield actions without conditional effects for an operator, one for each union of effect conditions.
 
-        Raises :class:`UserError` for more than ``max_variants`` unions; their number may be exponential.
+        The conditions of the union become preconditions, and the action adds all effects whose conditions are
+        in the union. Conditional effects that add no relevant fact are left out. Raises :class:`UserError`
+        for more than ``max_variants`` unions; their number may be exponential.
         """
         holding = self._start.union(operator.preconditions)
         always: dict[int, None] = {}
@@ -111,7 +123,7 @@ class _Relaxation:
             condition = frozenset(effect.condition) - holding
             if not condition:
                 always[effect.fact] = None
-            elif effect.fact in useful and effect.fact not in holding:
+            elif effect.fact in relevant and effect.fact not in holding:
                 conditional.setdefault(condition, []).append(effect.fact)
         triggers: dict[frozenset[int], None] = {frozenset(): None}
         for condition in conditional:
@@ -129,11 +141,12 @@ class _Relaxation:
             preconditions = [*operator.preconditions, *sorted(trigger)]
             yield StripsAction(operator.name, preconditions, list(effects), cost, operator.source)
 
-    def _negations(self, defaults: set[int]) -> Iterator[StripsAction]:
+    def _default_derivations(self, defaults: set[int]) -> Iterator[StripsAction]:
         """Yield actions that derive the default values of derived variables (Clark's completion).
 
-        A variable has its default value if each axiom that sets it has a condition that fails. Raises
-        :class:`UserError` if such a derivation is cyclic.
+        A variable has its default value if each axiom that sets it has a condition that fails. Where several
+        values make an axiom fail, a new fact says that it fails. Raises :class:`UserError` if such a
+        derivation is cyclic.
         """
         graph: dict[int, set[int]] = {}
         pending = sorted(defaults)
@@ -167,4 +180,5 @@ class _Relaxation:
             ) from None
 
     def _derivation(self, body: tuple[int, ...], head: int, source: Source) -> StripsAction:
+        """Return an action of no cost that derives ``head`` from the facts of ``body``."""
         return StripsAction(DERIVED, body, (head,), Fraction(0), source)

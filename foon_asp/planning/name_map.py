@@ -1,4 +1,4 @@
-"""The map from the names of a planning task to units and nodes, as JSON, by which plans are read back."""
+"""The name map: what the names of a planning task mean, as JSON, so that plans can be read back."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -8,7 +8,7 @@ from msgspec import UNSET, UnsetType
 
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, ObjectNode
-from foon_asp.planning.planning_task import PlanningTask, taking
+from foon_asp.planning.planning_task import PlanningTask, taking_action_name
 from foon_asp.problem import ITEMS, Objective, UsedUp
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.plain_values import fraction_text
@@ -23,11 +23,11 @@ KIND = "pddl-map"
 
 
 class NameMap(NamedTuple):
-    """The meaning of the actions of a planning task, and the question that the task poses.
+    """The meaning of the actions of a planning task, and the question that the task stands for.
 
-    ``units`` maps an action's name to the unit that it executes. ``taking`` are the names of the actions that
-    take a kitchen item. ``goals``, ``containers``, ``level`` and ``items`` are those of the question;
-    ``items`` is ``None`` where items last.
+    ``units`` maps the name of an action to the unit that it executes. ``taking`` has the names of the actions
+    that take a kitchen item. ``goals``, ``containers``, ``level`` and ``items`` are those of the question;
+    ``items`` is ``None`` if items last.
     """
 
     units: Mapping[str, FunctionalUnit]
@@ -38,12 +38,12 @@ class NameMap(NamedTuple):
     items: UsedUp | None
 
 
-def map_of(task: PlanningTask) -> NameMap:
-    """Return the name map of a task."""
+def name_map_of(task: PlanningTask) -> NameMap:
+    """Return the name map of a planning task."""
     problem, network = task.problem, task.problem.network
     return NameMap(
         {action.name: network.unit(action.unit) for action in task.actions if action.unit is not None},
-        frozenset(map(taking, task.names.values())),
+        frozenset(map(taking_action_name, task.names.values())),
         problem.goal_nodes,
         str(problem.containers),
         network.level,
@@ -117,7 +117,10 @@ class MapFile(AboutGoals, frozen=True, kw_only=True, tag=schema_name(KIND)):
 
     @classmethod
     def of(cls, task: PlanningTask) -> Self:
-        """Return the name map of a task."""
+        """Return the name map of a planning task, in the form that is written to a file.
+
+        Nodes of units that the task leaves out are named ``unused-NUMBER``.
+        """
         problem, network = task.problem, task.problem.network
         objects = dict(task.names)
         for action in task.actions:  # a unit may have nodes that the task leaves out
@@ -154,16 +157,17 @@ class MapFile(AboutGoals, frozen=True, kw_only=True, tag=schema_name(KIND)):
 
 
 def _staying(network: Network, name: str | ObjectNode, stays: bool) -> Staying:
+    """Return what the user declared of a label or node."""
     if isinstance(name, str):
         return Staying(name, None, stays)
     return Staying(None, named_node(network, name), stays)
 
 
 def read_name_map(file: Path) -> NameMap:
-    """Read a map from a file.
+    """Return the name map in a file.
 
-    Raises :class:`UserError` for a file that cannot be read, and for one that is no :class:`MapFile`, with
-    line and column where it is not JSON.
+    Raises :class:`UserError` for a file that cannot be read, is not JSON, or is no :class:`MapFile`. Where it
+    is not JSON, the error has line and column.
     """
     text = read_plain_text(file)
     check_json(text, str(file))
@@ -171,7 +175,7 @@ def read_name_map(file: Path) -> NameMap:
         content = read_json(text)
         if not isinstance(content, dict) or content.get("schema") != schema_name(KIND):
             raise ValueError(f"its schema is not {schema_name(KIND)!r}")
-        return _read(content)
+        return _name_map_of_json(content)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         reason = f"{error} is missing" if isinstance(error, KeyError) else str(error)
         raise UserError(
@@ -179,30 +183,33 @@ def read_name_map(file: Path) -> NameMap:
         ) from None
 
 
-def _read(tree: Mapping[str, Any]) -> NameMap:
-    """Return the name map of a JSON tree; a missing or wrong part raises the errors of Python."""
-    nodes = {entry["name"]: read_node_json(entry["object"]) for entry in tree["objects"]}
+def _name_map_of_json(content: Mapping[str, Any]) -> NameMap:
+    """Return the name map in the JSON object of a :class:`MapFile`.
+
+    A missing or wrong value raises ``KeyError``, ``TypeError``, ``ValueError`` or ``AttributeError``.
+    """
+    nodes = {entry["name"]: read_node_json(entry["object"]) for entry in content["objects"]}
     units = {
         action["name"]: FunctionalUnit.of(
             action["unit"]["motion"],
             [nodes[name] for name in action["inputs"]],
             [nodes[name] for name in action["outputs"]],
         )
-        for action in tree["actions"]
+        for action in content["actions"]
         if action["unit"] is not None
     }
-    taking = frozenset(action["name"] for action in tree["actions"] if action["unit"] is None)
-    goals = tuple(map(read_node_json, tree["goals"]))
+    taking = frozenset(action["name"] for action in content["actions"] if action["unit"] is None)
+    goals = tuple(map(read_node_json, content["goals"]))
     items = None
-    if tree["items"] == ITEMS[1]:
+    if content["items"] == ITEMS[1]:
         items = UsedUp(
             {
                 entry["label"] or read_node_json(entry["object"]): bool(entry["stays"])
-                for entry in tree["stays"]
+                for entry in content["stays"]
             },
             *(
-                {read_node_json(entry["object"]): int(entry["copies"]) for entry in tree[key]}
+                {read_node_json(entry["object"]): int(entry["copies"]) for entry in content[key]}
                 for key in ("stock", "wanted")
             ),
         )
-    return NameMap(units, taking, goals, str(tree["containers"]), int(tree["level"]), items)
+    return NameMap(units, taking, goals, str(content["containers"]), int(content["level"]), items)

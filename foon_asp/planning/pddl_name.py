@@ -1,4 +1,4 @@
-"""Identifiers of PDDL: a letter for the kind, a number, and readable words of up to 60 letters."""
+"""Identifiers of PDDL: a letter for the kind, a number, and up to 60 letters of readable words."""
 
 import re
 import unicodedata
@@ -7,9 +7,10 @@ _SEPARATOR = re.compile("[^a-z0-9]+")
 
 
 def pddl_name(kind: str, number: int, words: str) -> str:
-    """Return an identifier such as ``u580-pour``; kind and number make it unique, whatever the words are.
+    """Return an identifier such as ``u580-pour``; kind and number alone make it unique.
 
-    PDDL ignores the case of letters, and allows only ASCII letters, digits and dashes.
+    ``words`` are reduced to lower-case ASCII letters, digits and dashes, since PDDL ignores case and allows
+    nothing else. If nothing of them is left, the identifier is ``u580``.
     """
     plain = unicodedata.normalize("NFKD", words).encode("ascii", "ignore").decode().lower()
     suffix = _SEPARATOR.sub("-", plain).strip("-")[:60].rstrip("-")

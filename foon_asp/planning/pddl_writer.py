@@ -12,17 +12,17 @@ COPIES = "copies"
 
 
 def domain_text(task: PlanningTask) -> str:
-    """Return the text of the domain: a constant for each object node, and an action for each unit."""
-    return "\n".join(_domain(task)) + "\n"
+    """Return the PDDL domain: a constant for each object node, and an action for each unit."""
+    return "\n".join(_domain_lines(task)) + "\n"
 
 
 def problem_text(task: PlanningTask) -> str:
-    """Return the text of the problem: the initial state and the goals."""
-    return "\n".join(_problem(task)) + "\n"
+    """Return the PDDL problem: the initial state and the goals."""
+    return "\n".join(_problem_lines(task)) + "\n"
 
 
 def scale_words(scale: Scale) -> str:
-    """Return a comment on the scale of an objective."""
+    """Return a description of how the costs of an objective were scaled: ``price: times 100, exact``."""
     if multiplies(scale.objective):
         return f"{scale.objective}: -ln of the rates, times {scale.factor}, rounded to whole numbers"
     exact = "rounded to whole numbers" if scale.rounded else "exact"
@@ -30,7 +30,7 @@ def scale_words(scale: Scale) -> str:
 
 
 def items_words(task: PlanningTask) -> str:
-    """Return a comment on how copies of items are modelled."""
+    """Return a description of how copies of items are modelled in the task."""
     if task.problem.items is None:
         return "items last, so that no action deletes anything"
     if not task.merged:
@@ -38,15 +38,15 @@ def items_words(task: PlanningTask) -> str:
     return "the copies of a node are merged into one, so each plan runs, and may be longer than it has to be"
 
 
-def _domain(task: PlanningTask) -> Iterator[str]:
-    """Return the lines of the domain."""
+def _domain_lines(task: PlanningTask) -> Iterator[str]:
+    """Yield the lines of the domain."""
     network, costed = task.problem.network, not task.costs.unit_cost
     yield f"; A FOON, {task.problem.conditions}: {items_words(task)}."
     yield "; Costs of actions, the most important first:"
     yield from (f";   {scale_words(scale)}" for scale in task.costs.scales)
     yield f"(define (domain {DOMAIN})"
-    numbers = " :numeric-fluents" * bool(task.counted)
-    yield f"  (:requirements :strips :typing{numbers}{' :action-costs' * costed})"
+    numeric_fluents = " :numeric-fluents" * bool(task.counted)
+    yield f"  (:requirements :strips :typing{numeric_fluents}{' :action-costs' * costed})"
     yield "  (:types item)"
     yield "  (:constants"
     yield from (f"    {name} - item ; {_comment(str(network.objects[o]))}" for o, name in task.names.items())
@@ -58,13 +58,13 @@ def _domain(task: PlanningTask) -> Iterator[str]:
     for action in task.actions:
         yield f"  (:action {action.name}"
         yield "    :parameters ()"
-        yield f"    :precondition {_at_hand(task, task.flow(action).asks)}"
+        yield f"    :precondition {_availability_condition(task, task.flow(action).asks)}"
         yield f"    :effect {_effect(task, action, costed)})"
     yield ")"
 
 
-def _problem(task: PlanningTask) -> Iterator[str]:
-    """Return the lines of the problem."""
+def _problem_lines(task: PlanningTask) -> Iterator[str]:
+    """Yield the lines of the problem."""
     yield f"(define (problem {DOMAIN}-goal)"
     yield f"  (:domain {DOMAIN})"
     yield "  (:init"
@@ -73,14 +73,17 @@ def _problem(task: PlanningTask) -> Iterator[str]:
     if not task.costs.unit_cost:
         yield "    (= (total-cost) 0)"
     yield "  )"
-    yield f"  (:goal {_at_hand(task, task.wanted)})"
+    yield f"  (:goal {_availability_condition(task, task.wanted)})"
     if not task.costs.unit_cost:
         yield "  (:metric minimize (total-cost))"
     yield ")"
 
 
-def _at_hand(task: PlanningTask, copies: Mapping[int, int]) -> str:
-    """Return the condition that copies of nodes are available."""
+def _availability_condition(task: PlanningTask, copies: Mapping[int, int]) -> str:
+    """Return the PDDL condition that these numbers of copies, by node id, are available.
+
+    For a node whose copies are not counted, the number does not matter.
+    """
     atoms = [
         f"(>= ({COPIES} {task.names[o]}) {n})" if o in task.counted else f"({AT_HAND} {task.names[o]})"
         for o, n in copies.items()
@@ -89,7 +92,7 @@ def _at_hand(task: PlanningTask, copies: Mapping[int, int]) -> str:
 
 
 def _effect(task: PlanningTask, action: Action, costed: bool) -> str:
-    """Return the effect of an action: what it adds, what it consumes, and its cost."""
+    """Return the PDDL effect of an action: what it adds and consumes and, if ``costed``, its cost."""
     counted, (_, uses, adds) = task.counted, task.flow(action)
     effects = [
         f"(increase ({COPIES} {task.names[o]}) {n})" if o in counted else f"({AT_HAND} {task.names[o]})"
@@ -105,6 +108,6 @@ def _effect(task: PlanningTask, action: Action, costed: bool) -> str:
 
 
 def _comment(text: str) -> str:
-    """Return a text in printable ASCII, on one line, which every PDDL reader accepts."""
+    """Return a text on one line of printable ASCII, with escapes, as every PDDL reader accepts it."""
     plain = text.encode("ascii", "backslashreplace").decode()
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in plain)

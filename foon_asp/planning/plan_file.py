@@ -1,6 +1,6 @@
 """Reader of plan files: of Fast Downward, Metric-FF, pyperplan, planners of the IPC and unified-planning.
 
-The log that Fast Downward or Metric-FF prints is read as well, for the plan in it.
+The log that Fast Downward or Metric-FF prints can also be read, if it has a plan.
 """
 
 import difflib
@@ -38,17 +38,17 @@ _STEP_COST = re.compile(r"\s\(\d+\)\s*\Z")  # of a step of Fast Downward: u26-tw
 
 
 class PlanStep(NamedTuple):
-    """A step of a plan: the unit that it executes, and its line and column in the file."""
+    """A step of a plan: the unit that it executes, and the place of its name in the file."""
 
     unit: FunctionalUnit
     source: Source
 
 
 def read_plan_text(text: str, file: str, names: NameMap) -> Sequence[PlanStep]:
-    """Return the units that a plan executes, in its order; actions that take a kitchen item are left out.
+    """Return the steps of a plan that execute units, in order; steps that take a kitchen item are left out.
 
-    Raises :class:`InputError` for lines that are no steps of a plan, for names that the map does not have,
-    and for a log without a plan.
+    Names are looked up in lower case. Raises one :class:`InputError` for all lines that are no steps of a
+    plan or have unknown names; also for a log without a plan.
     """
     steps: list[PlanStep] = []
     faults: list[Diagnostic] = []
@@ -61,7 +61,7 @@ def read_plan_text(text: str, file: str, names: NameMap) -> Sequence[PlanStep]:
         step = _PLAN_STEP.fullmatch(content)
         if step is None:
             faults.append(
-                _fault(
+                _line_error(
                     file,
                     number,
                     line,
@@ -80,7 +80,7 @@ def read_plan_text(text: str, file: str, names: NameMap) -> Sequence[PlanStep]:
             similar = difflib.get_close_matches(name, names.units, 3)
             advice = f", such as {' or '.join(similar)}" if similar else ""
             faults.append(
-                _fault(
+                _line_error(
                     file, number, line, column, f"found {written!r}, expected an action of the map{advice}"
                 )
             )
@@ -90,22 +90,23 @@ def read_plan_text(text: str, file: str, names: NameMap) -> Sequence[PlanStep]:
 
 
 def _plan_lines(lines: Sequence[str], file: str) -> Sequence[tuple[int, str]]:
-    """Return the lines of a plan with their numbers: all lines, or those of the last plan in a log.
+    """Return the lines of a plan with their numbers from 1: all lines, or those of the last plan in a log.
 
-    Raises :class:`InputError` for a log without a plan, or whose plan is cut off.
+    Raises :class:`InputError` for a log without a plan, and for one whose last plan is cut off or has another
+    length than the log says.
     """
-    follows = [index for index, line in enumerate(lines) if _PLAN_FOLLOWS.match(line.strip())]
-    if not follows:
+    plan_starts = [index for index, line in enumerate(lines) if _PLAN_FOLLOWS.match(line.strip())]
+    if not plan_starts:
         log = next((index for index, line in enumerate(lines) if _LOG.match(line.strip())), None)
         if log is not None:
             message = "found the log of a planner without a plan in it, expected one that found a plan"
-            raise InputError([_fault(file, log + 1, lines[log], 0, message)])
+            raise InputError([_line_error(file, log + 1, lines[log], 0, message)])
         return list(enumerate(lines, 1))
-    first = follows[-1] + 1
+    first = plan_starts[-1] + 1
     end = next((n for n in range(first, len(lines)) if _PLAN_ENDS.match(lines[n].strip())), None)
     if end is None:
         message = "found a log that ends in the middle of this plan: it is cut off"
-        raise InputError([_fault(file, first, lines[first - 1], 0, message)])
+        raise InputError([_line_error(file, first, lines[first - 1], 0, message)])
     steps = [
         (number, _without_log_marks(line))
         for number, line in enumerate(lines[first:end], first + 1)
@@ -114,17 +115,17 @@ def _plan_lines(lines: Sequence[str], file: str) -> Sequence[tuple[int, str]]:
     length = _PLAN_LENGTH.match(lines[end].strip())
     if length is not None and int(length[1]) != len(steps):
         message = f"found a plan of {len(steps)} steps above, expected {length[1]}"
-        raise InputError([_fault(file, end + 1, lines[end], 0, message)])
+        raise InputError([_line_error(file, end + 1, lines[end], 0, message)])
     return steps
 
 
 def _without_log_marks(line: str) -> str:
-    """Return a line of a log with blanks instead of its time stamp, and without the cost of its step."""
+    """Return a line of a log with blanks in place of its time stamp, and without the cost of its step."""
     stamp = _STAMPED.match(line)
     blanks = " " * (stamp.end() if stamp else 0)
     return _STEP_COST.sub("", blanks + line[len(blanks) :])
 
 
-def _fault(file: str, number: int, line: str, column: int, message: str) -> Diagnostic:
-    """Return an error at a line, by number from 1, and a column, from 0."""
+def _line_error(file: str, number: int, line: str, column: int, message: str) -> Diagnostic:
+    """Return an error about a place in the file: line ``number`` counts from 1, ``column`` from 0."""
     return Diagnostic(Severity.ERROR, "plan", message, Source(file, number, column + 1), line)

@@ -8,13 +8,22 @@ from typing import NamedTuple
 from foon_asp.errors import UserError
 from foon_asp.planning.action_costs import ActionCosts, action_costs
 from foon_asp.planning.pddl_name import pddl_name
-from foon_asp.problem import Flow, Objective, Problem, first_tree, reach, relevant, relevant_to_plans
+from foon_asp.problem import (
+    Flow,
+    Objective,
+    Problem,
+    first_tree,
+    reach,
+    relevant_units,
+    units_relevant_to_plans,
+)
 
 
 class Action(NamedTuple):
-    """An action: to execute a ``unit``, or to take an ``item`` from the kitchen; the other is ``None``.
+    """An action, which executes a ``unit`` or takes an ``item`` from the kitchen.
 
-    ``preconditions``, ``add_effects`` and ``consumption`` (delete effects) are object nodes, by id.
+    ``unit`` and ``item`` are ids; one of them is ``None``. ``preconditions``, ``add_effects`` and
+    ``consumption`` (delete effects) are object nodes, by id.
     """
 
     name: str
@@ -28,11 +37,14 @@ class Action(NamedTuple):
 
 @dataclass(frozen=True)
 class PlanningTask:
-    """A planning task for the goals of a problem.
+    """A planning task for the goals of a problem; all nodes are given by id.
 
-    ``names`` maps the id of every object node in the task to its name. ``start`` is the initial state,
-    ``goals`` are the nodes that have to be made, and ``costs`` are the integer costs of actions. Where items
-    are used up, the copies of consumable nodes are counted, or all copies of a node are ``merged`` into one.
+    ``names``: the name of every object node in the task.
+    ``start``: the initial state.
+    ``goals``: the nodes that have to be made.
+    ``costs``: the integer costs of actions.
+    ``merged``: where items are used up, whether all copies of a node are merged into one. Otherwise the
+    copies of consumable nodes are counted.
     """
 
     problem: Problem
@@ -46,7 +58,10 @@ class PlanningTask:
 
     @cached_property
     def counted(self) -> dict[int, int]:
-        """The number of copies in the initial state of each node whose copies are counted, by id."""
+        """The initial number of copies of each node whose copies are counted, by node id.
+
+        Empty if no copies are counted.
+        """
         problem = self.problem
         if problem.items is None or self.merged:
             return {}
@@ -54,7 +69,10 @@ class PlanningTask:
         return {o: stock.get(o, 0) for o in self.names if o not in problem.endless}
 
     def flow(self, action: Action) -> Flow:
-        """Return the copies that an action asks for, consumes and adds; one copy if these are not counted."""
+        """Return how many copies of each node an action asks for, uses up and adds.
+
+        It is one copy of each if the task counts no copies.
+        """
         if action.unit is None or not self.counted:
             sides = (action.preconditions, action.consumption, action.add_effects)
             return Flow(*(dict.fromkeys(side, 1) for side in sides))
@@ -67,12 +85,12 @@ class PlanningTask:
 
     @property
     def wanted(self) -> dict[int, int]:
-        """The copies of each goal that are wanted."""
+        """The number of copies of each goal that are wanted, by id."""
         return {goal: self.problem.wanted(goal) for goal in self.goals}
 
 
-def taking(name: str) -> str:
-    """Return the name of the action that takes the kitchen item ``name``."""
+def taking_action_name(name: str) -> str:
+    """Return the name of the action that takes the kitchen item ``name``: ``take-o43-ice``."""
     return f"take-{name}"
 
 
@@ -82,11 +100,14 @@ def planning_task(
     whole: bool = False,
     merged: bool = False,
 ) -> PlanningTask:
-    """Return a planning task of a problem, over the units relevant to its goals or the ``whole`` network.
+    """Return the planning task of a problem, over the units relevant to its goals or the ``whole`` network.
 
-    If kitchen items have a cost, the task has an action for each of them, which takes the item.
+    With ``merged``, copies are not counted, but merged into one. If kitchen items have a cost, the task has
+    an action for each of them, which takes the item.
 
-    Raises :class:`UserError` where an objective has no costs that planners can add up.
+    Raises :class:`UserError` if planners cannot add up the costs of an objective. Where items are used up,
+    also for several objectives, for an objective by which items of a stock have a cost, and for ``merged`` if
+    amounts count.
     """
     network, endless = problem.network, problem.endless
     problem.require_known_for(objectives)
@@ -99,23 +120,27 @@ def planning_task(
         )
     if by_items and problem.kitchen != endless:
         raise UserError("copies of a stock have no costs in planning tasks: name another objective")
-    bought = endless if by_items else frozenset[int]()  # no unit adds a bought item, or it would be free
+    items_with_cost = endless if by_items else frozenset[int]()  # no unit adds one, or it would be free
     available = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
     reached = reach(replace(problem, kitchen=available))
     allowed: Iterable[int] = range(len(network))
     if not whole:
-        allowed = relevant(problem, reached) if problem.items is None else relevant_to_plans(problem, reached)
-    not_added = bought if problem.items is None else endless
+        allowed = (
+            relevant_units(problem, reached)
+            if problem.items is None
+            else units_relevant_to_plans(problem, reached)
+        )
+    not_added = items_with_cost if problem.items is None else endless
     flows = {unit: problem.flows[unit] for unit in sorted(allowed)}
     add_effects = {unit: tuple(o for o in flow.adds if o not in not_added) for unit, flow in flows.items()}
     units = [unit for unit, added in add_effects.items() if added]
     needed = {o for unit in units for o in problem.needs[unit]}
-    items = sorted(needed & bought)
+    items = sorted(needed & items_with_cost)
     tree = first_tree(problem, reached) or units
     # a plan with items used up may cost 50 times as much as a tree; a larger ratio would round costs more
     repeats = 1 if problem.items is None else 50
     costs = action_costs(problem, objectives, units, len(items), {*tree} & {*units}, repeats)
-    goals = tuple(goal for goal in problem.goals if goal not in bought)
+    goals = tuple(goal for goal in problem.goals if goal not in items_with_cost)
     nodes = {*goals, *needed, *(o for unit in units for o in add_effects[unit])}
     names = {o: pddl_name("o", network.object_number(o), str(network.objects[o])) for o in sorted(nodes)}
     actions = [
@@ -130,6 +155,6 @@ def planning_task(
         )
         for unit in units
     ]
-    actions += [Action(taking(names[o]), None, o, (), (o,), costs.item) for o in items]
-    start = tuple(sorted((nodes & available) - bought))
+    actions += [Action(taking_action_name(names[o]), None, o, (), (o,), costs.item) for o in items]
+    start = tuple(sorted((nodes & available) - items_with_cost))
     return PlanningTask(problem, tuple(objectives), tuple(actions), names, start, goals, costs, merged)

@@ -1,11 +1,12 @@
 """Policies with retries: follow a tree, and after a number of failed executions another one.
 
-An execution of a unit succeeds with its rate, whatever happened before, and available nodes stay available. A
-failed execution changes nothing, but a run may have only a limited number of failures. A policy chooses the
-next unit by the available nodes and by the failures left. The greatest chance of all policies over the units
-of some trees is found by dynamic programming over the available nodes. A unit that is necessary for the goals
-is executed first: every successful run executes it until it succeeds, and it is never worse to know its
-failures earlier.
+The model: an execution of a unit succeeds with its rate, whatever happened before. A failed execution changes
+nothing, but a run ends after a limited number of failures. Available nodes stay available.
+
+A policy chooses the next unit by the available nodes and by the number of failures left. The greatest chance
+of all policies over the units of some trees is found by dynamic programming over the available nodes. A unit
+that is necessary for the goals is executed first. This is never worse: every successful run has to execute it
+until it succeeds, and its failures are then known earlier.
 """
 
 import heapq
@@ -21,11 +22,11 @@ from foon_asp.problem import Problem
 class PolicyLimits(NamedTuple):
     """Limits of the search for the best policy.
 
-    ``states``: states of the dynamic program; so many take some seconds, and thirteen bundled goals need
-    fewer than 3,000.
-    ``units``: units of the trees; the dynamic program recurses once for each, and Python limits the
-    recursion.
-    ``policies``: policies that are compared; each is evaluated exactly.
+    ``states``: the greatest number of states of the dynamic program; so many take some seconds. Thirteen
+    bundled goals need fewer than 3,000.
+    ``units``: the greatest number of units in the trees. The dynamic program recurses once for each, and
+    Python limits the recursion.
+    ``policies``: the greatest number of policies that are compared; each is evaluated exactly.
     """
 
     states: int = 10_000
@@ -40,7 +41,10 @@ State = frozenset[int]
 
 
 class PolicyBranch(NamedTuple):
-    """A tree to follow, by unit ids in an order that executes, and the failures that end it."""
+    """A tree to follow, and after how many failures the next branch begins.
+
+    ``units`` are ids in an order that executes.
+    """
 
     units: tuple[int, ...]
     failures: int
@@ -49,8 +53,8 @@ class PolicyBranch(NamedTuple):
 class Policy(NamedTuple):
     """Trees to follow one after the other, and the ``chance`` that the goals are made.
 
-    No policy over the units of the trees has a chance above ``bound``. If ``is_exact``, some policy has
-    exactly this chance.
+    ``bound`` is a chance that no policy over the units of the trees exceeds. ``is_exact`` says that some
+    policy, perhaps not this one, has exactly this chance.
     """
 
     branches: tuple[PolicyBranch, ...]
@@ -60,19 +64,20 @@ class Policy(NamedTuple):
 
 
 class _TooManyStates(Exception):  # noqa: N818 (is caught here)
-    """There are more states or units than :class:`PolicyLimits` allows."""
+    """The exception that there are more states or units than :class:`PolicyLimits` allows."""
 
 
 def best_policy(problem: Problem, trees: Sequence[tuple[int, ...]], retries: int) -> Policy:
     """Return the policy with the greatest chance among policies that follow some trees one after another.
 
     Among policies of equal chance, one with the fewest branches is returned. If there are more policies than
-    :attr:`PolicyLimits.policies`, only those with the fewest branches are compared.
+    :attr:`PolicyLimits.policies`, only the first ones are compared, which have the fewest branches. If there
+    are too many states, ``bound`` of the policy is not exact.
 
     Parameters:
         problem: The problem, whose items last, with rates.
         trees: Trees for its goals, by unit ids in an order that executes.
-        retries: How many executions may fail before the last one that ends the run.
+        retries: How many failed executions a run survives; the next failure ends it.
     """
     units = tuple(dict.fromkeys(unit for tree in trees for unit in tree))
     try:
@@ -91,9 +96,9 @@ def best_policy(problem: Problem, trees: Sequence[tuple[int, ...]], retries: int
 
 
 def _candidates(trees: Sequence[tuple[int, ...]], failures: int) -> Iterator[tuple[PolicyBranch, ...]]:
-    """Yield the policies with this number of failures, shared among some trees in some order.
+    """Yield the policies whose branches have this number of failures in total.
 
-    Policies with few trees come first.
+    Each follows some of the trees, in some order. Policies with few branches come first.
     """
     for number in range(1, min(len(trees), failures) + 1):
         for order in itertools.permutations(trees, number):
@@ -102,10 +107,15 @@ def _candidates(trees: Sequence[tuple[int, ...]], failures: int) -> Iterator[tup
                 yield tuple(map(PolicyBranch, order, shares))
 
 
-class _World:
-    """The preconditions, add effects and rates of units of a problem, without kitchen items."""
+class _ExecutionModel:
+    """The preconditions, add effects and rates of units, all without kitchen items.
+
+    The functions ``needs``, ``makes`` and ``rate`` return them by unit id, and cache them. An add effect that
+    is also an input is left out.
+    """
 
     def __init__(self, problem: Problem) -> None:
+        """Take the goals, kitchen, rates and units of a problem."""
         self.kitchen, self.goals = problem.kitchen, frozenset(problem.goals) - problem.kitchen
         self.rate = cache(lambda unit: Fraction(problem.rate(unit)))
         self.needs = cache(lambda unit: frozenset(problem.needs[unit]) - problem.kitchen)
@@ -113,7 +123,7 @@ class _World:
         self.makes = cache(lambda unit: frozenset(gives[unit]).difference(inputs[unit]) - problem.kitchen)
 
     def reaches(self, state: State, units: Iterable[int]) -> bool:
-        """Return whether units can make the goals from a state."""
+        """Whether units can make the goals from the available nodes ``state``, if none fails."""
         available, waiting = set(state), list(units)
         while not self.goals <= available:
             blocked = []
@@ -128,13 +138,13 @@ class _World:
         return True
 
     def is_necessary(self, unit: int, state: State, units: Iterable[int]) -> bool:
-        """Return whether the other units cannot make the goals from a state."""
+        """Whether the goals cannot be made from ``state`` by ``units`` without this unit."""
         return not self.reaches(state, (other for other in units if other != unit))
 
 
 def _chance(problem: Problem, branches: tuple[PolicyBranch, ...]) -> Fraction:
-    """Return the exact chance that trees which are followed one after the other make the goals."""
-    world = _World(problem)
+    """Return the exact chance that the branches, followed one after the other, make the goals."""
+    model = _ExecutionModel(problem)
     # by branch, position in it, and minus the failures left: a success and a failure lead to later keys
     waiting = {(0, 0, -branches[0].failures): {State(): Fraction(1)}}
     order = [*waiting]
@@ -145,14 +155,14 @@ def _chance(problem: Problem, branches: tuple[PolicyBranch, ...]) -> Fraction:
         units = branches[branch].units
         for state, chance in waiting.pop(key).items():
             index = position
-            while index < len(units) and world.makes(units[index]) <= state:
+            while index < len(units) and model.makes(units[index]) <= state:
                 index += 1
             if index == len(units):
                 reached += chance
                 continue
             unit = units[index]
-            rate = world.rate(unit)
-            after = [((branch, index + 1, failures), state | world.makes(unit), rate)]
+            rate = model.rate(unit)
+            after = [((branch, index + 1, failures), state | model.makes(unit), rate)]
             if failures < -1:
                 after.append(((branch, index, failures + 1), state, 1 - rate))
             elif branch + 1 < len(branches):
@@ -168,26 +178,29 @@ def _chance(problem: Problem, branches: tuple[PolicyBranch, ...]) -> Fraction:
 
 
 class _Optimum:
-    """The greatest chance of all policies over some units, by dynamic programming over states."""
+    """The greatest chance of all policies over some units, by dynamic programming over available nodes."""
 
     def __init__(self, problem: Problem, units: Sequence[int], retries: int) -> None:
         """Compute the greatest chance; raises :class:`_TooManyStates` beyond the limits."""
-        self._world, self._units, self._retries = _World(problem), units, retries
+        self._model, self._units, self._retries = _ExecutionModel(problem), units, retries
         self._values: dict[State, tuple[Fraction, ...]] = {}
         if len(units) > POLICY_LIMITS.units:
             raise _TooManyStates
         self.chance = self._value(frozenset())[retries]
 
     def _value(self, state: State) -> tuple[Fraction, ...]:
-        """Return the greatest chance from a state, for each number of failures that are left, from 0."""
-        if self._world.goals <= state:
+        """Return the greatest chances from a state, by the number of failures left, from 0 to ``retries``.
+
+        Raises :class:`_TooManyStates` beyond the limit.
+        """
+        if self._model.goals <= state:
             return (Fraction(1),) * (self._retries + 1)
         if state not in self._values:
             if len(self._values) == POLICY_LIMITS.states:
                 raise _TooManyStates
             self._values[state] = ()  # counts while it is being computed
             after = [
-                (self._world.rate(unit), self._value(state | self._world.makes(unit)))
+                (self._model.rate(unit), self._value(state | self._model.makes(unit)))
                 for unit in self._choices(state)
             ]
             values: list[Fraction] = []
@@ -199,21 +212,24 @@ class _Optimum:
         return self._values[state]
 
     def _choices(self, state: State) -> list[int]:
-        """Return the units that can be executed and add something; a necessary unit is returned alone."""
-        world = self._world
-        useful = [unit for unit in self._units if not world.makes(unit) <= state]
-        ready = [unit for unit in useful if world.needs(unit) <= state]
-        return next(([unit] for unit in ready if world.is_necessary(unit, state, useful)), ready)
+        """Return the units that can be executed in a state and add something; a necessary one alone."""
+        model = self._model
+        useful = [unit for unit in self._units if not model.makes(unit) <= state]
+        ready = [unit for unit in useful if model.needs(unit) <= state]
+        return next(([unit] for unit in ready if model.is_necessary(unit, state, useful)), ready)
 
 
 def _bound(problem: Problem, units: Sequence[int], retries: int) -> Fraction:
-    """Return an upper bound: the chance that necessary units fail at most ``retries`` times in total."""
-    world = _World(problem)
+    """Return an upper bound on the chance of any policy over the units.
+
+    It is the chance that the necessary units fail at most ``retries`` times in total.
+    """
+    model = _ExecutionModel(problem)
     chances = [Fraction(1)] + [Fraction(0)] * retries  # by the number of failures so far
     for unit in units:
-        if not world.is_necessary(unit, State(), units):
+        if not model.is_necessary(unit, State(), units):
             continue
-        rate = world.rate(unit)
+        rate = model.rate(unit)
         for failures in range(retries + 1):
             earlier = chances[failures - 1] if failures else Fraction(0)  # of this unit, changed already
             chances[failures] = rate * chances[failures] + (1 - rate) * earlier

@@ -15,15 +15,21 @@ if TYPE_CHECKING:
 
 
 class Execution(NamedTuple):
-    """The ports of an action: one execution of a functional unit.
+    """One execution of a functional unit: the ports of an action in a behaviour tree.
 
     Object nodes have their names in PDDL, such as ``o46-ice-cubed-in-drinking-glass``.
 
-    ``step``: the number of the step. ``unit``: the id of the functional unit. ``motion``: its motion.
-    ``needs``: nodes that have to be there. ``makes``: nodes that are there afterwards.
-    ``acted_on``: nodes that the motion is done to. ``tools``: nodes that it is done with.
-    ``origins``, ``destinations``: places that the inputs, and the outputs, are in, on or at.
-    ``rate``: the success rate. ``duration``: in seconds. Both are ``None`` if they are not known.
+    ``step``: the number of the step, from 1.
+    ``unit``: the id of the functional unit.
+    ``motion``: its motion.
+    ``needs``: nodes that have to be available.
+    ``makes``: nodes that are available afterwards.
+    ``acted_on``: nodes that the motion is done to.
+    ``tools``: nodes that it is done with.
+    ``origins``: places that the inputs are in, on or at.
+    ``destinations``: places that the outputs are in, on or at.
+    ``rate``: the success rate; ``None`` if it is not known.
+    ``duration``: the duration in seconds; ``None`` if it is not known.
 
     Example:
         >>> foon_asp.Execution(1, 26, "twist", ("o43-ice",), ("o46-ice",)).motion
@@ -77,7 +83,7 @@ def py_trees_root(xml: str | PathLike[str], execute: Execute, is_available: IsAv
         import py_trees  # noqa: F401, PLC0415 (an extra)
     except ImportError:
         raise UserError("running a behaviour tree needs py_trees: pip install 'foon-asp[robot]'") from None
-    text, name = (xml, "the behaviour tree") if isinstance(xml, str) else (_text(Path(xml)), str(xml))
+    text, name = (xml, "the behaviour tree") if isinstance(xml, str) else (_file_text(Path(xml)), str(xml))
     try:
         element = ElementTree.fromstring(text).find("BehaviorTree/*")
     except ElementTree.ParseError as error:
@@ -87,7 +93,8 @@ def py_trees_root(xml: str | PathLike[str], execute: Execute, is_available: IsAv
     return _behaviour(element, execute, is_available)
 
 
-def _text(file: Path) -> str:
+def _file_text(file: Path) -> str:
+    """Return the text of a file; raises :class:`UserError` if it cannot be read."""
     try:
         return file.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
@@ -95,7 +102,10 @@ def _text(file: Path) -> str:
 
 
 def _behaviour(element: ElementTree.Element, execute: Execute, is_available: IsAvailable) -> "Behaviour":
-    """Return the behaviour of an XML element, with its children."""
+    """Return the py_trees behaviour of an XML element, with its children.
+
+    Raises :class:`UserError` for an element that is not of this program.
+    """
     from py_trees import behaviours, composites, decorators  # noqa: PLC0415
 
     name = element.get("name", element.get("ID", element.tag))
@@ -113,7 +123,7 @@ def _behaviour(element: ElementTree.Element, execute: Execute, is_available: IsA
         case "AlwaysSuccess", _:
             behaviour = behaviours.Success(name)
         case "Condition", id_ if id_ == CONDITION:
-            nodes = _names(element, "nodes")
+            nodes = _port_names(element, "nodes")
             behaviour = _leaf(name, lambda: all(map(is_available, nodes)))
         case "Action", id_ if id_ == ACTION:
             execution = _execution(element)
@@ -124,12 +134,18 @@ def _behaviour(element: ElementTree.Element, execute: Execute, is_available: IsA
 
 
 def _leaf(name: str, ask: Callable[[], bool | None]) -> "Behaviour":
-    """Return a behaviour without children: ``ask`` returns success, failure, or ``None`` while it runs."""
+    """Return a behaviour without children, whose status is what ``ask`` returns at each tick.
+
+    ``True`` means success, ``False`` failure, ``None`` running.
+    """
     from py_trees.behaviour import Behaviour  # noqa: PLC0415
     from py_trees.common import Status  # noqa: PLC0415
 
     class Leaf(Behaviour):
+        """The behaviour."""
+
         def update(self) -> "Status":
+            """Return the status of a tick."""
             outcome = ask()
             return Status.RUNNING if outcome is None else Status.SUCCESS if outcome else Status.FAILURE
 
@@ -137,15 +153,16 @@ def _leaf(name: str, ask: Callable[[], bool | None]) -> "Behaviour":
 
 
 def _execution(element: ElementTree.Element) -> Execution:
-    """Return the execution in the ports of an action."""
+    """Return the execution that the ports of an action element describe."""
     ports = element.attrib
     needs, makes, acted_on, tools, origins, destinations = (
-        _names(element, port) for port in ("needs", "makes", "acted_on", "tools", "from", "to")
+        _port_names(element, port) for port in ("needs", "makes", "acted_on", "tools", "from", "to")
     )
     rate, duration = (float(ports[port]) if port in ports else None for port in ("rate", "duration"))
     step, unit, motion = int(ports["step"]), int(ports["unit"]), ports["motion"]
     return Execution(step, unit, motion, needs, makes, acted_on, tools, origins, destinations, rate, duration)
 
 
-def _names(element: ElementTree.Element, port: str) -> tuple[str, ...]:
+def _port_names(element: ElementTree.Element, port: str) -> tuple[str, ...]:
+    """Return the names of object nodes in a port; empty without the port."""
     return tuple(filter(None, element.get(port, "").split(LIST_SEPARATOR)))

@@ -80,13 +80,13 @@ def robot_steps(
     durations: Mapping[str, Duration],
     clips: Iterable[ListedClips],
 ) -> Iterator[RobotStep]:
-    """Yield the steps of a plan, given as unit ids in an order that executes.
+    """Yield the steps of a plan for a robot's program, in order.
 
     Parameters:
         problem: The problem that the plan is for.
-        plan: The units by id.
-        durations: How long motions take, as far as that is known.
-        clips: The clips of the annotations, as far as they have times.
+        plan: The ids of the units, in an order that executes.
+        durations: How long motions take, by motion, as far as that is known.
+        clips: The clips of the annotated video, as far as they have times.
     """
     clip_of = {
         (source.file, source.line): Clip(listed.clips[0][0], listed.clips[-1][1], listed.seconds)
@@ -126,12 +126,19 @@ def robot_steps(
 
 
 def _is_tool(problem: Problem, unit: FunctionalUnit, node: ObjectNode) -> bool:
-    """Return whether an input that is no place is a tool; without utensils, an input that stays the same."""
+    """Whether an input, which is no place, is a tool: a utensil.
+
+    If the problem has no utensils, a tool is an input that is also an output.
+    """
     return node.label in problem.utensils if problem.utensils else node in unit.outputs
 
 
 def _places(network: Network, nodes: Sequence[ObjectNode], others: Iterable[ObjectNode]) -> tuple[Node, ...]:
-    """Return the places that ``nodes``, one side of a unit, are in, on or at; ``others``: the other side."""
+    """Return the places that ``nodes``, one side of a unit, are in, on or at, in order of their labels.
+
+    A place is the node with this label among ``nodes``, or else among ``others``, the other side of the unit.
+    Without such a node, it has only the label.
+    """
     by_label: dict[str, ObjectNode] = {}
     for node in (*nodes, *others):
         by_label.setdefault(node.label, node)
@@ -140,7 +147,11 @@ def _places(network: Network, nodes: Sequence[ObjectNode], others: Iterable[Obje
 
 
 def _changes(network: Network, unit: FunctionalUnit) -> Iterator[Change]:
-    """Yield the objects of a unit; an input is paired with the same output, else with one of its label."""
+    """Yield the objects of a unit with their nodes before and after it.
+
+    An input is paired with the same node among the outputs, or else with an output of its label. Outputs
+    without a partner come last.
+    """
     pairs: list[tuple[ObjectNode | None, ObjectNode | None]] = []
     remaining = list(unit.outputs)
     unchanged = [node for node in unit.inputs if node in remaining]

@@ -13,10 +13,10 @@ from foon_asp.proof.timetable import Means, ToolName, tools_asked
 
 
 class Use(NamedTuple):
-    """One use of a tool from the kitchen by ``steps``, which do not overlap.
+    """The use of one copy of a tool by some steps of a plan, which do not overlap.
 
-    The tool is occupied from the start of the first step to the end of the last step, since each later step
-    needs the tool in the state in which an earlier step left it.
+    ``steps`` are positions in the plan, from 0. The copy is occupied from the start of the first step to the
+    end of the last step, since each later step needs the tool in the state in which an earlier step left it.
     """
 
     name: ToolName
@@ -24,12 +24,15 @@ class Use(NamedTuple):
 
 
 class ScheduleTask(NamedTuple):
-    """A resource-constrained scheduling problem over the steps of a plan, by position.
+    """A resource-constrained scheduling problem over the steps of a plan, given by position from 0.
 
-    ``tick``: the length of a tick in seconds. ``lengths``: the durations of the steps in ticks.
-    ``passive``: whether each step occupies no agent. ``after``: the steps that each step waits for.
-    ``uses``: all uses of tools. ``counts``: the number of copies of each tool. ``agents``: the number of
-    agents.
+    ``tick``: the length of a tick in seconds.
+    ``lengths``: the durations of the steps in ticks.
+    ``passive``: for each step, whether it occupies no agent.
+    ``after``: for each step, the steps that it waits for.
+    ``uses``: all uses of tools.
+    ``counts``: the number of copies of each tool.
+    ``agents``: the number of agents.
     ``sharing``: sets of steps that need the same copy of an item, so that they must not overlap.
     """
 
@@ -44,7 +47,7 @@ class ScheduleTask(NamedTuple):
 
     @property
     def at_step(self) -> list[list[int]]:
-        """The uses that each step is part of, in order."""
+        """The uses that each step is part of, as positions in ``uses``, by step."""
         uses_of: list[list[int]] = [[] for _ in self.lengths]
         for use, (_, steps) in enumerate(self.uses):
             for step in steps:
@@ -53,7 +56,10 @@ class ScheduleTask(NamedTuple):
 
     @property
     def bound(self) -> int:
-        """A lower bound on the makespan, in ticks: the critical path, and the work divided among agents."""
+        """A lower bound on the makespan, in ticks.
+
+        It is the critical path or the work divided among the agents, whichever is greater.
+        """
         ready: list[int] = []
         for length, after in zip(self.lengths, self.after, strict=True):
             ready.append(length + max((ready[step] for step in after), default=0))
@@ -64,9 +70,10 @@ class ScheduleTask(NamedTuple):
 def schedule_task(
     problem: Problem, plan: Sequence[FunctionalUnit], replay: Replay, means: Means
 ) -> ScheduleTask:
-    """Return the scheduling task of an executable plan; each step takes the copies that ``replay`` gave it.
+    """Return the scheduling task of an executable plan.
 
-    Raises :class:`UserError` where the durations have too many digits to be added up in ticks.
+    ``replay`` says which copy of an item each step takes. ``means`` are the durations of motions, agents and
+    tools. Raises :class:`UserError` if the durations have too many digits to be added up in ticks.
     """
     seconds = [Fraction(means.durations[unit.motion].seconds) for unit in plan]
     ticks_per_second = lcm(*(duration.denominator for duration in seconds))
@@ -87,13 +94,20 @@ def schedule_task(
 
 
 def _uses(problem: Problem, replay: Replay, means: Means) -> tuple[Use, ...]:
-    """Return the uses of tools; a step that takes a copy made during a use belongs to the same use."""
+    """Return the uses of tools in a plan.
+
+    A step belongs to an earlier use of a tool if it takes a copy that was made during that use; else it
+    begins a new use.
+    """
     names: list[ToolName] = []
     steps: list[list[int]] = []
     use_of: dict[tuple[Copy, str], int] = {}  # the use of a tool with this label that a made copy belongs to
 
     def assign(number: int, label: str, node: ObjectNode | None, copy: Copy | None) -> int:
-        """Assign a step to the use of a tool that ``copy`` belongs to, or to a new use; return the use."""
+        """Assign a step to the use that ``copy`` belongs to, or to a new use; return the position of the use.
+
+        ``label`` is the tool's label, and ``node`` its node before the step, if that is known.
+        """
         use = None if copy is None else use_of.get((copy, label))
         if use is None or number in steps[use]:
             names.append(label if node is None or not problem.at_hand(node) else means.name(node, label))
@@ -127,7 +141,7 @@ def _uses(problem: Problem, replay: Replay, means: Means) -> tuple[Use, ...]:
 
 
 def _most_similar(before: Iterable[ObjectNode | None], after: ObjectNode) -> ObjectNode | None:
-    """Return the node that shares the most ingredients with ``after``; of several, the first."""
+    """Return the node of ``before`` that shares the most ingredients with ``after``; the first in a tie."""
     return max(
         before, key=lambda node: 0 if node is None else len({*node.ingredients} & {*after.ingredients})
     )

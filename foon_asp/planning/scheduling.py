@@ -1,4 +1,4 @@
-"""Schedules of least makespan: from CP-SAT in another process, with agents and tools assigned."""
+"""Schedules of least makespan: found by CP-SAT in another process, then given agents and tools."""
 
 from collections.abc import Iterator, Sequence
 from importlib.util import find_spec
@@ -23,8 +23,8 @@ class BestSchedule(NamedTuple):
 
     ``starts``: the starts of the steps in ticks; ``None`` without a schedule.
     ``bound``: a lower bound on the makespan, in ticks.
-    ``proved``: it is proved that no schedule is shorter, or, without ``starts``, that none exists.
-    ``lacking``: without ``starts``, numbers of copies by tool with which a schedule exists; these need the
+    ``proved``: whether it is proved that no schedule is shorter or, without ``starts``, that there is none.
+    ``lacking``: without ``starts``, numbers of copies by tool with which there is a schedule. They need the
     fewest additional copies, unless a limit stopped this search.
     """
 
@@ -34,10 +34,10 @@ class BestSchedule(NamedTuple):
     lacking: dict[ToolName, int]
 
 
-def shortest(task: ScheduleTask, deadline: Deadline) -> BestSchedule:
-    """Minimize the makespan until it is proved optimal, or until a limit or ctrl-C; return the best schedule.
+def shortest_schedule(task: ScheduleTask, deadline: Deadline) -> BestSchedule:
+    """Return the schedule of least makespan; at a limit or ctrl-C, the best one found so far.
 
-    Raises :class:`UserError` where OR-Tools is not installed.
+    CP-SAT searches for it in another process. Raises :class:`UserError` if OR-Tools is not installed.
     """
     if find_spec("ortools") is None:
         raise UserError(_NOT_INSTALLED)
@@ -45,23 +45,24 @@ def shortest(task: ScheduleTask, deadline: Deadline) -> BestSchedule:
         order = tool_order(task, deadline)
     except KeyboardInterrupt:  # at a limit, too
         deadline.interrupt()
-        starts, lacking = _sequential(task)
+        starts, lacking = _sequential_schedule(task)
         return BestSchedule(starts, task.bound, False, lacking)
     if order.steps is None:
-        return BestSchedule(None, task.bound, True, order.lacking or _sequential(task)[1])
+        return BestSchedule(None, task.bound, True, order.lacking or _sequential_schedule(task)[1])
     deadline.doing = "scheduling"
     incumbent = first_schedule(task, order.steps)
     bound = task.bound
 
     def improve(starts: Sequence[int]) -> None:
+        """Keep a better schedule as the incumbent."""
         nonlocal incumbent
         incumbent = tuple(starts)
 
     def raise_bound(value: float) -> None:
+        """Round a lower bound on the makespan up to whole ticks, and keep it if it is better."""
         nonlocal bound
-        bound = max(
-            bound, ceil(value - 1e-6)
-        )  # a float, in ticks: so little above a whole number is that number
+        # a float, in ticks: so little above a whole number is that number
+        bound = max(bound, ceil(value - 1e-6))
 
     worker = take(_WORKER_KEY, lambda: Worker(_WORKER_KEY, "schedules are found"))
     try:
@@ -84,8 +85,11 @@ def shortest(task: ScheduleTask, deadline: Deadline) -> BestSchedule:
     return BestSchedule(incumbent, bound, makespan == bound, {})
 
 
-def _sequential(task: ScheduleTask) -> tuple[tuple[int, ...] | None, dict[ToolName, int]]:
-    """Return the schedule of the steps as listed, without overlap, or ``None`` and the lacking tools."""
+def _sequential_schedule(task: ScheduleTask) -> tuple[tuple[int, ...] | None, dict[ToolName, int]]:
+    """Return the starts of the steps as listed, one after the other, and an empty mapping.
+
+    If that needs more copies of tools than there are, return ``None`` and the numbers needed of these tools.
+    """
     spans = [(use.name, min(use.steps), max(use.steps)) for use in task.uses]
     needed = {
         name: max(
@@ -100,25 +104,30 @@ def _sequential(task: ScheduleTask) -> tuple[tuple[int, ...] | None, dict[ToolNa
 
 
 def _makespan(task: ScheduleTask, starts: Sequence[int]) -> int:
+    """Return the end of the last step, in ticks."""
     return max((start + n for start, n in zip(starts, task.lengths, strict=True)), default=0)
 
 
 def timed_steps(task: ScheduleTask, starts: Sequence[int]) -> list[TimedStep]:
-    """Return the steps of a schedule with agents and tools, each as early as these assignments allow."""
+    """Return the steps of a schedule with their agents and tools, and with times in seconds.
+
+    Agents and tools are assigned so that the given starts, in ticks, are feasible. Then each step starts as
+    early as these assignments allow.
+    """
     ends = [start + length for start, length in zip(starts, task.lengths, strict=True)]
     active = [step for step, passive in enumerate(task.passive) if not passive]
-    agents = _color({step: (starts[step], ends[step]) for step in active})
+    agents = _color_intervals({step: (starts[step], ends[step]) for step in active})
     spans = [(min(starts[s] for s in use.steps), max(ends[s] for s in use.steps)) for use in task.uses]
     tools: dict[int, Tool] = {}
     for name in task.counts:
         spans_of_tool = {use: spans[use] for use, (tool, _) in enumerate(task.uses) if tool == name}
-        tools |= {use: Tool(name, number) for use, number in _color(spans_of_tool).items()}
+        tools |= {use: Tool(name, number) for use, number in _color_intervals(spans_of_tool).items()}
     after = [set(earlier) for earlier in task.after]
     for earlier, later in _followers(task, starts, spans, agents, tools):
         after[later].add(earlier)
     earliest: dict[int, int] = {}
     for step in sorted(range(len(starts)), key=lambda step: starts[step]):
-        earliest[step] = max((earliest[before] + task.lengths[before] for before in after[step]), default=0)
+        earliest[step] = max((earliest[first] + task.lengths[first] for first in after[step]), default=0)
     return [
         TimedStep(
             earliest[step] * task.tick,
@@ -130,10 +139,11 @@ def timed_steps(task: ScheduleTask, starts: Sequence[int]) -> list[TimedStep]:
     ]
 
 
-def _color(spans: dict[int, tuple[int, int]]) -> dict[int, int]:
-    """Color an interval graph with numbers from 1; overlapping spans have different numbers.
+def _color_intervals(spans: dict[int, tuple[int, int]]) -> dict[int, int]:
+    """Return a number from 1 for each span, such that overlapping spans have different numbers.
 
-    Of the free numbers, a span gets the one that has been free the longest.
+    A span is a start and an end. Of the free numbers, it gets the one that has been free the longest. This
+    colors an interval graph with the fewest numbers.
     """
     free_at: list[int] = []
     numbers: dict[int, int] = {}
@@ -154,7 +164,10 @@ def _followers(
     agents: dict[int, int],
     tools: dict[int, Tool],
 ) -> Iterator[tuple[int, int]]:
-    """Return pairs of steps that share an agent, a tool or a copy; the second step follows the first."""
+    """Yield pairs of steps that share an agent, a tool or a copy: an earlier step and a later one.
+
+    The earlier step has to end before the later one starts. ``spans`` are the start and end of each use.
+    """
     uses = task.uses
     steps_of_agent: dict[int, list[int]] = {}
     for step, agent in agents.items():

@@ -13,7 +13,7 @@ DERIVED = "axiom"
 
 
 class StripsAction(NamedTuple):
-    """An action by name: its preconditions and add effects, as numbers of facts, its cost and its source."""
+    """An action: its name, its preconditions and add effects as numbers of facts, its cost and its source."""
 
     name: str
     preconditions: Sequence[int]
@@ -24,10 +24,12 @@ class StripsAction(NamedTuple):
 
 @dataclass(frozen=True)
 class StripsTask:
-    """A STRIPS task without delete effects: names of facts, actions, initial state and goals.
+    """A STRIPS task without delete effects, the delete relaxation of a planning task.
 
-    ``name`` is the task's name, and ``has_deletes`` says whether actions of the original planning task, of
-    which this is the delete relaxation, delete relevant facts.
+    ``name``: the name of the task.
+    ``facts``: the names of the facts; facts are given by position in it.
+    ``start``, ``goals``: the facts of the initial state and of the goal.
+    ``has_deletes``: whether actions of the original planning task delete relevant facts.
     """
 
     name: str
@@ -39,29 +41,34 @@ class StripsTask:
 
     @property
     def objective(self) -> Objective:
-        """The objective of :meth:`problem` that is the cost of plans."""
+        """The objective by which a tree of :meth:`problem` costs as much as the plan.
+
+        It is ``units`` if all actions cost 1, else ``price``.
+        """
         unit_cost = all(action.cost == 1 for action in self.actions)
         return Objective.UNITS if unit_cost else Objective.PRICE
 
     @property
     def action_count(self) -> int:
-        """The number of actions without those that derive facts."""
+        """The number of actions; those that derive facts do not count."""
         return sum(action.name != DERIVED for action in self.actions)
 
     @property
     def unit_cost(self) -> bool:
-        """Whether each action of the planning task costs 1."""
+        """Whether each action costs 1; those that derive facts are not looked at."""
         return all(action.cost == 1 for action in self.actions if action.name != DERIVED)
 
     def problem(self) -> Problem:
         """Return the task as a problem: facts are object nodes, actions units, the initial state the kitchen.
 
-        An action without add effects is left out, and equal actions of the same name become one unit.
+        Actions without add effects are left out. Equal actions of the same name become one unit.
         """
         nodes = [ObjectNode(fact) for fact in self.facts]
         builder = NetworkBuilder()
         # every fact that the start or the goal has is in the network, whether an action has it or not
-        marked = builder.add("", [nodes[o] for o in sorted(self.start)], [nodes[o] for o in self.goals])
+        initial_and_goal = builder.add(
+            "", [nodes[o] for o in sorted(self.start)], [nodes[o] for o in self.goals]
+        )
         prices: dict[str, Fraction] = {"": Fraction(0)}
         for action in self.actions:
             if action.add_effects:
@@ -72,7 +79,9 @@ class StripsTask:
                     action.source,
                 )
                 prices[action.name] = action.cost
-        network = replace(builder.build().without([marked]), unit_numbers=())  # it is the whole of the task
+        network = replace(
+            builder.build().without([initial_and_goal]), unit_numbers=()
+        )  # it is the whole of the task
         ids = {o: network.object_id(nodes[o]) for o in (*self.start, *self.goals)}
         return Problem(
             network,

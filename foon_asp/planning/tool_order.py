@@ -1,7 +1,7 @@
-"""Order of the uses of tools, with which the steps can be done one after the other with the available tools.
+"""Orders in which the steps of a plan can be done one after the other with the available tools.
 
-A schedule exists if and only if such an order exists. The order of the starts of steps in a schedule is such
-an order, since a tool that is in use between the starts of two steps is in use when the second step starts.
+A schedule exists if and only if such an order exists. The starts of the steps in a schedule are such an
+order: a tool that is in use between the starts of two steps is in use when the second step starts.
 """
 
 from graphlib import TopologicalSorter
@@ -20,10 +20,12 @@ _CLINGO_OPTIONS = ("--opt-strategy=usc,oll,4", "--opt-usc-shrink=min")
 
 
 class ToolOrder(NamedTuple):
-    """The ``steps`` in a feasible order; ``None`` if it is ``proved`` that none exists.
+    """An order of the steps that the available tools allow, or what is lacking for one.
 
-    Without an order, ``lacking`` has the numbers of copies by tool that make an order feasible, with the
-    fewest additional copies in total. ``lacking`` is empty if these numbers are not known.
+    ``steps``: the steps in order; ``None`` without an order.
+    ``proved``: whether it is proved that there is no order.
+    ``lacking``: without an order, the numbers of copies by tool that make one feasible, for those tools of
+    which more are needed. They need the fewest additional copies in total. Empty if they are not known.
     """
 
     steps: tuple[int, ...] | None
@@ -32,13 +34,14 @@ class ToolOrder(NamedTuple):
 
 
 def tool_order(task: ScheduleTask, deadline: Deadline) -> ToolOrder:
-    """Search for a feasible order of the steps; if none exists, search for the fewest lacking tools.
+    """Search for an order of the steps; if there is none, search for the fewest lacking copies of tools.
 
-    Raises ``KeyboardInterrupt`` at ctrl-C, and at a limit if it is not known yet whether an order exists.
+    Raises ``KeyboardInterrupt`` at ctrl-C. Also raises it at a limit, if it is not known yet whether an order
+    exists.
     """
     feasible = _run(task, deadline, may_lack=False)
     if feasible.units is not None:
-        return ToolOrder(_steps(task, feasible), False, {})
+        return ToolOrder(_steps_in_order(task, feasible), False, {})
     if not feasible.exhausted:
         deadline.check()
         raise KeyboardInterrupt
@@ -53,7 +56,10 @@ def tool_order(task: ScheduleTask, deadline: Deadline) -> ToolOrder:
 
 
 def _run(task: ScheduleTask, deadline: Deadline, may_lack: bool) -> Run:
-    """Run clingo on the order of uses; with ``may_lack``, it minimizes the additional copies of tools."""
+    """Run clingo on the order of the uses of tools; return the run.
+
+    With ``may_lack``, clingo may add copies of tools, and minimizes their number.
+    """
     kinds = {name: kind for kind, name in enumerate(task.counts)}
     uses = ((kinds[use.name], use.steps) for use in task.uses)
     return run(
@@ -66,8 +72,11 @@ def _run(task: ScheduleTask, deadline: Deadline, may_lack: bool) -> Run:
     )
 
 
-def _steps(task: ScheduleTask, answer: Run) -> tuple[int, ...]:
-    """Return the steps in topological order; of several possible steps, the first in the plan is next."""
+def _steps_in_order(task: ScheduleTask, answer: Run) -> tuple[int, ...]:
+    """Return the steps in a topological order that keeps to the order of uses in clingo's answer.
+
+    If several steps can come next, the one that is first in the plan does.
+    """
     sorter = TopologicalSorter[tuple[str, int]]()
     for step, after in enumerate(task.after):
         sorter.add(("step", step), *(("step", earlier) for earlier in after))
@@ -93,8 +102,8 @@ def _steps(task: ScheduleTask, answer: Run) -> tuple[int, ...]:
 def first_schedule(task: ScheduleTask, order: tuple[int, ...]) -> tuple[int, ...]:
     """Return the starts of steps, in ticks, by list scheduling.
 
-    The steps start in the order given, each as early as possible: when an agent and its tools are free, and
-    the steps that it waits for have ended.
+    The steps are placed in the given order, each as early as possible: when the steps that it waits for have
+    ended, and an agent and its tools are free.
     """
     starts, ends = [0] * len(order), [0] * len(order)
     agent_free = [0] * task.agents
@@ -105,16 +114,16 @@ def first_schedule(task: ScheduleTask, order: tuple[int, ...]) -> tuple[int, ...
     at_step = task.at_step
     for step in order:
         uses = at_step[step]
-        begin = max((ends[earlier] for earlier in task.after[step]), default=0)
+        start = max((ends[earlier] for earlier in task.after[step]), default=0)
         for use in uses:
             name, steps = task.uses[use]
-            begin = max(begin, heappop(tool_free[name]) if unscheduled[use] == len(steps) else use_ends[use])
+            start = max(start, heappop(tool_free[name]) if unscheduled[use] == len(steps) else use_ends[use])
         shared = [copy for copy, steps in enumerate(task.sharing) if step in steps]
-        begin = max(begin, *(copy_free[copy] for copy in shared), 0)
+        start = max(start, *(copy_free[copy] for copy in shared), 0)
         if not task.passive[step]:
-            begin = max(begin, agent_free[0])
-            heapreplace(agent_free, begin + task.lengths[step])
-        starts[step], ends[step] = begin, begin + task.lengths[step]
+            start = max(start, agent_free[0])
+            heapreplace(agent_free, start + task.lengths[step])
+        starts[step], ends[step] = start, start + task.lengths[step]
         for copy in shared:
             copy_free[copy] = ends[step]
         for use in uses:

@@ -1,6 +1,6 @@
-"""The translator of Fast Downward, which reads PDDL and grounds it, as a process of its own.
+"""The translator of Fast Downward, which reads PDDL and grounds it, run as another process.
 
-It comes with the extra ``pddl`` (GPL, so it is never installed otherwise, and never imported).
+It comes with the extra ``pddl``. It is under the GPL, so it is never installed otherwise, and never imported.
 """
 
 import importlib.util
@@ -22,8 +22,8 @@ _INPUT_ERROR, _OUT_OF_MEMORY = 31, 20  # exit codes of the translator
 _TRANSLATOR_OPTIONS = ("--invariant-generation-max-candidates", "0")
 
 
-def installed() -> bool:
-    """Return whether the translator can be called."""
+def is_installed() -> bool:
+    """Whether the translator is installed."""
     try:
         return importlib.util.find_spec(_MODULE) is not None
     except ModuleNotFoundError:
@@ -31,16 +31,16 @@ def installed() -> bool:
 
 
 def require_translator(purpose: str) -> None:
-    """Raise :class:`UserError` if the translator is not installed; ``purpose`` says what it is needed for."""
-    if not installed():
+    """Raise :class:`UserError` if the translator is not installed; ``purpose`` is what needs it."""
+    if not is_installed():
         raise UserError(f"{purpose} takes Fast Downward's translator, which is not installed: {_ADVICE}")
 
 
-def translated(domain: PddlOutline, problem: PddlOutline, deadline: Deadline) -> str:
-    """Return the text of the translator's file for a planning task.
+def translate(domain: PddlOutline, problem: PddlOutline, deadline: Deadline) -> str:
+    """Return the text of the file that the translator writes for a planning task in PDDL.
 
-    Raises :class:`UserError` where the translator refuses the task or fails; :class:`LimitError` at the
-    deadline.
+    Raises :class:`UserError` if the translator is missing, refuses the task or fails; :class:`LimitError` at
+    the deadline.
     """
     require_translator(f"{problem.file}: reading PDDL")
     with tempfile.TemporaryDirectory(prefix="foon-asp-") as name:
@@ -55,7 +55,10 @@ def translated(domain: PddlOutline, problem: PddlOutline, deadline: Deadline) ->
 
 
 def _run(folder: Path, deadline: Deadline) -> tuple[int, str]:
-    """Run the translator in a folder; return its exit code and its output."""
+    """Run the translator in a folder until it ends; return its exit code and its output.
+
+    Its memory counts for the deadline, whose limits end it with :class:`LimitError`.
+    """
     # Unbuffered, it notices at its next line that nobody reads it any more, should this process be killed.
     command = [sys.executable, "-P", "-u", "-m", _MODULE, *_TRANSLATOR_OPTIONS, "domain.pddl", "problem.pddl"]
     process = subprocess.Popen(
@@ -86,7 +89,7 @@ def _run(folder: Path, deadline: Deadline) -> tuple[int, str]:
 
 
 def _failure(domain: PddlOutline, problem: PddlOutline, code: int, output: str) -> UserError:
-    """Return an error with the translator's message: an error in its input, or its own failure."""
+    """Return the error that the translator's exit code and output mean: in its input, or its own failure."""
     lines = [line.strip() for line in output.splitlines() if line.strip()]
     if code == _INPUT_ERROR:
         return UserError(_input_error(domain, problem, lines))
@@ -103,10 +106,10 @@ def _failure(domain: PddlOutline, problem: PddlOutline, code: int, output: str) 
 
 
 def _input_error(domain: PddlOutline, problem: PddlOutline, lines: list[str]) -> str:
-    """Return the translator's error in one line, with the file that has it.
+    """Return the translator's error about its input in one line, with the file that it is in.
 
-    The translator prints its context ("Parsing problem", "->Parsing goal"), a message, and mostly what it
-    expects ("Syntax: ...") and what it found ("Got: ...").
+    The translator prints its context ("Parsing problem", "->Parsing goal") and a message. Mostly it also
+    prints what it expects ("Syntax: ...") and what it found ("Got: ...").
     """
     context, messages, expectation = list[str](), list[str](), ""
     for line in lines:

@@ -1,4 +1,4 @@
-"""Problems for unified-planning, which the extra ``foon-asp[planning]`` installs."""
+"""Problems of unified-planning, which the extra ``foon-asp[planning]`` installs."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -13,7 +13,7 @@ ENGINE = "foon-asp"
 
 
 def require_unified_planning() -> Any:
-    """Return the module ``unified_planning.shortcuts``; raises :class:`UserError` where it is missing."""
+    """Return the module ``unified_planning.shortcuts``; raises :class:`UserError` if it is not installed."""
     try:
         import unified_planning.shortcuts as up  # noqa: PLC0415 (optional)
     except ImportError:
@@ -26,7 +26,7 @@ def require_unified_planning() -> Any:
 def unified_problem(
     problem: Problem, objectives: Sequence[Objective], whole: bool = False, merged: bool = False
 ) -> Any:
-    """Return a problem of unified-planning: the same task as in PDDL, with the same names.
+    """Return a problem of unified-planning: the task of :func:`planning_task`, with the names of its PDDL.
 
     Raises the errors of :func:`foon_asp.planning.planning_task.planning_task`, and :class:`UserError` if
     unified-planning is not installed.
@@ -46,6 +46,7 @@ def unified_problem(
     costs: dict[Any, Any] = {}
 
     def available(o: int, number: int) -> Any:
+        """Return the condition that ``number`` copies of a node are available."""
         return up.GE(copies(objects[o]), number) if o in counted else at_hand(objects[o])
 
     for action in task.actions:

@@ -1,6 +1,6 @@
 """An engine of unified-planning: cheapest plans of delete relaxations that are also plans of the problem.
 
-unified-planning imports this module once ``foon_asp.register_engine`` has registered it.
+unified-planning imports this module after ``foon_asp.register_engine`` has registered it.
 """
 
 from collections.abc import Iterator
@@ -50,7 +50,11 @@ _KIND = (
 
 
 class FoonAspPlanner(Engine, OneshotPlannerMixin):  # type: ignore[misc]
-    """Finds the cheapest plan of a problem without deletes, and proves that none is cheaper."""
+    """A planner that finds the cheapest plan of a problem without deletes, and proves that none is cheaper.
+
+    Problems with deletes are solved only if the cheapest plan of their delete relaxation is also a plan of
+    theirs.
+    """
 
     def __init__(self, **_: object) -> None:
         Engine.__init__(self)
@@ -63,7 +67,7 @@ class FoonAspPlanner(Engine, OneshotPlannerMixin):  # type: ignore[misc]
 
     @staticmethod
     def supported_kind() -> Any:
-        """Return the kind of problems that the engine accepts; plans are checked for delete effects later."""
+        """Return the kind of problems that the engine accepts; problems with delete effects are included."""
         kind = ProblemKind(version=2)
         for setter, feature in _KIND:
             getattr(kind, setter)(feature)
@@ -71,12 +75,12 @@ class FoonAspPlanner(Engine, OneshotPlannerMixin):  # type: ignore[misc]
 
     @staticmethod
     def supports(problem_kind: Any) -> bool:
-        """Return whether the engine accepts problems of a kind."""
+        """Whether the engine accepts problems of a kind."""
         return bool(problem_kind <= FoonAspPlanner.supported_kind())
 
     @staticmethod
     def satisfies(optimality_guarantee: Any) -> bool:
-        """Return whether the engine gives this guarantee: yes, its plans are optimal."""
+        """Whether plans of the engine have an optimality guarantee: they have every one."""
         return optimality_guarantee in set(OptimalityGuarantee)
 
     @staticmethod
@@ -92,9 +96,15 @@ class FoonAspPlanner(Engine, OneshotPlannerMixin):  # type: ignore[misc]
         timeout: float | None = None,
         output_stream: IO[str] | None = None,
     ) -> Any:
-        """Return a cheapest plan of the delete relaxation, if it is a plan of the problem as well."""
+        """Return a cheapest plan of the delete relaxation, if it is a plan of the problem as well.
+
+        Otherwise return a result without a plan, whose status says why: unsupported, unsolvable or stopped by
+        ``timeout``, which is in seconds. The other parameters have no effect.
+        """
         if not self.supports(problem.kind):
-            return self._ended(Ended.UNSUPPORTED_PROBLEM, "features beyond the kind of problems supported")
+            return self._result_without_plan(
+                Ended.UNSUPPORTED_PROBLEM, "features beyond the kind of problems supported"
+            )
         deadline = Deadline(timeout)
         try:
             writer = PDDLWriter(problem)
@@ -105,35 +115,42 @@ class FoonAspPlanner(Engine, OneshotPlannerMixin):  # type: ignore[misc]
             ground = read_pddl(domain, task, deadline)
             outcome = solve(ground.problem(), (ground.objective,), Settings(deadline=deadline))
         except LimitError as limit:
-            return self._ended(Ended.TIMEOUT, f"stopped at {limit.stopped}")
+            return self._result_without_plan(Ended.TIMEOUT, f"stopped at {limit.stopped}")
         except (UserError, UPException, NotImplementedError) as error:
-            return self._ended(Ended.UNSUPPORTED_PROBLEM, str(error) or "what PDDL does not say")
+            return self._result_without_plan(
+                Ended.UNSUPPORTED_PROBLEM, str(error) or "what PDDL does not say"
+            )
         if outcome.units is None:
             status = Ended.UNSOLVABLE_PROVEN if outcome.status is Status.INFEASIBLE else Ended.TIMEOUT
-            return self._ended(status, "no plan, even where nothing is deleted")
-        plan = SequentialPlan(list(_instances(problem, writer, outcome)), problem.environment)
+            return self._result_without_plan(status, "no plan, even where nothing is deleted")
+        plan = SequentialPlan(list(_action_instances(problem, writer, outcome)), problem.environment)
         if ground.has_deletes:
             checked = SequentialPlanValidator().validate(problem, plan)
             if checked.status is not ValidationResultStatus.VALID:
-                return self._ended(Ended.UNSUPPORTED_PROBLEM, "the cheapest plan without deletes is no plan")
+                return self._result_without_plan(
+                    Ended.UNSUPPORTED_PROBLEM, "the cheapest plan without deletes is no plan"
+                )
         status = Ended.SOLVED_OPTIMALLY if _is_optimal(outcome, ground) else Ended.SOLVED_SATISFICING
         return PlanGenerationResult(status, plan, self.name)
 
-    def _ended(self, status: Any, reason: str) -> Any:
-        """Return a result without a plan."""
+    def _result_without_plan(self, status: Any, reason: str) -> Any:
+        """Return a result without a plan, with a status and a reason for people."""
         return PlanGenerationResult(status, None, self.name, log_messages=[LogMessage(LogLevel.INFO, reason)])
 
 
 def _is_optimal(outcome: Outcome, task: StripsTask) -> bool:
-    """Return whether a plan is proved optimal, by its status or by a lower bound that equals its cost."""
+    """Whether a plan is proved optimal: by its status, or by a lower bound that equals its cost."""
     objective = task.objective
     if outcome.status is Status.OPTIMAL or outcome.costs is None:
         return outcome.status is Status.OPTIMAL
     return outcome.bounds.get(objective) == outcome.costs.measure(objective)
 
 
-def _instances(problem: Any, writer: Any, outcome: Outcome) -> Iterator[Any]:
-    """Return the actions of a plan as instances of unified-planning, by the names of its PDDL writer."""
+def _action_instances(problem: Any, writer: Any, outcome: Outcome) -> Iterator[Any]:
+    """Yield the actions of a plan as instances of unified-planning, found by their names in its PDDL.
+
+    Actions that derive facts are left out.
+    """
     actions = {writer.get_pddl_name(action).lower(): action for action in problem.actions}
     objects = {writer.get_pddl_name(instance).lower(): instance for instance in problem.all_objects}
     expressions = problem.environment.expression_manager

@@ -24,7 +24,7 @@ from foon_asp.problem import (
     levels,
     multiplies,
     reach,
-    relevant_to_plans,
+    units_relevant_to_plans,
     unrestricted_reach,
 )
 from foon_asp.proof.counted_run import counted_run
@@ -116,7 +116,7 @@ class PlanQuestion:
         self.tree = frozenset(first_tree(lasting, reached) or ())
         if self.keeps_redundant:
             return sorted(reached.units)
-        return sorted(relevant_to_plans(problem, reached))
+        return sorted(units_relevant_to_plans(problem, reached))
 
     def has_no_lasting_tree(self) -> bool:
         """Whether it is proved that rules allow no tree even if items last, and so no plan."""

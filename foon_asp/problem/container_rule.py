@@ -12,12 +12,13 @@ Ids = tuple[tuple[int, ...], ...]
 
 
 class ContainerRule(StrEnum):
-    """The container rule: a unit needs all its inputs (``STRICT``), or not every container (``IMPLIED``).
+    """The rule that decides which inputs of a unit are preconditions.
 
-    ``strict``: a unit needs every input. ``implied``, the rule of the published searches: a unit does not
-    need a utensil that holds exactly one ingredient, if that ingredient, located in that utensil (by any
-    relation), is also an input of the unit. A skipped container is no output of the unit
-    either: nothing has made it before.
+    ``STRICT``: all inputs are preconditions, and all outputs are add effects.
+    ``IMPLIED``, the rule of the published searches: some containers are skipped. A skipped container is a
+    utensil with exactly one ingredient, if this ingredient is also an input of the unit and has a relation to
+    the utensil (in, on or at it). It is no precondition. If the unit also lists it as an output, it is no add
+    effect either, since nothing made it before.
 
     Example:
         >>> [str(rule) for rule in foon_asp.ContainerRule]
@@ -33,7 +34,7 @@ DEFAULT_RULE: Final = ContainerRule.STRICT
 
 
 def container_rule(name: str) -> ContainerRule:
-    """Return the container rule of a name; raises :class:`UserError` for an unknown one."""
+    """Return the container rule of this name; raises :class:`UserError` for a name that is no rule."""
     try:
         return ContainerRule(name)
     except ValueError:
@@ -43,9 +44,10 @@ def container_rule(name: str) -> ContainerRule:
 
 
 def conditions(rule: ContainerRule, level: int, starting: bool = False) -> str:
-    """Return the conditions of a claim in words: ``strict containers, level 2``, without the default level 3.
+    """Return the conditions under which a claim holds, in words: ``strict containers, level 2``.
 
-    ``starting`` says that no kitchen is named, so that the starting kitchen is assumed.
+    The default level 3 is not mentioned. ``starting`` says that the user named no kitchen, so that the
+    starting kitchen is assumed; then ``, starting kitchen`` is added.
     """
     text = f"{rule} containers" + (f", level {level}" if level < 3 else "")
     return text + (", starting kitchen" if starting else "")
@@ -54,29 +56,31 @@ def conditions(rule: ContainerRule, level: int, starting: bool = False) -> str:
 def needed_inputs(
     unit: FunctionalUnit, rule: ContainerRule, utensils: frozenset[str], network: Network | None = None
 ) -> tuple[ObjectNode, ...]:
-    """Return the inputs that a unit needs under the rule (its preconditions), in the unit's order.
+    """Return the preconditions of a unit: the inputs that it needs under the rule, in the unit's order.
 
-    Below level 3, nodes do not include their contents. A unit of a ``network`` of such a level stands for
-    several level-3 units, and needs the inputs that all of these units need.
+    A unit of a ``network`` below level 3 stands for several level-3 units, whose nodes include their
+    contents. It needs an input if all of these level-3 units need it. Without a ``network``, only the unit
+    itself is looked at. A unit that the network lacks needs all its inputs.
     """
-    return _sides(unit, rule, utensils, network)[0]
+    return _preconditions_and_add_effects(unit, rule, utensils, network)[0]
 
 
 def given_outputs(
     unit: FunctionalUnit, rule: ContainerRule, utensils: frozenset[str], network: Network | None = None
 ) -> tuple[ObjectNode, ...]:
-    """Return the outputs that a unit makes under the rule (its add effects), in the unit's order.
+    """Return the add effects of a unit: the outputs that it makes under the rule, in the unit's order.
 
-    These are all outputs except inputs that the rule skips. Below level 3, a unit of a ``network`` stands for
-    several level-3 units, and makes the outputs that at least one of these units makes.
+    These are all outputs except inputs that the rule skips. A unit of a ``network`` below level 3 stands for
+    several level-3 units. It makes an output if at least one of these level-3 units makes it. Without a
+    ``network``, only the unit itself is looked at. A unit that the network lacks makes all its outputs.
     """
-    return _sides(unit, rule, utensils, network)[1]
+    return _preconditions_and_add_effects(unit, rule, utensils, network)[1]
 
 
-def _sides(
+def _preconditions_and_add_effects(
     unit: FunctionalUnit, rule: ContainerRule, utensils: frozenset[str], network: Network | None
 ) -> tuple[tuple[ObjectNode, ...], tuple[ObjectNode, ...]]:
-    """Return the preconditions and the add effects of a unit."""
+    """Return what :func:`needed_inputs` and :func:`given_outputs` return for a unit."""
     if rule is ContainerRule.STRICT:
         return unit.inputs, unit.outputs
     if network is not None and network.detailed is not None:
@@ -84,24 +88,28 @@ def _sides(
         if unit_id is None:  # it needs all its inputs
             return unit.inputs, unit.outputs
         details = [
-            _sides(network.detailed.unit(detail), rule, utensils, None)
+            _preconditions_and_add_effects(network.detailed.unit(detail), rule, utensils, None)
             for detail in network.stands_for[unit_id]
         ]
-        needed = set.intersection(*(_at_level(needs, network.level) for needs, _ in details))
-        added = set.union(*(_at_level(gives, network.level) for _, gives in details))
+        needed = set.intersection(*(_nodes_at_level(needs, network.level) for needs, _ in details))
+        added = set.union(*(_nodes_at_level(gives, network.level) for _, gives in details))
     else:
         skipped = {node for node in unit.inputs if _is_implied(node, unit.inputs, utensils)}
         needed, added = set(unit.inputs) - skipped, set(unit.outputs) - skipped
     return tuple(n for n in unit.inputs if n in needed), tuple(n for n in unit.outputs if n in added)
 
 
-def _at_level(nodes: Iterable[ObjectNode], level: int) -> set[ObjectNode]:
+def _nodes_at_level(nodes: Iterable[ObjectNode], level: int) -> set[ObjectNode]:
+    """Return nodes with only the parts that count at a level: at level 1, only their labels."""
     return {node_at_level(node, level) for node in nodes}
 
 
 @lru_cache(maxsize=4)  # successive questions are mostly about the same network
 def network_sides(network: Network, rule: ContainerRule, utensils: frozenset[str]) -> tuple[Ids, Ids]:
-    """Return for each unit of a network, at its level, the ids of its preconditions and its add effects."""
+    """Return two tuples indexed by unit id: the preconditions of each unit, and its add effects.
+
+    Both are ids of object nodes, in the order of the unit. The last four results are cached.
+    """
     if rule is ContainerRule.STRICT:
         return network.inputs, network.outputs
     needs, gives = list(network.inputs), list(network.outputs)
@@ -112,7 +120,9 @@ def network_sides(network: Network, rule: ContainerRule, utensils: frozenset[str
     for unit in range(len(network)):
         details = network.stands_for[unit] if network.detailed else (unit,)
         if not all(vessels.isdisjoint(detailed.inputs[detail]) for detail in details):
-            needed, added = map(set, _sides(network.unit(unit), rule, utensils, network))
+            needed, added = map(
+                set, _preconditions_and_add_effects(network.unit(unit), rule, utensils, network)
+            )
             needs[unit] = tuple(o for o in needs[unit] if network.objects[o] in needed)
             gives[unit] = tuple(o for o in gives[unit] if network.objects[o] in added)
     return tuple(needs), tuple(gives)
@@ -120,7 +130,10 @@ def network_sides(network: Network, rule: ContainerRule, utensils: frozenset[str
 
 @lru_cache(maxsize=4)
 def network_makers(network: Network, rule: ContainerRule, utensils: frozenset[str]) -> Ids:
-    """Return for each object node its achievers under the rule, as ids of units, in order."""
+    """Return a tuple indexed by object node id: the ids of the node's achievers under the rule, ascending.
+
+    The last four results are cached.
+    """
     achievers: dict[int, tuple[int, ...]] = {}  # of nodes for which they are not all producers
     _, gives = network_sides(network, rule, utensils)
     for unit, (outputs, added) in enumerate(zip(network.outputs, gives, strict=True)):
@@ -134,7 +147,7 @@ def network_makers(network: Network, rule: ContainerRule, utensils: frozenset[st
 
 
 def _is_implied(node: ObjectNode, inputs: tuple[ObjectNode, ...], utensils: frozenset[str]) -> bool:
-    """Return whether an input is a container that the rule ``implied`` skips."""
+    """Whether the rule ``implied`` skips an input; see :class:`ContainerRule`."""
     if node.label not in utensils or len(node.ingredients) != 1:
         return False
     ingredient = node.ingredients[0]

@@ -4,16 +4,18 @@ import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from fractions import Fraction
 
-from foon_asp.problem.objective import Known, Measured, Objective, multiplies
+from foon_asp.problem.objective import Measured, Objective, OptionalData, multiplies
 
 _MEASURED = tuple(Objective)
 
 
 class Costs:
-    """The costs of one tree, by objective; ``measures`` has no objective whose data are missing.
+    """The costs of one tree or plan: ``measures`` maps each objective to its exact value.
 
-    ``inputs`` counts the input object nodes of every unit (once for each unit, under any container rule),
-    ``kitchen`` the distinct kitchen items among the inputs needed.
+    Objectives whose data are missing, such as rates, have no value. ``inputs`` is the number of input object
+    nodes, summed over the units; inputs that a container rule skips count, too. ``kitchen`` is the number of
+    distinct kitchen items that the units need. Where items are used up, each copy of a consumable item
+    counts.
 
     Example:
         >>> costs = foon_asp.solve(foon_asp.load().problem("ice")).costs
@@ -50,22 +52,24 @@ class Costs:
 
     @property
     def ingredients(self) -> int:
-        """The number of ingredients in the inputs of all units."""
+        """The number of ingredients in the inputs, summed over the units."""
         return int(self.measures[Objective.INPUTS_AND_INGREDIENTS]) - self.inputs
 
     @property
     def kitchen(self) -> int:
-        """The number of kitchen items that are taken."""
+        """The number of kitchen items that the units need."""
         return int(self.measures[Objective.KITCHEN])
 
     @property
     def success(self) -> Fraction | None:
-        """The product of the success rates, ``None`` where no rates are known."""
+        """The product of the success rates; ``None`` where no rates are known."""
         success = self.measures.get(Objective.SUCCESS)
         return None if success is None else Fraction(success)
 
     def measure(self, objective: Objective) -> int | Fraction:
-        """Return the cost of the tree by an objective; for ``success`` more is better, for the others less.
+        """Return the exact value by an objective; of ``success`` more is better, of the others less.
+
+        ``dissimilarity`` is 0 for a problem without stand-ins.
 
         Parameters:
             objective: The objective.
@@ -74,16 +78,18 @@ class Costs:
             ValueError: if data are missing, as for ``success`` without rates, or for ``attempts`` with a
                 rate of 0.
         """
-        if objective not in self.measures and objective.row.needs is Known.STAND_INS:
+        if objective not in self.measures and objective.row.needs is OptionalData.STAND_INS:
             return Fraction(0)  # there are none
         if objective not in self.measures:
             needs = objective.row.needs
-            condition = " above 0" if needs is Known.RATES else ""
+            condition = " above 0" if needs is OptionalData.RATES else ""
             raise ValueError(f"{str(objective)!r} cannot be computed: it needs {needs}{condition}")
         return self.measures[objective]
 
     def key(self, objectives: Sequence[Objective]) -> tuple[int | Fraction, ...]:
-        """Return a tuple that is smaller for a better tree, for lexicographic comparison.
+        """Return a tuple of values for lexicographic comparison: a better tree has a smaller tuple.
+
+        Values of objectives of which more is better are negated.
 
         Parameters:
             objectives: The objectives, the most important first.
@@ -97,15 +103,16 @@ class Costs:
 def tree_costs(
     units: Mapping[Measured, int],
     items: int,
-    available: Collection[Known],
+    available: Collection[OptionalData],
     user_objectives: Iterable[Objective] = (),
 ) -> Costs:
-    """Return the costs of a tree or plan.
+    """Return the exact costs of a tree or plan, by all objectives whose data are available.
 
-    ``units``: its units, each with its number of executions. ``items``: the number of kitchen items that they
-    need.
-    ``available``: the kinds of data that all units have; objectives that need other data are left out, as is
-    ``attempts`` if a rate is 0. ``user_objectives``: objectives to measure in addition to the built-in ones.
+    ``units``: the number of executions of each unit.
+    ``items``: the number of kitchen items that the units need.
+    ``available``: the kinds of optional data that all units have. Objectives that need other data are left
+    out; ``attempts`` is also left out if a rate is 0.
+    ``user_objectives``: objectives to measure in addition to the built-in ones.
     """
     measures: dict[Objective, int | Fraction] = {}
     for objective in (*_MEASURED, *user_objectives):
@@ -126,13 +133,19 @@ def tree_costs(
 
 
 def _product(figures: Collection[int | Fraction]) -> Fraction:
-    """Return the product of figures, reduced once: to reduce each partial product takes most of the time."""
+    """Return the product of numbers as a fraction, which is reduced once, at the end.
+
+    To reduce each partial product would take most of the time.
+    """
     numerator = math.prod(figure.numerator for figure in figures)
     return Fraction(numerator, math.prod(figure.denominator for figure in figures))
 
 
 def _sum(figures: Iterable[int | Fraction]) -> Fraction:
-    """Return the sum of figures; it is fast if the figures have few distinct denominators."""
+    """Return the sum of numbers as a fraction.
+
+    Numerators of equal denominators are added first, which is fast if there are few distinct denominators.
+    """
     numerators: dict[int, int] = {}
     for figure in figures:
         denominator = figure.denominator

@@ -1,4 +1,4 @@
-"""Dead ends: nodes that cannot be made for some goals, and the missing or cyclic nodes that cause it."""
+"""Dead ends: goals that cannot be made from the kitchen, and the object nodes that cause it."""
 
 import heapq
 from collections.abc import Collection, Mapping, Sequence
@@ -12,21 +12,23 @@ from foon_asp.problem.relevance import reach
 
 
 class Cause(StrEnum):
-    """The cause of a dead end.
+    """The reason why an object node causes dead ends.
 
-    ``missing``: an object node is not in the kitchen, and no unit makes it, except units that also need it.
-    ``cycle``: every achiever of the node needs one of a set of nodes that can only be made from each other.
+    ``missing``: the node is not in the kitchen, and every unit that makes it also needs it.
+    ``cycle``: the node is in a set of nodes that can only be made from each other.
     """
 
     MISSING = "missing"
     CYCLE = "cycle"
 
 
-class Root(NamedTuple):
-    """An object node that causes a dead end.
+class RootCause(NamedTuple):
+    """An object node that causes dead ends.
 
-    ``stops``: the units on paths to goals that lack the node.
-    ``on_the_way``: the node is on the path to the goals that lacks the fewest nodes.
+    ``object``: its id; of a cycle, the id of one of its nodes.
+    ``stops``: the ids of the units that need the node, or a node of its cycle, on some path to an unreachable
+    goal.
+    ``on_the_way``: whether the cheapest path to the goals needs it; this path lacks the fewest nodes.
     ``cycle``: the set of nodes that can only be made from each other; ``None`` for the cause ``missing``.
     """
 
@@ -38,61 +40,65 @@ class Root(NamedTuple):
 
 
 class Blocked(NamedTuple):
-    """A unit that cannot run, and its unreachable preconditions."""
+    """A unit that cannot be executed: its id, and the ids of its unreachable preconditions."""
 
     unit: int
     lacks: tuple[int, ...]
 
 
 class DeadEnds(NamedTuple):
-    """The unreachable part of a network, for some goals.
+    """The unreachable part of a network that concerns some goals; all nodes are given by id.
 
     ``goals``: the unreachable goals.
-    ``makers``: the achievers of each unreachable object node on a path to these goals; the achiever that
-    lacks the fewest nodes comes first.
-    ``roots``: the causes; causes on the cheapest path come first.
-    ``available``: a 1 for every reachable node, by id.
+    ``makers``: the achievers of each unreachable node on some path to these goals. The achiever that lacks
+    the fewest nodes comes first.
+    ``roots``: the causes. Causes on the cheapest path to the goals come first.
+    ``available``: for each node of the network, 1 if it is reachable, else 0.
     """
 
     goals: tuple[int, ...]
     makers: dict[int, tuple[Blocked, ...]]
-    roots: tuple[Root, ...]
+    roots: tuple[RootCause, ...]
     available: bytearray
 
 
 def dead_ends(problem: Problem) -> DeadEnds:
     """Return the goals that cannot be made from the kitchen, with the causes; constraints are ignored.
 
-    Without unreachable goals, nothing is listed. The time is about linear in the size of the network.
+    If all goals are reachable, ``goals``, ``makers`` and ``roots`` of the result are empty. The time is about
+    linear in the size of the network.
     """
     available = reach(problem).available
     goals = tuple(goal for goal in problem.goals if not available[goal])
-    achievers = _achievers(problem, goals, available)
+    achievers = _unreachable_achievers(problem, goals, available)
     cycles: list[DeadCycle] = []
     missing = dict.fromkeys((o for o, units in achievers.items() if not units), 1)
     h_values, cheapest = h_add(achievers, missing)
     while len(h_values) < len(achievers):  # nodes without a value are in cycles, or need nodes that are
-        cycles += _cycles(problem, achievers.keys() - h_values)
+        cycles += _unreachable_cycles(problem, achievers.keys() - h_values)
         in_cycles = dict.fromkeys((node for cycle in cycles for node in cycle.nodes), 1)
         h_values, cheapest = h_add(achievers, missing | in_cycles)
     cycle_of = {node: cycle for cycle in cycles for node in cycle.nodes}
-    ordered = {o: _ordered(units, h_values, cheapest.get(o)) for o, units in achievers.items()}
+    ordered = {o: _sort_achievers(units, h_values, cheapest.get(o)) for o, units in achievers.items()}
     path = _cheapest_path(goals, ordered, cycle_of)
     consumers = _consumers(ordered)
-    roots = [Root(o, Cause.MISSING, tuple(sorted(consumers.get(o, ()))), o in path) for o in missing]
+    roots = [RootCause(o, Cause.MISSING, tuple(sorted(consumers.get(o, ()))), o in path) for o in missing]
     for cycle in cycles:
         entered = [o for o, _ in cycle.steps if o in path] + sorted(path & cycle.nodes)
         node = entered[0] if entered else cycle.steps[0][0]
         stops = {unit for o in cycle.nodes for unit in consumers.get(o, ())}
-        roots.append(Root(node, Cause.CYCLE, tuple(sorted(stops)), bool(entered), cycle))
+        roots.append(RootCause(node, Cause.CYCLE, tuple(sorted(stops)), bool(entered), cycle))
     roots.sort(key=lambda root: not root.on_the_way)
     return DeadEnds(goals, ordered, tuple(roots), available)
 
 
-def _achievers(
+def _unreachable_achievers(
     problem: Problem, goals: Sequence[int], available: bytearray
 ) -> dict[int, tuple[Blocked, ...]]:
-    """Return the unreachable nodes backward from the goals, depth-first, each with its achievers."""
+    """Return the achievers of each unreachable node on paths to the goals, by node id.
+
+    The nodes are listed depth-first, backward from the goals. A unit that also needs the node is no achiever.
+    """
     needs = problem.needs
     achievers: dict[int, tuple[Blocked, ...]] = {}
     stack = list(reversed(goals))
@@ -110,7 +116,7 @@ def _achievers(
 
 
 def _consumers(achievers: Mapping[int, Sequence[Blocked]]) -> dict[int, list[int]]:
-    """Return for each unreachable node the units that lack it."""
+    """Return the ids of the blocked units that lack each node, by node id."""
     consumers: dict[int, list[int]] = {}
     for blocked in {unit.unit: unit for units in achievers.values() for unit in units}.values():
         for lack in blocked.lacks:
@@ -118,32 +124,41 @@ def _consumers(achievers: Mapping[int, Sequence[Blocked]]) -> dict[int, list[int
     return consumers
 
 
-def _ordered(
+def _sort_achievers(
     units: tuple[Blocked, ...], h_values: dict[int, int], cheapest: int | None
 ) -> tuple[Blocked, ...]:
-    """Return the achievers of a node: the cheapest, then the others by the h-values of lacking nodes."""
+    """Return the achievers of a node, sorted; the unit with the id ``cheapest`` comes first.
+
+    The others are in ascending order of the sum of the h-values of the nodes that they lack.
+    """
 
     def key(blocked: Blocked) -> tuple[bool, int, int]:
+        """Return the sort key of an achiever."""
         return blocked.unit != cheapest, sum(h_values[lack] for lack in blocked.lacks), blocked.unit
 
     return tuple(sorted(units, key=key))
 
 
-def _cycles(problem: Problem, unreachable: Collection[int]) -> list[DeadCycle]:
-    """Return the sets of unreachable nodes that can only be made from each other, given all other nodes."""
-    others = [o for o in range(len(problem.network.objects)) if o not in unreachable]
-    return dead_cycles(replace(problem.network, inputs=problem.needs, outputs=problem.gives), others)
+def _unreachable_cycles(problem: Problem, unreachable: Collection[int]) -> list[DeadCycle]:
+    """Return the sets of unreachable nodes that can only be made from each other.
+
+    All nodes outside ``unreachable`` count as available.
+    """
+    available = [o for o in range(len(problem.network.objects)) if o not in unreachable]
+    return dead_cycles(replace(problem.network, inputs=problem.needs, outputs=problem.gives), available)
 
 
 def h_add(
     achievers: Mapping[int, Sequence[Blocked]], sources: Mapping[int, int]
 ) -> tuple[dict[int, int], dict[int, int]]:
-    """Return the h_add value of each unreachable node (Bonet & Geffner 2001), and its cheapest achiever.
+    """Return two mappings by node id: h_add values (Bonet & Geffner 2001), and the ids of cheapest achievers.
 
-    ``sources`` are nodes with their costs, above 0. Any other node costs as much as the preconditions of its
-    cheapest achiever together. The costs are computed by Knuth's generalization of Dijkstra's algorithm
-    (1977). A node that cannot be made from the sources has no value. A source has a cheapest achiever only if
-    this costs less than the source. The cheapest achievers have no cycle.
+    ``achievers`` has the achievers of each unreachable node. ``sources`` maps nodes to their costs, above 0.
+    Any other node costs as much as the preconditions of its cheapest achiever together. The values are
+    computed by Knuth's generalization of Dijkstra's algorithm (1977).
+
+    A node that cannot be made from the sources is in neither mapping. A source has a cheapest achiever only
+    if this costs less than the source itself. The cheapest achievers have no cycle.
     """
     lacking = {blocked.unit: len(blocked.lacks) for units in achievers.values() for blocked in units}
     made_by: dict[int, list[int]] = {}
@@ -175,7 +190,10 @@ def h_add(
 def _cheapest_path(
     goals: Sequence[int], achievers: dict[int, tuple[Blocked, ...]], cycle_of: dict[int, DeadCycle]
 ) -> set[int]:
-    """Return the unreachable nodes backward from the goals through first achievers, without cycles."""
+    """Return the nodes on the cheapest path: backward from the goals through the first achiever of each node.
+
+    The path ends at nodes without achievers, and at nodes in ``cycle_of``; both are included.
+    """
     path: set[int] = set()
     stack = list(goals)
     while stack:

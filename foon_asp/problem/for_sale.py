@@ -4,19 +4,23 @@ from collections.abc import Collection, Iterator, Sequence
 from enum import StrEnum
 
 from foon_asp.network import ObjectNode, starting_nodes
-from foon_asp.problem.dead_ends import Blocked, DeadEnds, Root, h_add
+from foon_asp.problem.dead_ends import Blocked, DeadEnds, RootCause, h_add
 from foon_asp.problem.problem import Problem
 
 _FRESH_STATES = frozenset({"empty", "clean"})
 
 
 class Offer(StrEnum):
-    """The set of nodes that shopping lists may contain.
+    """A set of object nodes that shopping lists may contain.
 
     With a price list, the set is ``priced``: the nodes on the price list. Without a price list, it is the
-    first of the following sets from which the goals can be made. ``for sale``: the nodes that :class:`Shop`
-    sells, except the dish. ``cycle``: in addition, nodes that can only be made from each other.
-    ``processed``: every node except the dish. ``dish``: every node except the goals. ``goal``: every node.
+    first of these sets from which the goals can be made:
+
+    ``for sale``: the nodes that :class:`Shop` sells, except the dish.
+    ``cycle``: in addition, nodes that can only be made from each other.
+    ``processed``: every node except the dish.
+    ``dish``: every node except the goals.
+    ``goal``: every node.
     """
 
     FOR_SALE = "for sale"
@@ -30,31 +34,32 @@ class Offer(StrEnum):
 class Shop:
     """A model of which object nodes of a problem can be bought.
 
-    A node is for sale if no unit makes it out of other nodes, or if it is a vessel or tool of the starting
-    kitchen. A node is also for sale if it has no state, contains at most one ingredient, is not on anything,
-    and its label or ingredient is not a product. A *product* is a name that some unit makes out of nodes
-    without this name: whipped cream, dough, lemon juice. In a FOON, states say that something was done to a
-    node, so a node without states is assumed to be unprocessed. A node whose states are only empty or clean
-    is a vessel or tool. It is for sale, although washing up makes it, too.
+    In a FOON, states say that something was done to a node. So these nodes are for sale:
 
-    A goal is not for sale, and neither is a node that has or contains the name of the *dish*. This name is
-    the label of a goal or, for a utensil, its one ingredient, if the name is a product.
+    - a node that no unit makes out of other nodes;
+    - a vessel or tool: its states are only empty or clean, or it is an empty node of the starting kitchen and
+      no ingredient of another node;
+    - an unprocessed node: it has no state, is not on or at anything, contains at most one ingredient, and
+      this ingredient, or else its label, is no *product*. A product is a name that some unit makes out of
+      nodes without this name, such as whipped cream, dough or lemon juice.
+
+    The goals are not for sale, nor is a node that has or contains the name of the *dish*. This name is the
+    label of a goal or, for a utensil, its one ingredient, if the name is a product.
     """
 
     def __init__(self, problem: Problem) -> None:
-        """Collect the starting nodes, products and dishes of a problem."""
+        """Compute the starting kitchen, the products and the names of the dishes of a problem."""
         self._problem = problem
         self._starting = starting_nodes(problem.network, problem.goals)
-        self._products = _products(problem)
+        self._products = _product_names(problem)
         self._ingredients = {item for node in problem.network.objects for item in node.ingredients}
         names = {_substance(problem.network.objects[goal], problem.utensils) for goal in problem.goals}
         self._dishes = {name for name in names if name in self._products}
 
     def sells(self, o: int) -> bool:
-        """Return whether a node, by id, can be bought, whether or not it is the dish.
+        """Whether a node, given by id, is for sale by the three rules of the class.
 
-        For sale are plain nodes, and nodes without states that are only in something and contain at most one
-        ingredient, which no unit makes.
+        The rule about goals and the dish is not applied; see :meth:`is_dish`.
         """
         node = self._problem.network.objects[o]
         if self._is_plain(o):
@@ -67,28 +72,30 @@ class Shop:
             and (node.ingredients or (node.label,))[0] not in self._products
         )
 
-    def offers(self, roots: Sequence[Root]) -> Iterator[tuple[Offer, list[int]]]:
-        """Yield the offers with their nodes, by id, each larger than the one before.
+    def offers(self, roots: Sequence[RootCause]) -> Iterator[tuple[Offer, list[int]]]:
+        """Yield the offers without prices, from the smallest set to the largest, each with its node ids.
 
-        ``roots`` are the causes of the problem's dead ends.
+        Kitchen items are in no offer. ``roots`` are the causes of the problem's dead ends; the nodes of their
+        cycles are in the offer ``cycle``.
         """
         problem = self._problem
-        others = [o for o in range(len(problem.network.objects)) if o not in problem.kitchen]
-        no_dish = [o for o in others if not self.is_dish(o)]
+        outside_kitchen = [o for o in range(len(problem.network.objects)) if o not in problem.kitchen]
+        no_dish = [o for o in outside_kitchen if not self.is_dish(o)]
         sold = [o for o in no_dish if self.sells(o)]
         yield Offer.FOR_SALE, sold
         in_cycles = {o for root in roots if root.cycle for o in root.cycle.nodes}
         yield Offer.CYCLE, [*sold, *sorted(in_cycles.difference(sold).intersection(no_dish))]
         yield Offer.PROCESSED, no_dish
-        yield Offer.DISH, [o for o in others if o not in problem.goals]
-        yield Offer.GOAL, others
+        yield Offer.DISH, [o for o in outside_kitchen if o not in problem.goals]
+        yield Offer.GOAL, outside_kitchen
 
     def short_list(self, ends: DeadEnds) -> list[int]:
-        """Return a few object nodes that make all goals reachable once they are in the kitchen, by id.
+        """Return ascending ids of a few nodes that make all goals reachable once they are in the kitchen.
 
-        The list has the nodes that the relaxed plan of ``h_add`` takes from the first sufficient offer,
-        without nodes that units of this plan make. Nodes that are second choices are avoided. A shorter list
-        may exist. If all goals are reachable, the list is empty.
+        The nodes come from the first offer from which the goals can be made. They are the nodes that the
+        relaxed plan of ``h_add`` buys; a node that units of this plan can make is left out. The plan buys few
+        nodes and, among equally many, few second choices (:meth:`is_second_choice`). A shorter list may
+        exist. If all goals are reachable, the list is empty.
         """
         for _, offer in self.offers(ends.roots):
             # an item costs more than all second choices of a list
@@ -113,45 +120,51 @@ class Shop:
         return sorted(listed)
 
     def is_raw(self, o: int) -> bool:
-        """Return whether no unit makes a node out of others."""
+        """Whether no unit makes a node out of other nodes: each unit that makes it also needs it."""
         needs = self._problem.needs
         return all(o in needs[unit] for unit in self._problem.makers[o])
 
     def is_dish(self, o: int) -> bool:
-        """Return whether a node is a goal, or has or contains the name of the dish."""
+        """Whether a node is a goal, or has or contains the name of the dish."""
         node = self._problem.network.objects[o]
         names = {node.label, *node.ingredients}
         return o in self._problem.goals or not names.isdisjoint(self._dishes)
 
     def is_second_choice(self, o: int) -> bool:
-        """Return whether lists should avoid a node: a mixture, or a node that is not plain."""
+        """Whether a shopping list should avoid a node: it has several ingredients, or a unit makes it.
+
+        Vessels and tools with at most one ingredient are no second choice, even if a unit makes them.
+        """
         return not self._is_plain(o) or len(self._problem.network.objects[o].ingredients) > 1
 
     def _is_plain(self, o: int) -> bool:
-        """Return whether a node is raw, or a vessel or tool: empty, clean, or from the starting kitchen."""
+        """Whether a node is raw, or is a vessel or tool: empty, clean, or of the starting kitchen."""
         node = self._problem.network.objects[o]
-        given_back = o in self._starting and not node.contents and node.label not in self._ingredients
-        return self.is_raw(o) or _is_fresh(node) or given_back
+        is_starting_vessel = o in self._starting and not node.contents and node.label not in self._ingredients
+        return self.is_raw(o) or _is_clean_vessel(node) or is_starting_vessel
 
 
-def _is_fresh(node: ObjectNode) -> bool:
-    """Return whether a node is an empty or clean vessel or tool."""
+def _is_clean_vessel(node: ObjectNode) -> bool:
+    """Whether a node is an empty or clean vessel or tool, by its states, without contents or relations."""
     return bool(node.states) and node.states <= _FRESH_STATES and not node.contents and not node.relations
 
 
 def _substance(node: ObjectNode, utensils: Collection[str]) -> str | None:
-    """Return the substance of a node: its label, or the one ingredient in a utensil; ``None`` without one."""
+    """Return the name of what a node consists of: its label or, for a utensil, its one ingredient.
+
+    ``None`` for a utensil with no ingredient or several.
+    """
     if node.label not in utensils:
         return node.label
     return node.ingredients[0] if len(set(node.ingredients)) == 1 else None
 
 
-def _products(problem: Problem) -> set[str]:
-    """Return the labels that units make out of nodes which neither have nor contain them."""
+def _product_names(problem: Problem) -> set[str]:
+    """Return the labels of products: labels of a unit's outputs that none of its inputs has or contains."""
     network = problem.network
     objects = network.objects
     products: set[str] = set()
     for inputs, outputs in zip(network.inputs, network.outputs, strict=True):
-        before = {name for o in inputs for name in (objects[o].label, *objects[o].ingredients)}
-        products |= {objects[o].label for o in outputs} - before
+        input_names = {name for o in inputs for name in (objects[o].label, *objects[o].ingredients)}
+        products |= {objects[o].label for o in outputs} - input_names
     return products

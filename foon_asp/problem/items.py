@@ -11,18 +11,23 @@ from foon_asp.network import FunctionalUnit, Network, ObjectNode, UnitAmounts
 from foon_asp.problem.container_rule import ContainerRule, network_sides
 
 ITEMS = ("lasting", "used-up")
-"""The two models of items: they last, and can be used any number of times, or they are used up."""
+"""The two models of items: an item lasts, and can be used any number of times; or it is used up."""
 
 Named = str | ObjectNode
-"""The items of a declaration: all object nodes of a label, or one object node."""
+"""The subject of a declaration by the user: a label, for all object nodes with it, or one object node."""
 
 
 class Fate(StrEnum):
-    """The reason why an input of a unit stays, or that it is ``USED_UP``.
+    """The reason why an input of a unit stays available, or that it is used up.
 
-    ``OUTPUT``: the same node is also an output. ``TOOL``: a utensil with no contents. ``VESSEL``: a utensil
-    that some output is in, on or at. ``INSIDE``: an ingredient of an item whose label is the label of both an
-    input and an output. ``TOLD_STAYS`` and ``TOLD_GOES``: a file of the user says so.
+    ``OUTPUT``: stays, since the same node is also an output.
+    ``TOOL``: stays, since it is a utensil with no ingredients.
+    ``VESSEL``: stays, since it is a utensil that some output is in, on or at.
+    ``INSIDE``: stays, since it is an ingredient in, on or at an item, and this item is still there with the
+    ingredient. That is, an input and an output have the label of the item, and the output contains the
+    ingredient.
+    ``USED_UP``: is used up, since no reason applies.
+    ``TOLD_STAYS``, ``TOLD_GOES``: stays, or is used up, since a file of the user says so.
 
     Example:
         >>> str(foon_asp.Fate.TOOL)
@@ -39,7 +44,7 @@ class Fate(StrEnum):
 
     @property
     def stays(self) -> bool:
-        """Whether the input is still available after the unit."""
+        """Whether the input is still available after the unit is executed."""
         return self not in {Fate.USED_UP, Fate.TOLD_GOES}
 
 
@@ -50,11 +55,12 @@ def fate(
     utensils: frozenset[str],
     declared: Mapping[Named, bool] = MappingProxyType({}),
 ) -> Fate:
-    """Return whether an input of a unit stays or is used up, and why.
+    """Return whether an input of a unit stays or is used up, with the reason.
 
     ``inputs`` and ``outputs`` are all inputs and outputs of the unit, including any that a container rule
-    skips. ``declared`` maps labels and nodes to whether they stay. It overrides all other reasons, and an
-    entry for a node overrides the entry for its label.
+    skips. ``declared`` maps labels and nodes to whether the user declared that they stay. A declaration
+    overrides all other reasons, and one for a node overrides one for its label. If an output has the label of
+    the input but is another node, the unit changes the input, which is then used up.
     """
     stays = declared.get(node, declared.get(node.label))
     if stays is not None:
@@ -74,10 +80,10 @@ def fate(
 
 
 class Flow(NamedTuple):
-    """The preconditions and effects of a unit on copies of items, as ids of object nodes.
+    """The preconditions and effects of one execution of a unit, as numbers of copies by object node id.
 
-    Each maps object nodes to numbers of copies. A unit is applicable when there are as many copies of each
-    node as it ``asks`` for. It consumes the copies in ``uses``, and makes the copies in ``adds``.
+    A unit is applicable when there are at least as many copies of each node as it ``asks`` for. It consumes
+    the copies in ``uses``, and makes the copies in ``adds``.
     """
 
     asks: Mapping[int, int]
@@ -86,9 +92,10 @@ class Flow(NamedTuple):
 
 
 class UnitFlows(Sequence[Flow]):
-    """The flows of all units of a network, each computed once, when it is first looked at.
+    """The flows of all units of a network; the flow of a unit is computed at the first access to it.
 
-    So a question about few units of a large network computes few flows.
+    So a question about few units of a large network computes few flows. ``units`` is the number of units, and
+    the function ``flow`` computes the flow of a unit by id.
     """
 
     def __init__(self, units: int, flow: Callable[[int], Flow]) -> None:
@@ -105,7 +112,7 @@ class UnitFlows(Sequence[Flow]):
     def __getitem__(self, unit: slice) -> Sequence[Flow]: ...
 
     def __getitem__(self, unit: int | slice) -> Flow | Sequence[Flow]:
-        """Return the flow of a unit, or of some."""
+        """Return the flow of a unit; for a slice, a list of flows."""
         if isinstance(unit, slice):
             return [self[u] for u in range(len(self))[unit]]
         flow = self._flows[unit]
@@ -116,10 +123,10 @@ class UnitFlows(Sequence[Flow]):
 
 @dataclass(frozen=True)
 class UsedUp:
-    """The model in which items are used up: declarations of the user, and the stock.
+    """The model in which items are used up: what the user declared, the stock, and wanted copies.
 
-    ``told`` maps labels and object nodes to whether they stay, which overrides the rule (:func:`fate`).
-    ``stock`` has the number of copies of kitchen nodes; nodes that are not in ``stock`` never run out.
+    ``told`` maps labels and object nodes to whether they stay. This overrides the reasons of :class:`Fate`.
+    ``stock`` has the number of copies of kitchen nodes. Kitchen nodes that are not in it never run out.
     ``wanted`` has the number of copies of each goal that is wanted more than once.
 
     Example:
@@ -136,7 +143,7 @@ class UsedUp:
     wanted: Mapping[ObjectNode, int] = field(default_factory=dict)
 
     def fate(self, unit: FunctionalUnit, node: ObjectNode, utensils: frozenset[str]) -> Fate:
-        """Return whether an input of a unit stays or is used up, and why.
+        """Return whether an input of a unit stays or is used up, with the reason.
 
         Parameters:
             unit: The unit.
@@ -156,8 +163,9 @@ class UsedUp:
     ) -> Flow:
         """Return the preconditions and effects of a unit on copies of items.
 
-        If an input is also an output, only the difference of the two amounts is used up or made, unless the
-        input is declared as used up.
+        If a node is an input and an output, the unit makes only the copies that it puts out beyond those that
+        it takes. It uses up only those that it takes beyond the ones it puts out. An input that the user
+        declared as used up is used up in full.
 
         Parameters:
             network: The network of the unit.
@@ -187,9 +195,13 @@ class UsedUp:
 def plain_flows(
     network: Network, rule: ContainerRule, utensils: frozenset[str], told: frozenset[tuple[Named, bool]]
 ) -> UnitFlows:
-    """Return the flows of the units of a network without amounts; ``told`` has the user's declarations."""
+    """Return the flows of the units of a network if each unit takes and makes one copy of a node.
+
+    ``told`` has what the user declared: pairs of a label or node, and whether it stays. The last four results
+    are cached.
+    """
     needs, gives = network_sides(network, rule, utensils)
-    items, none = UsedUp(told=dict(told)), UnitAmounts()
+    items, one_of_each = UsedUp(told=dict(told)), UnitAmounts()
     return UnitFlows(
-        len(network), lambda unit: items.flow(network, unit, needs[unit], gives[unit], utensils, none)
+        len(network), lambda unit: items.flow(network, unit, needs[unit], gives[unit], utensils, one_of_each)
     )

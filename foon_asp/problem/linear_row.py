@@ -1,14 +1,14 @@
-"""A linear row over executions: the form of every limit."""
+"""A linear constraint on how often units are executed."""
 
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 
 class LinearRow(NamedTuple):
-    """A linear constraint on executions: the sum of their weights is at most ``bound``.
+    """A linear constraint on a tree or plan: the weights of its executions sum up to at most ``bound``.
 
-    With ``at_least``, the sum is at least ``bound``. ``weights`` has the weight of a unit by id. A unit
-    counts for each of its executions; with ``used``, only once.
+    With ``at_least``, they sum up to at least ``bound``. ``weights`` maps unit ids to weights; other units
+    have weight 0. Each execution of a unit counts; with ``used``, only the first one counts.
     """
 
     weights: Mapping[int, int]
@@ -17,14 +17,14 @@ class LinearRow(NamedTuple):
     used: bool = False
 
     def weight(self, unit: int) -> int:
-        """Return the weight of one execution of a unit, 0 for a unit that the row does not name."""
+        """Return the weight of a unit, 0 if ``weights`` does not have it."""
         return self.weights.get(unit, 0)
 
     def total(self, units: Iterable[int]) -> int:
-        """Return the sum of the weights of executed units; each occurrence of a unit is one execution."""
+        """Return the sum of the weights of executed units, given by id with repeats."""
         return sum(map(self.weight, frozenset(units) if self.used else units))
 
     def holds(self, units: Iterable[int]) -> bool:
-        """Whether executed units keep to the row."""
+        """Whether executed units, given by id with repeats, satisfy the constraint."""
         total = self.total(units)
         return total >= self.bound if self.at_least else total <= self.bound

@@ -16,8 +16,12 @@ _MAX_DIGITS = 1000  # of a number: those of 1e999999999 take hours to compute
 _EXPONENT = re.compile(r"e([+-]?[\d_]+)\s*", re.IGNORECASE)
 
 
-def exact(number: Number, quantity: str) -> Fraction:
-    """Return a number as an exact fraction; else raises :class:`UserError`, which names the ``quantity``."""
+def exact_number(number: Number, quantity: str) -> Fraction:
+    """Return a number as an exact fraction: ``Fraction(9, 10)`` for ``0.9`` and for ``"0.9"``.
+
+    Raises :class:`UserError` for a text that is no number and for an exponent beyond 1,000. Its message names
+    the ``quantity``, such as ``the duration of 'stir'``.
+    """
     try:
         power = _EXPONENT.search(str(number)) if isinstance(number, str | Decimal) else None
         if power and abs(int(power[1])) > _MAX_DIGITS:
@@ -30,8 +34,12 @@ def exact(number: Number, quantity: str) -> Fraction:
 
 
 def unit_price(number: Number, quantity: str) -> Fraction:
-    """Return an exact price, from 0; else raises :class:`UserError`, which names the ``quantity``."""
-    price = exact(number, quantity)
+    """Return a price as an exact fraction.
+
+    Raises :class:`UserError` for a text that is no number, and for a price below 0 or of more than 1,000
+    digits. Its message names the ``quantity``.
+    """
+    price = exact_number(number, quantity)
     if price < 0 or max(price.numerator, price.denominator) >= 10**_MAX_DIGITS:
         raise UserError(
             f"found {str(number)[:40]} for {quantity}, expected a price from 0, of at most "
@@ -41,8 +49,12 @@ def unit_price(number: Number, quantity: str) -> Fraction:
 
 
 def success_rate(number: Number, quantity: str) -> Fraction:
-    """Return an exact success rate, above 0 and at most 1; raises :class:`UserError` for other values."""
-    rate = exact(number, quantity)
+    """Return a success rate as an exact fraction, above 0 and at most 1.
+
+    Raises :class:`UserError` for a text that is no number, and for a rate outside this range. Its message
+    names the ``quantity``.
+    """
+    rate = exact_number(number, quantity)
     if not 0 < rate <= 1:
         raise UserError(f"found {number} for {quantity}, expected a number above 0 and at most 1")
     return rate

@@ -1,4 +1,4 @@
-"""Objectives: a row for each of them, which says how it is measured, and lexicographic lists."""
+"""Objectives: how each is measured, and lexicographic lists of them."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator
 from enum import StrEnum
@@ -10,8 +10,8 @@ from foon_asp.errors import UserError
 from foon_asp.network import ObjectNode
 
 
-class Known(StrEnum):
-    """A kind of optional data that an objective may need."""
+class OptionalData(StrEnum):
+    """A kind of data that a problem may lack and an objective may need."""
 
     RATES = "rates"
     PRICES = "prices"
@@ -20,7 +20,7 @@ class Known(StrEnum):
 
 
 class Measured(Protocol):
-    """A unit with the properties by which objectives measure it."""
+    """A unit with the properties that objectives read."""
 
     @property
     def inputs(self) -> Iterable[ObjectNode]:
@@ -36,24 +36,27 @@ class Measured(Protocol):
 
     @property
     def dissimilarity(self) -> Fraction:
-        """The dissimilarity of a stand-in, 0 of other units."""
+        """The dissimilarity of the unit if it is a stand-in; 0 for other units."""
 
     def measure(self, name: str) -> int | Fraction:
-        """Return the cost by a user measure, from 0; raises ``ValueError`` for an unknown measure."""
+        """Return the cost by the user measure of this name, from 0.
+
+        Raises ``ValueError`` for an unknown measure.
+        """
 
 
 class Row(NamedTuple):
-    """The definition of an objective: a linear row over units and kitchen items, or a product.
+    """The definition of an objective: a sum over units and kitchen items, or a product over units.
 
-    ``term``: the name of the objective in the encodings. ``words``: its name on the axis of a chart.
-    ``unit``: returns the cost of a unit, an exact number.
+    ``term``: the name of the objective in the encodings.
+    ``words``: its name on the axis of a chart.
+    ``unit``: a function that returns the cost of a unit, an exact number.
     ``item``: the cost of each distinct kitchen item that the units need.
-    ``multiplies``: the values of units are factors, and more is better; else they are added up, and less is
-    better.
-    ``needs``: the optional data that the objective needs.
-    ``is_fact``: the encodings read the costs of units from ``cost/3``, since no other fact states these
-    costs.
-    ``whole``: all costs are whole numbers.
+    ``multiplies``: the values of units are multiplied, and more is better. Otherwise they are added up, and
+    less is better.
+    ``needs``: the kind of optional data that the objective needs; ``None`` if it needs none.
+    ``is_fact``: the encodings read the costs of units from facts ``cost/3``, since no other fact states them.
+    ``whole``: all costs are integers.
     """
 
     term: str
@@ -61,13 +64,13 @@ class Row(NamedTuple):
     unit: Callable[[Measured], int | Fraction]
     item: int = 0
     multiplies: bool = False
-    needs: Known | None = None
+    needs: OptionalData | None = None
     is_fact: bool = False
     whole: bool = True
 
 
-class _Listed(type):
-    """A metaclass by which iteration over the class of objectives yields the built-in ones."""
+class _IterableOverBuiltIns(type):
+    """The metaclass of objectives: ``iter``, ``len`` and ``in`` of the class are about the built-in ones."""
 
     def __iter__(cls) -> Iterator["Objective"]:
         return iter(_BUILT_IN.values())
@@ -79,15 +82,18 @@ class _Listed(type):
         return name in _BUILT_IN
 
 
-class Objective(str, metaclass=_Listed):
-    """An objective by which trees are optimized: a name, with the row that defines how it is measured.
+class Objective(str, metaclass=_IterableOverBuiltIns):
+    """An objective by which trees are optimized: a name, with the ``row`` that defines how it is measured.
 
-    ``UNITS``: fewest functional units. ``INPUTS``: fewest input object nodes, summed over the units.
-    ``INPUTS_AND_INGREDIENTS``: fewest input object nodes and ingredients in them (the measure of a published
-    heuristic). ``SUCCESS``: greatest product of success rates. ``KITCHEN``: fewest distinct kitchen items
-    among the inputs needed. ``ATTEMPTS``: fewest expected executions of units, if a failed unit is repeated
-    until it succeeds. ``PRICE``: least sum of the prices of units. ``DISSIMILARITY``: least sum of the
-    dissimilarities of stand-ins.
+    ``UNITS``: fewest functional units.
+    ``INPUTS``: fewest input object nodes, summed over the units.
+    ``INPUTS_AND_INGREDIENTS``: fewest input object nodes and ingredients in them, the measure of a published
+    heuristic.
+    ``SUCCESS``: greatest product of success rates.
+    ``KITCHEN``: fewest distinct kitchen items among the inputs needed.
+    ``ATTEMPTS``: fewest expected executions of units, if a failed unit is repeated until it succeeds.
+    ``PRICE``: least sum of the prices of units.
+    ``DISSIMILARITY``: least sum of the dissimilarities of stand-ins.
 
     Iteration over the class yields these built-in objectives. :meth:`of_measure` returns the objective of a
     user measure. Each objective is a single object.
@@ -113,14 +119,14 @@ class Objective(str, metaclass=_Listed):
     DISSIMILARITY: ClassVar["Objective"]
 
     def __new__(cls, name: str) -> "Objective":
-        """Return the built-in objective of a name; raises ``ValueError`` for other names."""
+        """Return the built-in objective of this name; raises ``ValueError`` for other names."""
         if name not in _BUILT_IN:
             raise ValueError(f"{name!r} is no objective")
         return _BUILT_IN[name]
 
     @classmethod
     def of_row(cls, name: str, row: Row) -> "Objective":
-        """Return a new objective.
+        """Return a new objective, which is not among the built-in ones.
 
         Parameters:
             name: The name.
@@ -135,10 +141,14 @@ class Objective(str, metaclass=_Listed):
     def of_measure(name: str) -> "Objective":
         """Return the objective of a user measure: the least sum of the costs that it assigns to units.
 
+        Each call with the same name returns the same object.
+
         Parameters:
             name: The name of the measure.
         """
-        row = Row(name, name, partial(_measure, name), needs=Known.MEASURES, is_fact=True, whole=False)
+        row = Row(
+            name, name, partial(_user_cost, name), needs=OptionalData.MEASURES, is_fact=True, whole=False
+        )
         return Objective.of_row(name, row)
 
     def __setattr__(self, name: str, value: object) -> None:
@@ -146,14 +156,15 @@ class Objective(str, metaclass=_Listed):
         raise AttributeError(f"an objective does not change, and cannot be given {name!r}")
 
     def __reduce__(self) -> tuple[Callable[[str], "Objective"], tuple[str]]:
-        """Pickle an objective as its name, since each process has the same objectives."""
-        return Objective.of_measure if self.row.needs is Known.MEASURES else Objective, (str(self),)
+        """Pickle an objective as its name: unpickling returns the single object of that name."""
+        return Objective.of_measure if self.row.needs is OptionalData.MEASURES else Objective, (str(self),)
 
     def __repr__(self) -> str:
         return f"<Objective: {str(self)!r}>"
 
 
-def _measure(name: str, unit: Measured) -> int | Fraction:
+def _user_cost(name: str, unit: Measured) -> int | Fraction:
+    """Return the cost of a unit by a user measure."""
     return unit.measure(name)
 
 
@@ -179,7 +190,7 @@ _BUILT_IN = {
                 "success rate",
                 lambda unit: unit.rate,
                 multiplies=True,
-                needs=Known.RATES,
+                needs=OptionalData.RATES,
                 whole=False,
             ),
         ),
@@ -190,14 +201,21 @@ _BUILT_IN = {
                 "attempts",
                 "expected executions of units",
                 lambda unit: 1 / unit.rate,
-                needs=Known.RATES,
+                needs=OptionalData.RATES,
                 is_fact=True,
                 whole=False,
             ),
         ),
         Objective.of_row(
             "price",
-            Row("price", "price", lambda unit: unit.price, needs=Known.PRICES, is_fact=True, whole=False),
+            Row(
+                "price",
+                "price",
+                lambda unit: unit.price,
+                needs=OptionalData.PRICES,
+                is_fact=True,
+                whole=False,
+            ),
         ),
         Objective.of_row(
             "dissimilarity",
@@ -205,7 +223,7 @@ _BUILT_IN = {
                 "dissimilarity",
                 "dissimilarity of stand-ins",
                 lambda unit: unit.dissimilarity,
-                needs=Known.STAND_INS,
+                needs=OptionalData.STAND_INS,
                 is_fact=True,
                 whole=False,
             ),
@@ -217,12 +235,12 @@ for _objective in _BUILT_IN.values():
 
 
 def multiplies(objective: Objective) -> bool:
-    """Return whether an objective is a product, and more is better; others are sums, and less is better."""
+    """Whether an objective is a product, of which more is better; others are sums: less is better."""
     return objective.row.multiplies
 
 
 def parse_objectives(names: Iterable[str], measures: Collection[str] = ()) -> tuple[Objective, ...]:
-    """Return a lexicographic list of objectives, the most important first.
+    """Return the lexicographic list of objectives with these names, the most important first.
 
     Each of the ``names`` may be a comma-separated list. ``measures`` are the names of user measures.
 
@@ -244,10 +262,13 @@ def parse_objectives(names: Iterable[str], measures: Collection[str] = ()) -> tu
 
 
 def with_dissimilarity(objectives: tuple[Objective, ...]) -> tuple[Objective, ...]:
-    """Return the list for a problem with stand-ins: dissimilarity is added as the first, unless listed."""
+    """Return a list of objectives with ``dissimilarity``, which is put first unless it is listed."""
     return objectives if Objective.DISSIMILARITY in objectives else (Objective.DISSIMILARITY, *objectives)
 
 
 def levels(objectives: tuple[Objective, ...]) -> tuple[Objective, ...]:
-    """Return the list that is optimized: ``units`` is added as the last, so that trees are irredundant."""
+    """Return the list by which trees are optimized: ``units`` is put last unless it is listed.
+
+    With ``units`` in the list, optimal trees are irredundant.
+    """
     return objectives if Objective.UNITS in objectives else (*objectives, Objective.UNITS)

@@ -1,4 +1,4 @@
-"""Executable orders of the units of a tree, in which a person can follow them."""
+"""Orders of the units of a tree in which they can be executed, as in a recipe."""
 
 from collections.abc import Iterable
 
@@ -6,10 +6,11 @@ from foon_asp.problem.problem import Problem
 
 
 def executable_order(problem: Problem, units: Iterable[int]) -> tuple[int, ...] | None:
-    """Return units in a topological order, in which each can be executed; ``None`` if there is none.
+    """Return unit ids in an order in which each unit can be executed; ``None`` if there is no such order.
 
-    The preconditions of a step are made directly before the step (depth-first from the goals), as in a
-    recipe. The time is linear in the number of units and their inputs and outputs.
+    Each unit is listed once. The units that make the inputs of a step come directly before the step
+    (depth-first from the goals), as in a recipe. The time is linear in the number of units and their inputs
+    and outputs.
     """
     needs, gives, kitchen = problem.needs, problem.gives, problem.kitchen
     chosen = sorted(set(units))
@@ -37,10 +38,10 @@ def executable_order(problem: Problem, units: Iterable[int]) -> tuple[int, ...] 
     for root in (*roots, *ready):
         stack = [(root, False)]
         while stack:
-            unit, supplied = stack.pop()
+            unit, has_inputs = stack.pop()
             if unit in order:
                 continue
-            if supplied:
+            if has_inputs:
                 order[unit] = None
             else:
                 stack.append((unit, True))

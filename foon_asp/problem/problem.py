@@ -34,7 +34,7 @@ from foon_asp.problem.container_rule import (
 from foon_asp.problem.costs import Costs, tree_costs
 from foon_asp.problem.items import Flow, UnitFlows, UsedUp, plain_flows
 from foon_asp.problem.number import Number
-from foon_asp.problem.objective import Known, Measured, Objective
+from foon_asp.problem.objective import Measured, Objective, OptionalData
 from foon_asp.problem.restriction import Restriction
 
 Names = str | ObjectNode | Iterable[str | ObjectNode]
@@ -45,7 +45,7 @@ UnitPricesNamed = Mapping[str | FunctionalUnit, Number]
 
 
 class Unpriced(NamedTuple):
-    """Units of one motion that have no price: their number, and the source of the first."""
+    """The units of one motion that have no price: their number, and the source of the first."""
 
     motion: str
     units: int
@@ -53,10 +53,10 @@ class Unpriced(NamedTuple):
 
 
 class StandIns(NamedTuple):
-    """The source of the stand-ins of a network.
+    """The table that the stand-ins of a network come from.
 
-    ``table`` has their prices. ``nearest`` says that the network has only stand-ins that a best tree by
-    dissimilarity can have, not one for every pair of nodes in the table.
+    ``nearest``: whether the network has only those stand-ins that a best tree by dissimilarity can contain.
+    Otherwise it has one for every pair of nodes in the table.
     """
 
     table: StandInTable
@@ -72,11 +72,11 @@ class Measure(Protocol):
 
     @property
     def text(self) -> str:
-        """The rules; empty for costs that are known without any."""
+        """The text of the rules; empty for costs that are not defined by rules."""
 
     @property
     def place(self) -> str:
-        """The file of the rules, or their name in messages."""
+        """The file of the rules; for rules without a file, their name in messages."""
 
     def costs(self, problem: "Problem", deadline: Deadline | None = None) -> Sequence[int | Fraction]:
         """Return the exact cost of each unit of a problem, from 0.
@@ -86,7 +86,7 @@ class Measure(Protocol):
 
 
 class Changes(NamedTuple):
-    """Changes of the data of a problem; see :meth:`foon_asp.Foon.vary`."""
+    """Changes of the data of a problem; the fields are the parameters of :meth:`Problem.vary`."""
 
     kitchen: Names | Path | None = None
     adding: Names = ()
@@ -97,25 +97,25 @@ class Changes(NamedTuple):
 
 
 class Origin(Protocol):
-    """The data from which a problem was made."""
+    """The data from which a problem was made, and from which similar problems can be made."""
 
-    def posed_anew(
+    def vary_problem(
         self, problem: "Problem", goals: Names | None, containers: str | None, changes: Changes
     ) -> "Problem":
-        """Return a variation of a problem over the changed data; see :meth:`Problem.vary`."""
+        """Return a variation of a problem with changed data; see :meth:`Problem.vary`."""
 
     @property
     def whole_network(self) -> Network:
         """The whole network; of a store, units and nodes are read at their first access."""
 
     def unpriced(self) -> Sequence[Unpriced]:
-        """Return the units of the whole network that have no price, by motion."""
+        """Return the units of the whole network that have no price, one entry for each motion."""
 
-    def posed_whole(self, problem: "Problem") -> "Problem":
-        """Return a problem over the whole network."""
+    def extend_to_whole(self, problem: "Problem") -> "Problem":
+        """Return the same problem over the whole network."""
 
-    def posed_about(self, problem: "Problem", units: Iterable[FunctionalUnit]) -> "Problem":
-        """Return a problem over a network that is relevant to its goals, and has these units."""
+    def extend_to_units(self, problem: "Problem", units: Iterable[FunctionalUnit]) -> "Problem":
+        """Return the same problem over a network that is relevant to its goals and also has these units."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -138,7 +138,7 @@ class Problem:
     a larger kitchen.
     ``restriction``: the effect of rules on the network, for this question only; each variation needs its own.
     ``items``: the model in which items are used up; ``None`` if items last.
-    ``starting``: no kitchen is named, so that all nodes are available that no unit makes out of other nodes.
+    ``starting``: whether no kitchen is named. Then the nodes that no unit makes out of others are available.
     ``stand_ins``: the source of the stand-ins of the network; ``None`` if it has none.
     ``amounts``: how many copies of a node units take and make; these count if items are used up.
 
@@ -181,11 +181,15 @@ class Problem:
     stand_ins: StandIns | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
+        """Drop repeated goals. If a motion of the network has no rate, drop all rates and set ``unrated``.
+
+        Raises :class:`UserError` without goals.
+        """
         if not self.goals:
             raise UserError("no goal is given")
         object.__setattr__(self, "goals", tuple(dict.fromkeys(self.goals)))
         if self.rates is not None and not self.rates.keys() >= set(self.network.motions):
-            object.__setattr__(self, "unrated", unrated_text(first_places(self.network), self.rates))
+            object.__setattr__(self, "unrated", unrated_text(first_sources(self.network), self.rates))
             object.__setattr__(self, "rates", None)
 
     @property
@@ -203,28 +207,32 @@ class Problem:
 
     @cached_property
     def whole(self) -> "Problem":
-        """The same problem over the whole network; if this is a store, all of it is read."""
+        """The same problem over the whole network; of a store, all of it is read.
+
+        The problem itself, if its network is whole already or if it was made by hand.
+        """
         nearest = self.stand_ins is not None and self.stand_ins.nearest
         is_part = self.network.object_numbers or nearest
-        return self.origin.posed_whole(self) if self.origin is not None and is_part else self
+        return self.origin.extend_to_whole(self) if self.origin is not None and is_part else self
 
     @property
     def plain(self) -> "Problem":
-        """The same problem without ``origin``, in a form that can be sent to another process."""
+        """The same problem without ``origin``, so that it can be pickled for another process."""
         rates = None if self.rates is None else dict(self.rates)
         own_rates, measures = dict(self.own_rates), dict(self.measures)
         return replace(self, origin=None, rates=rates, own_rates=own_rates, measures=measures)
 
     def about(self, units: Iterable[FunctionalUnit]) -> "Problem":
-        """Return this problem over a network that includes some units, as far as the data have these units.
+        """Return this problem over a network that also has the given units.
 
-        If the network is part of a store, the units are read from there.
+        If the network is part of a store, the units are read from there, unless the store does not have them.
+        Otherwise this problem itself is returned.
 
         Parameters:
             units: The units.
         """
         is_part = self.origin is not None and self.network.object_numbers
-        return self.origin.posed_about(self, units) if self.origin is not None and is_part else self
+        return self.origin.extend_to_units(self, units) if self.origin is not None and is_part else self
 
     @typed
     def vary(
@@ -261,10 +269,12 @@ class Problem:
         if self.origin is None:
             raise UserError("this problem was put together by hand: dataclasses.replace makes another of it")
         changes = Changes(kitchen, adding, without, rates, unit_prices, measures)
-        return self.origin.posed_anew(self, goals, containers, changes)
+        return self.origin.vary_problem(self, goals, containers, changes)
 
     def place(self, unit: FunctionalUnit) -> Source:
-        """Return the source of the first copy of a unit; its file is ``-`` if the network lacks the unit.
+        """Return the source of the first copy of a unit: its file and line.
+
+        If the network lacks the unit, the file is ``-``.
 
         Parameters:
             unit: The unit.
@@ -274,7 +284,7 @@ class Problem:
 
     @property
     def conditions(self) -> str:
-        """The conditions of every claim about this problem, in words: ``strict containers``."""
+        """The conditions of every claim about this problem, in words: ``strict containers, stand-ins``."""
         text = conditions(self.containers, self.network.level, self.starting)
         text += "" if self.stand_ins is None else ", stand-ins"
         return text if self.items is None else f"{text}, items used up"
@@ -286,23 +296,25 @@ class Problem:
 
     @cached_property
     def gives(self) -> tuple[tuple[int, ...], ...]:
-        """The add effects of each unit: the ids of its outputs, except inputs that it may skip."""
+        """The add effects of each unit: the ids of its outputs, except inputs that the rule skips."""
         return network_sides(self.network, self.containers, self.utensils)[1]
 
     @cached_property
     def makers(self) -> Sequence[tuple[int, ...]]:
         """The achievers of each object node: the units that make it under the container rule, in order.
 
-        A restriction removes units, and appends each required set as the achievers of one additional node.
+        A restriction removes units, and appends each of its required sets as the achievers of an additional
+        node.
         """
         makers = network_makers(self.network, self.containers, self.utensils)
         return makers if self.restriction is None else self.restriction.makers(makers)
 
     @cached_property
     def flows(self) -> Sequence[Flow]:
-        """The effects of each unit on copies of items, computed at the first access to the unit.
+        """The preconditions and effects of each unit on copies, by unit id.
 
-        If items last, no unit uses up any copies.
+        If items are used up, they are computed at the first access to the unit. If items last, no unit uses
+        up any copies, and all numbers of copies are 1.
         """
         items, network = self.items, self.network
         if items is None:
@@ -313,10 +325,11 @@ class Problem:
         plain = plain_flows(network, self.containers, self.utensils, frozenset(items.told.items()))
         if not self.amounts:
             return plain
-        counted = {unit.motion for unit in self.amounts}
+        motions_with_amounts = {unit.motion for unit in self.amounts}
 
         def flow(unit: int) -> Flow:
-            has_amounts = network.motions[unit] in counted
+            """Return the flow of a unit, with the amounts that are stated for it."""
+            has_amounts = network.motions[unit] in motions_with_amounts
             amounts = self.amounts.get(network.unit(unit)) if has_amounts else None
             if amounts is None:
                 return plain[unit]
@@ -325,7 +338,7 @@ class Problem:
         return UnitFlows(len(network), flow)
 
     def wanted(self, goal: int) -> int:
-        """Return how many copies of a goal have to be there in the end.
+        """Return how many copies of a goal have to be available in the end; 1 if items last.
 
         Parameters:
             goal: The id of the goal.
@@ -334,7 +347,10 @@ class Problem:
 
     @cached_property
     def counts_amounts(self) -> bool:
-        """Whether some unit takes or makes several copies of a node, or a goal is wanted several times."""
+        """Whether some unit takes or makes several copies of a node, or several copies of a goal are wanted.
+
+        False if items last.
+        """
         if self.items is None:
             return False
         stated = (side for sides in self.amounts.values() for side in sides)
@@ -343,7 +359,7 @@ class Problem:
         )
 
     def stock_of(self, o: int) -> int | None:
-        """Return the number of copies of a kitchen item; ``None`` where it never runs out.
+        """Return the number of copies of a kitchen item; ``None`` if it never runs out.
 
         Parameters:
             o: The id of the object node.
@@ -352,18 +368,20 @@ class Problem:
 
     @cached_property
     def kitchen_seen(self) -> frozenset[int]:
-        """The kitchen that the user's rules see: without items that a relaxation adds."""
+        """The ids of the kitchen items that the user's rules see: without items that a relaxation adds."""
         return self.kitchen if self.as_seen is None else self.kitchen & self.as_seen.kitchen
 
     @cached_property
     def endless(self) -> frozenset[int]:
-        """The ids of the kitchen items that are not consumable: where items last, all of them."""
+        """The ids of the kitchen items that never run out; if items last, these are all kitchen items."""
         if self.items is None:
             return self.kitchen
         return frozenset(o for o in self.kitchen if self.stock_of(o) is None)
 
     def copies_taken(self, plan: Iterable[int]) -> dict[int, int]:
-        """Return the least number of copies of each consumable kitchen item with which a plan runs, by id.
+        """Return the fewest copies of each consumable kitchen item with which a plan can be executed, by id.
+
+        If the item is a goal, the copies that are wanted in the end count, too.
 
         Parameters:
             plan: The ids of the units, in the order of execution.
@@ -386,7 +404,10 @@ class Problem:
 
     @property
     def targets(self) -> tuple[int, ...]:
-        """The nodes that a tree has to make: the goals, and an additional node for each required set."""
+        """The ids of what a tree has to make: the goals, and an additional node for each required set.
+
+        The additional nodes have the ids after those of the network's object nodes.
+        """
         size, restriction = len(self.network.objects), self.restriction
         return (*self.goals, *range(size, size + (len(restriction.required) if restriction else 0)))
 
@@ -405,7 +426,7 @@ class Problem:
 
     @property
     def _question(self) -> tuple[object, ...]:
-        """All properties that are compared for equality, except the network."""
+        """All properties that are compared for equality, except the network and the restriction."""
         measures = {name: measure.text for name, measure in self.measures.items()}
         rules = self.containers, self.utensils, self.items, self.starting, self.amounts
         values = self.rates, self.own_rates, self.unit_prices, measures, self.as_seen, self.stand_ins
@@ -421,16 +442,16 @@ class Problem:
             objectives: The objectives.
 
         Raises:
-            UserError: if rates, prices or the rules of a measure are missing, or if a rate is 0 and an
-                objective has no value then.
+            UserError: if the rates, the prices of some units, or the rules of a measure are missing; also if
+                a rate is 0 and an objective divides by it.
         """
         for objective in objectives:
-            if objective.row.needs is Known.MEASURES and objective not in self.measures:
+            if objective.row.needs is OptionalData.MEASURES and objective not in self.measures:
                 raise UserError(
                     f"the objective {objective} needs the rules of its measure: "
                     "give them with --measure FILE or in Python load(..., measures=FILE)"
                 )
-        by_rates = [objective for objective in objectives if objective.row.needs is Known.RATES]
+        by_rates = [objective for objective in objectives if objective.row.needs is OptionalData.RATES]
         sums = [str(objective) for objective in by_rates if not objective.row.multiplies]
         if sums and 0 in {*(self.rates or {}).values(), *self.own_rates.values()}:
             raise UserError(
@@ -442,7 +463,7 @@ class Problem:
                 or "the objective success needs the success rates of the motions: "
                 "give a rates file, with --rates FILE or in Python load(..., rates=FILE)"
             )
-        by_prices = [str(objective) for objective in objectives if objective.row.needs is Known.PRICES]
+        by_prices = [str(objective) for objective in objectives if objective.row.needs is OptionalData.PRICES]
         if by_prices and self.unit_prices is None:
             raise UserError(
                 f"the objective {by_prices[0]} needs the prices of the units: "
@@ -452,7 +473,10 @@ class Problem:
             raise UserError(_unpriced_text(self.unpriced))
 
     def has_stand_ins_for(self, objectives: Sequence[Objective]) -> bool:
-        """Return whether the stand-ins that a best tree by objectives can have are in the network.
+        """Return whether the network has all stand-ins that a best tree by these objectives can contain.
+
+        A network with only the nearest stand-ins has them if ``dissimilarity`` is the first objective. Any
+        other network has them for all objectives.
 
         Parameters:
             objectives: The objectives, the most important first.
@@ -461,7 +485,7 @@ class Problem:
         return not nearest or tuple(objectives[:1]) == (Objective.DISSIMILARITY,)
 
     def rate(self, unit: int) -> Fraction:
-        """Return the success rate of a unit: its own, or that of its motion.
+        """Return the success rate of a unit: its own, or else that of its motion.
 
         Parameters:
             unit: The id of the unit.
@@ -477,7 +501,7 @@ class Problem:
 
     @cached_property
     def prices(self) -> tuple[Fraction | None, ...]:
-        """The price of each unit; ``None`` where it has none."""
+        """The price of each unit, by unit id; ``None`` for a unit without a price."""
         return (
             (None,) * len(self.network)
             if self.unit_prices is None
@@ -499,7 +523,7 @@ class Problem:
         return price
 
     def dissimilarity(self, unit: int) -> Fraction:
-        """Return the dissimilarity of a stand-in, by the table; 0 of other units.
+        """Return the dissimilarity of a unit: by the table if it is a stand-in, 0 for other units.
 
         Parameters:
             unit: The id of the unit.
@@ -531,17 +555,21 @@ class Problem:
 
     @cached_property
     def _known_costs(self) -> dict[str, Sequence[int | Fraction]]:
+        """The costs of the units by measure, which :meth:`apply_measures` fills in."""
         return {}  # by measure
 
     def _costs_by(self, name: str) -> Sequence[int | Fraction]:
-        """Return the cost of each unit by a measure, computed at the first access."""
+        """Return the cost of each unit by a measure, computed at the first access.
+
+        Raises ``ValueError`` for an unknown measure.
+        """
         if name not in self.measures:
             raise ValueError(f"no measure {name} is known")
         self.apply_measures()
         return self._known_costs[name]
 
     def apply_measures(self, deadline: Deadline | None = None) -> None:
-        """Compute the costs of all units by the measures, unless they are known.
+        """Compute and keep the costs of all units by each measure; skip measures that are computed.
 
         Parameters:
             deadline: The limits.
@@ -555,7 +583,7 @@ class Problem:
 
     @cached_property
     def unpriced(self) -> Sequence[Unpriced]:
-        """The units that have no price, by motion; for a store, those of its whole network."""
+        """The units that have no price, one entry for each motion; for a store, of its whole network."""
         network = self.network
         lacking = (unit for unit, price in enumerate(self.prices) if price is None)
         in_network = count_unpriced((network.motions[unit], network.sources[unit]) for unit in lacking)
@@ -563,7 +591,7 @@ class Problem:
         return (self.origin.unpriced() if self.origin is not None and is_part else ()) or in_network
 
     def different_rates(self, units: Iterable[int]) -> set[Fraction]:
-        """Return the set of success rates of some units.
+        """Return the distinct success rates of some units.
 
         Parameters:
             units: The ids of the units.
@@ -573,11 +601,13 @@ class Problem:
         """
         own, motions = self.own_rates, self.network.motions
         units = list(units)
-        first = {motions[unit]: unit for unit in units if unit not in own}
-        return {self.rate(unit) for unit in (*first.values(), *(unit for unit in units if unit in own))}
+        unit_of_motion = {motions[unit]: unit for unit in units if unit not in own}
+        return {
+            self.rate(unit) for unit in (*unit_of_motion.values(), *(unit for unit in units if unit in own))
+        }
 
     def tree(self, units: Iterable[int]) -> TaskTree:
-        """Return the tree of units.
+        """Return the task tree that consists of the given units.
 
         Parameters:
             units: The ids of the units, in the order of the tree.
@@ -585,9 +615,9 @@ class Problem:
         return TaskTree(tuple(self.network.unit(unit) for unit in units))
 
     def costs(self, units: Iterable[int]) -> Costs:
-        """Return the costs of a tree or a plan.
+        """Return the costs of a tree or, where items are used up, of a plan.
 
-        Each unit of a tree counts once. Where items are used up, each execution counts, and each copy of a
+        Each unit of a tree counts once. Each execution of a plan counts, and so does each copy of a
         consumable kitchen item that the plan requires.
 
         Parameters:
@@ -598,16 +628,16 @@ class Problem:
         items = len({o for unit in counts for o in self.needs[unit] if o in self.endless})
         if self.items is not None:
             items += sum(self.copies_taken(plan).values())
-        available = {Known.MEASURES} | ({Known.RATES} if self.rates is not None else set())
+        available = {OptionalData.MEASURES} | ({OptionalData.RATES} if self.rates is not None else set())
         if self.unit_prices is not None and all(self.prices[unit] is not None for unit in counts):
-            available.add(Known.PRICES)
+            available.add(OptionalData.PRICES)
         if self.stand_ins is not None:
-            available.add(Known.STAND_INS)
+            available.add(OptionalData.STAND_INS)
         user_objectives = map(Objective.of_measure, self.measures)
         return tree_costs({self.measured(u): n for u, n in counts.items()}, items, available, user_objectives)
 
     def measured(self, unit: int) -> Measured:
-        """Return a unit with the properties by which objectives measure it.
+        """Return a unit with the properties that objectives read.
 
         Parameters:
             unit: The id of the unit.
@@ -615,7 +645,7 @@ class Problem:
         return _MeasuredUnit(self, unit)
 
     def figure(self, objective: Objective, unit: int) -> int | Fraction:
-        """Return the cost of one unit by an objective, or its factor where the objective multiplies.
+        """Return the cost of one unit by an objective; for an objective that multiplies, its factor.
 
         Parameters:
             objective: The objective.
@@ -627,7 +657,7 @@ class Problem:
         return objective.row.unit(_MeasuredUnit(self, unit))
 
     def figures(self, objective: Objective, units: Iterable[int]) -> Iterable[int | Fraction]:
-        """Return the cost of each of some units, as :meth:`figure` does.
+        """Return the cost of each of some units, in their order; see :meth:`figure`.
 
         Parameters:
             objective: The objective.
@@ -636,13 +666,13 @@ class Problem:
         Raises:
             ValueError: if a rate, price or measure is missing that the objective needs.
         """
-        if objective.row.needs is Known.MEASURES:
+        if objective.row.needs is OptionalData.MEASURES:
             return map(self._costs_by(objective).__getitem__, units)
         return (self.figure(objective, unit) for unit in units)
 
 
 class _MeasuredUnit(NamedTuple):
-    """A unit of a problem, with the properties by which objectives measure it."""
+    """A unit of a problem, given by id, with the properties that objectives read."""
 
     problem: Problem
     unit: int
@@ -665,16 +695,19 @@ class _MeasuredUnit(NamedTuple):
 
     @property
     def dissimilarity(self) -> Fraction:
-        """The dissimilarity of a stand-in."""
+        """The dissimilarity of the unit if it is a stand-in; 0 for other units."""
         return self.problem.dissimilarity(self.unit)
 
     def measure(self, name: str) -> int | Fraction:
-        """Return the cost by a user measure."""
+        """Return the cost by the user measure of this name."""
         return self.problem.measure(name, self.unit)
 
 
 def for_each_goal(problem: Problem) -> list[Problem]:
-    """Return one problem for each single goal, in order; prices that are already computed are shared."""
+    """Return one problem for each goal, in the order of the goals.
+
+    Each problem has only this goal. Prices that were already computed are shared with the new problems.
+    """
     shared = {name: value for name, value in vars(problem).items() if name in {"prices", "unpriced"}}
     problems = [replace(problem, goals=(goal,)) for goal in problem.goals]
     for single in problems:
@@ -683,7 +716,10 @@ def for_each_goal(problem: Problem) -> list[Problem]:
 
 
 def count_unpriced(units: Iterable[tuple[str, Sequence[Source]]]) -> list[Unpriced]:
-    """Count units without a price by motion; ``units`` has the motion and the sources of each."""
+    """Return the units without a price, counted by motion, each with the source of the first unit.
+
+    ``units`` has the motion and the sources of each unit without a price.
+    """
     by_motion: dict[str, Unpriced] = {}
     for motion, sources in units:
         counted = by_motion.get(motion) or Unpriced(motion, 0, sources[0] if sources else Source("-", 0))
@@ -692,7 +728,7 @@ def count_unpriced(units: Iterable[tuple[str, Sequence[Source]]]) -> list[Unpric
 
 
 def _unpriced_text(lacking: Sequence[Unpriced], max_lines: int = 10) -> str:
-    """Return the message that units have no price, with advice."""
+    """Return the error message that units have no price; it lists at most ``max_lines`` motions."""
     lines = []
     for motion, units, source in lacking[:max_lines]:
         others = "" if units == 1 else f", nor have {units - 1} more with this motion"
@@ -706,8 +742,11 @@ def _unpriced_text(lacking: Sequence[Unpriced], max_lines: int = 10) -> str:
     return "\n".join(lines)
 
 
-def first_places(network: Network) -> Iterable[tuple[str, Source]]:
-    """Return the motion of each unit, and the source of its first copy."""
+def first_sources(network: Network) -> Iterable[tuple[str, Source]]:
+    """Yield the motion of each unit, and the source of its first copy.
+
+    For a unit without sources, the file of the source is ``-``.
+    """
     for motion, copies in zip(network.motions, network.sources, strict=True):
         yield motion, copies[0] if copies else Source("-", 0)
 
@@ -715,10 +754,10 @@ def first_places(network: Network) -> Iterable[tuple[str, Source]]:
 def unrated_text(
     motions: Iterable[tuple[str, Source]], rates: Mapping[str, Fraction], max_lines: int = 10
 ) -> str:
-    """Return the message that lists motions without a success rate; empty if every motion has one.
+    """Return the error message that lists motions without a success rate; empty if every motion has one.
 
-    It lists at most ``max_lines`` motions, each with its source. ``motions`` may have a motion several times;
-    the first source is shown.
+    ``motions`` are pairs of a motion and the source of a unit. The message shows the first source of each
+    motion, and lists at most ``max_lines`` motions.
     """
     missing: dict[str, Source] = {}
     for motion, source in motions:
@@ -737,7 +776,7 @@ def unrated_text(
 
 
 def unrated_remarks(motions: Iterable[tuple[str, Source]], rates: Mapping[str, Fraction]) -> list[str]:
-    """Return a list with the warning that motions have no success rate; empty if every motion has one."""
+    """Return a list with one warning, which names motions without a success rate; empty if all have one."""
     lacking = [
         repr(motion) for motion in dict.fromkeys(motion for motion, _ in motions) if motion not in rates
     ]

@@ -1,4 +1,4 @@
-"""Progress of a question, which callers can receive."""
+"""Reports on the progress of a question, which callers can receive."""
 
 from collections.abc import Callable
 from fractions import Fraction
@@ -9,11 +9,12 @@ from foon_asp.problem.objective import Objective
 
 
 class Progress(NamedTuple):
-    """The progress of a question: the ``costs`` of the incumbent, and the proved ``bounds`` by objective.
+    """The progress of a question.
 
-    ``costs`` are ``None`` before the first tree. ``done`` of ``total`` are answers for a question with
-    several answers, bytes while a network is read, and units while it is built. ``total`` is 0 if nothing is
-    counted.
+    ``costs``: the costs of the incumbent; ``None`` before the first tree.
+    ``bounds``: the proved bound by each objective that has one.
+    ``done``, ``total``: how much is done, out of how much. They count answers for a question with several
+    answers, bytes while a network is read, and units while it is built. ``total`` is 0 if nothing is counted.
 
     Example:
         >>> reports = []

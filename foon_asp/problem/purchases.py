@@ -9,17 +9,17 @@ from typing import Self
 
 from foon_asp.deadline import Deadline
 from foon_asp.network import Network, Source
-from foon_asp.problem.objective import Known, Objective
+from foon_asp.problem.objective import Objective, OptionalData
 from foon_asp.problem.problem import Problem
 from foon_asp.problem.restriction import Restriction
 
 _BUY = "buy"
-_PRICE, _ITEMS, _SECOND = "_price", "_items", "_second_choices"
+_PRICE, _ITEMS, _SECOND_CHOICES = "_price", "_items", "_second_choices"
 
 
 @dataclass(frozen=True)
 class _FixedCosts:
-    """A measure whose costs are known, by unit."""
+    """A user measure whose costs are known in advance, by unit id."""
 
     name: str
     unit_costs: Sequence[int | Fraction]
@@ -27,17 +27,17 @@ class _FixedCosts:
     place: str = ""
 
     def costs(self, problem: Problem, deadline: Deadline | None = None) -> Sequence[int | Fraction]:
-        """Return the cost of each unit."""
+        """Return the cost of each unit, whatever the problem is."""
         del problem, deadline
         return self.unit_costs
 
 
 class Purchases:
-    """A question about what to buy, posed as a question about a tree or plan.
+    """A question about what to buy, as a problem with an additional unit for each ware.
 
-    ``problem`` has an additional unit for each ware, which makes a copy of the ware out of nothing. The best
-    tree or plan under ``objectives`` has the cheapest purchases; ties are broken by fewer purchases, by fewer
-    second choices, and by the objectives of the question.
+    A *ware* is an object node that can be bought. Its unit has no inputs, and makes a copy of the ware. The
+    best tree or plan of ``problem`` by ``objectives`` has the cheapest purchases. Ties are broken by fewer
+    purchases, then by fewer purchases of wares to avoid, then by the objectives of the question.
     """
 
     def __init__(
@@ -49,31 +49,31 @@ class Purchases:
     ) -> None:
         """Add a unit to a problem for each ware.
 
-        ``wares`` are the prices of object nodes that can be bought, by id. ``second_choices`` are the wares
-        to avoid.
+        ``wares`` maps the ids of object nodes that can be bought to their prices. ``second_choices`` are the
+        ids of wares to avoid. ``objectives`` are those of the question.
         """
         self._wares = tuple(wares)
-        self._first = len(problem.network)
-        self._purchases = range(self._first, self._first + len(wares))
-        nothing = [0] * self._first
-        costs: dict[str, list[int | Fraction]] = {_PRICE: [*nothing, *wares.values()]}
+        self._first_purchase = len(problem.network)
+        self._purchases = range(self._first_purchase, self._first_purchase + len(wares))
+        no_costs = [0] * self._first_purchase
+        costs: dict[str, list[int | Fraction]] = {_PRICE: [*no_costs, *wares.values()]}
         if set(wares.values()) != {Fraction(1)}:
-            costs[_ITEMS] = [*nothing, *(1 for _ in wares)]
+            costs[_ITEMS] = [*no_costs, *(1 for _ in wares)]
         if second_choices:
-            costs[_SECOND] = [*nothing, *(int(o in second_choices) for o in wares)]
-        by = [*map(Objective.of_measure, costs)]
+            costs[_SECOND_CHOICES] = [*no_costs, *(int(o in second_choices) for o in wares)]
+        search_objectives = [*map(Objective.of_measure, costs)]
         for objective in objectives:
-            if objective.row.needs in {Known.PRICES, Known.MEASURES}:
+            if objective.row.needs in {OptionalData.PRICES, OptionalData.MEASURES}:
                 name = f"_by_{objective}"
-                figures = problem.figures(objective, range(self._first))
+                figures = problem.figures(objective, range(self._first_purchase))
                 costs[name] = [*figures, *(0 for _ in wares)]
                 objective = Objective.of_measure(name)  # noqa: PLW2901
-            by.append(objective)
-        self.objectives = tuple(by)
+            search_objectives.append(objective)
+        self.objectives = tuple(search_objectives)
         rates = None if problem.rates is None else {_BUY: Fraction(1), **problem.rates}
         self.problem = replace(
             problem,
-            network=_with_sources(problem.network, self._wares),
+            network=_add_purchases(problem.network, self._wares),
             rates=rates,
             own_rates=dict(problem.own_rates) | dict.fromkeys(self._purchases, Fraction(1)),
             unit_prices=None,
@@ -82,8 +82,12 @@ class Purchases:
         )
 
     def without(self, wares: Collection[int]) -> Self:
-        """Return the question without some wares, given by object node id; items have to last."""
-        removed = {unit for unit in self._purchases if self._wares[unit - self._first] in wares}
+        """Return a copy in which some wares, given by object node id, cannot be bought.
+
+        If none of them is a ware of the question, the question itself is returned. The copy replaces any
+        restriction of the problem, so it is for problems whose items last.
+        """
+        removed = {unit for unit in self._purchases if self._wares[unit - self._first_purchase] in wares}
         if not removed:
             return self
         fewer = copy(self)
@@ -95,12 +99,14 @@ class Purchases:
 
         The purchases are numbers of copies by object node id, in ascending order of id.
         """
-        bought = Counter(self._wares[unit - self._first] for unit in units if unit >= self._first)
-        return dict(sorted(bought.items())), tuple(unit for unit in units if unit < self._first)
+        bought = Counter(
+            self._wares[unit - self._first_purchase] for unit in units if unit >= self._first_purchase
+        )
+        return dict(sorted(bought.items())), tuple(unit for unit in units if unit < self._first_purchase)
 
 
-def _with_sources(network: Network, wares: Sequence[int]) -> Network:
-    """Return a network with a unit for each ware that makes it out of nothing, after all others."""
+def _add_purchases(network: Network, wares: Sequence[int]) -> Network:
+    """Return a network with one more unit for each ware, at the end, which makes the ware out of nothing."""
     count, numbers = len(wares), network.unit_numbers
     if numbers:
         numbers += tuple(range(numbers[-1] + 1, numbers[-1] + 1 + count))

@@ -12,12 +12,14 @@ from foon_asp.problem.restriction import Restriction
 
 
 class Reached(NamedTuple):
-    """The forward closure of the kitchen.
+    """The forward closure of the kitchen: all that can be made.
 
-    ``units``: all reachable units, in an executable order, without units that a restriction removes.
-    ``makers``: the first achiever of each object in this order, so that the achievers have no cycle. Kitchen
-    items have no achiever. A required set of a restriction has one, like an object (:attr:`Problem.targets`).
-    ``available``: a 1 for every reachable object, by id.
+    ``units``: the ids of all reachable units in an executable order, without units that a restriction
+    removes.
+    ``makers``: the first unit in this order that makes each object, by object id, so that these units have no
+    cycle. Kitchen items have none. A required set of a restriction has one, like an object
+    (:attr:`Problem.targets`).
+    ``available``: for each object of the network, 1 if it is reachable, else 0.
     """
 
     units: tuple[int, ...]
@@ -26,7 +28,10 @@ class Reached(NamedTuple):
 
 
 def reach(problem: Problem) -> Reached:
-    """Return the objects and units reachable from the kitchen (Dowling & Gallier 1984), in linear time."""
+    """Return the objects and units reachable from the kitchen, in linear time (Dowling & Gallier 1984).
+
+    Units that the problem's restriction removes are left out.
+    """
     return _closure(problem.network, problem.needs, problem.gives, problem.kitchen, problem.restriction)
 
 
@@ -34,24 +39,27 @@ def reach(problem: Problem) -> Reached:
 def unrestricted_reach(
     network: Network, rule: ContainerRule, utensils: frozenset[str], kitchen: frozenset[int]
 ) -> Reached:
-    """Return what :func:`reach` returns for a problem without a restriction; the result is shared."""
+    """Return what :func:`reach` returns for a problem without a restriction.
+
+    The last two results are cached and shared: callers must not change them.
+    """
     return _closure(network, *network_sides(network, rule, utensils), kitchen, None)
 
 
 def _closure(
     network: Network, needs: Ids, gives: Ids, kitchen: frozenset[int], restriction: Restriction | None
 ) -> Reached:
-    """Return the forward closure of a kitchen under preconditions and add effects of units."""
+    """Return the forward closure of a kitchen; ``needs`` and ``gives`` are preconditions and add effects."""
     removed = restriction.removed if restriction else None
     available = bytearray(len(network.objects))
     missing = [len(needed) for needed in needs]
     consumers: Sequence[Sequence[int]] = network.consumers
     if needs is not network.inputs:  # inputs that are skipped are not waited for
-        unskipped: list[list[int]] = [[] for _ in network.objects]
+        needed_by: list[list[int]] = [[] for _ in network.objects]
         for unit, needed in enumerate(needs):
             for o in needed:
-                unskipped[o].append(unit)
-        consumers = unskipped
+                needed_by[o].append(unit)
+        consumers = needed_by
     order: list[int] = []
     makers: dict[int, int] = {}
     queue = deque(sorted(kitchen))
@@ -83,27 +91,30 @@ def _closure(
     return Reached(tuple(order), makers, available)
 
 
-def relevant(problem: Problem, reached: Reached) -> tuple[int, ...]:
+def relevant_units(problem: Problem, reached: Reached) -> tuple[int, ...]:
     """Return the reached units that some irredundant tree can contain, in order of id.
 
-    They are found backward from the goals through all reached achievers, down to the kitchen.
+    They are found backward from the goals and required sets through all reached achievers, down to the
+    kitchen.
     """
-    units, _ = backwards(
+    units, _ = search_backward(
         problem.targets, problem.makers, problem.needs, problem.kitchen, frozenset(reached.units)
     )
     return tuple(sorted(units))
 
 
-def backwards(
+def search_backward(
     goals: Iterable[int],
     makers: Sequence[Iterable[int]],
     needs: Sequence[Iterable[int]],
     start: Container[int],
     allowed: Container[int] | None = None,
 ) -> tuple[set[int], set[int]]:
-    """Search backward from the goals through all (allowed) achievers, down to the start.
+    """Search backward from the goals through achievers, down to the objects in ``start``.
 
-    Returns the achievers, and the objects that are relevant to the goals and not in the start.
+    Returns two sets of ids: the achievers found, and the objects found, which include the goals. Objects in
+    ``start`` are left out. ``makers`` and ``needs`` have the achievers of each object and the preconditions
+    of each unit. With ``allowed``, only these units are achievers.
     """
     objects = {o for o in goals if o not in start}
     stack = list(objects)
@@ -119,10 +130,11 @@ def backwards(
     return achievers, objects
 
 
-def relevant_to_plans(problem: Problem, reached: Reached) -> set[int]:
+def units_relevant_to_plans(problem: Problem, reached: Reached) -> set[int]:
     """Return the reached units that some irredundant plan can contain, where items are used up.
 
-    They are found backward from the goals through achievers, down to items that are not consumable.
+    They are found backward from the goals through achievers, down to items that are not consumable. A unit
+    that puts out no more copies of a node than it takes is no achiever of the node.
     """
     flows, endless, allowed = problem.flows, problem.endless, frozenset(reached.units)
     makers, needs = problem.makers, problem.needs
@@ -133,39 +145,40 @@ def relevant_to_plans(problem: Problem, reached: Reached) -> set[int]:
         for unit in makers[o]:
             if unit in allowed and unit not in achievers and o in flows[unit].adds:
                 achievers.add(unit)
-                lacking = [
+                newly_needed = [
                     needed for needed in needs[unit] if needed not in objects and needed not in endless
                 ]
-                objects.update(lacking)
-                stack += lacking
+                objects.update(newly_needed)
+                stack += newly_needed
     return achievers
 
 
 def kitchen_needed(problem: Problem) -> list[int]:
-    """Return the kitchen items that a tree for the goals can need, including goals, in order of id."""
-    units, _ = backwards(problem.goals, problem.makers, problem.needs, problem.kitchen)
+    """Return the ascending ids of kitchen items that a tree for the goals can need, or that are goals."""
+    units, _ = search_backward(problem.goals, problem.makers, problem.needs, problem.kitchen)
     needed = {o for unit in units for o in problem.needs[unit]}.union(problem.goals)
     return sorted(needed & problem.kitchen)
 
 
 def first_tree(problem: Problem, reached: Reached) -> tuple[int, ...] | None:
-    """Return a feasible tree, in an executable order, by the first achievers; ``None`` where none exists.
+    """Return a feasible tree, in an executable order; ``None`` if there is none.
 
-    Its costs may be far from optimal: it is the first incumbent of a search.
+    It has the first achiever (``reached.makers``) of each node that it needs. Its costs may be far from
+    optimal: it is the first incumbent of a search.
     """
-    chosen = follow(problem.targets, reached.makers, problem.needs, problem.kitchen)
+    chosen = follow_achievers(problem.targets, reached.makers, problem.needs, problem.kitchen)
     return None if chosen is None else tuple(unit for unit in reached.units if unit in chosen)
 
 
-def follow(
+def follow_achievers(
     objects: Iterable[int],
     maker: Mapping[int, int],
     needs: Sequence[Iterable[int]],
     start: Container[int],
 ) -> set[int] | None:
-    """Return the units that make objects out of ``start``, with one achiever, ``maker``, for each object.
+    """Return the units that make objects out of ``start``; ``maker`` has one achiever for each object.
 
-    ``None`` if an object has no achiever.
+    ``None`` if an object that is needed has no achiever.
     """
     units: set[int] = set()
     stack = list(objects)

@@ -8,12 +8,12 @@ from typing import NamedTuple, overload
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Restriction:
-    """Units that no tree may contain, and disjunctive action landmarks that rules add.
+    """The units that rules exclude, and the sets of units that rules require (disjunctive action landmarks).
 
-    ``removed`` takes the id of a unit and returns ``True`` if no tree may contain the unit. It is called at
-    most once for each unit, when the unit is accessed. A tree has to contain and execute a unit of each set
-    in ``required``; the unit need not lead to a goal. So a required set is like an additional goal whose
-    achievers are its units.
+    ``removed`` is a function that takes the id of a unit and returns ``True`` if no tree may contain the
+    unit. It is called at most once for each unit, since its results are cached.
+    ``required``: a tree has to contain and execute a unit of each of these sets; the unit need not lead to a
+    goal. So a required set is like an additional goal whose achievers are its units.
     """
 
     removed: Callable[[int], bool]
@@ -23,25 +23,31 @@ class Restriction:
         object.__setattr__(self, "removed", cache(self.removed))
 
     def makers(self, makers: Sequence[tuple[int, ...]]) -> Sequence[tuple[int, ...]]:
-        """Return the achievers of each object node, then the required sets, all without removed units."""
-        return Left((*makers, *(tuple(sorted(units)) for units in self.required)), self.removed)
+        """Return the achievers of each object node, then the required sets, all without removed units.
+
+        ``makers`` are the achievers without the restriction. Units of a required set are in ascending order.
+        """
+        return FilteredSets((*makers, *(tuple(sorted(units)) for units in self.required)), self.removed)
 
 
 class Contradiction(NamedTuple):
-    """The proof, before any search, that no tree satisfies the rules."""
+    """The result that no tree satisfies the rules, which is known before any search."""
 
 
-class Left(Sequence[tuple[int, ...]]):
-    """The unit sets of a restriction without removed units; a set is filtered at its first access."""
+class FilteredSets(Sequence[tuple[int, ...]]):
+    """A sequence of sets of units without the units that ``removed`` excludes.
+
+    A set is filtered at the first access to it, and then kept.
+    """
 
     def __init__(self, sets: Sequence[tuple[int, ...]], removed: Callable[[int], bool]) -> None:
         self._sets, self._removed = sets, removed
         self._filtered: dict[int, tuple[int, ...]] = {}
 
-    def instead(self, others: Mapping[int, tuple[int, ...]]) -> "Left":
-        """Return a copy with the sets in ``others`` at their positions; these sets are not filtered."""
-        copy = Left(self._sets, self._removed)
-        copy._filtered.update(others)
+    def with_sets(self, replacements: Mapping[int, tuple[int, ...]]) -> "FilteredSets":
+        """Return a copy with the sets in ``replacements`` at their positions; these sets are not filtered."""
+        copy = FilteredSets(self._sets, self._removed)
+        copy._filtered.update(replacements)
         return copy
 
     def __len__(self) -> int:
@@ -52,8 +58,9 @@ class Left(Sequence[tuple[int, ...]]):
     @overload
     def __getitem__(self, index: slice) -> Sequence[tuple[int, ...]]: ...
     def __getitem__(self, index: int | slice) -> tuple[int, ...] | Sequence[tuple[int, ...]]:
+        """Return a set as a tuple without removed units; for a slice, return a filtered sequence."""
         if isinstance(index, slice):
-            return Left(self._sets[index], self._removed)
+            return FilteredSets(self._sets[index], self._removed)
         units = self._filtered.get(index)
         if units is None:
             removed = self._removed

@@ -1,14 +1,16 @@
-"""Traits of units that rules require: a name as motion, input or output."""
+"""Traits of units that rules require: a name in a role, such as the motion or an input."""
 
 from collections.abc import Sequence
 from enum import Enum, auto
 from typing import NamedTuple
 
 
-class Having(Enum):
-    """The role of a name in a unit: its motion, or a label or ingredient of one of its inputs or outputs.
+class Role(Enum):
+    """The role that a name can have in a unit.
 
-    ``MADE`` is an input that is not in the kitchen.
+    ``MOTION``: the name is its motion.
+    ``INPUT``, ``OUTPUT``: the name is the label or an ingredient of one of its inputs, or outputs.
+    ``MADE``: as ``INPUT``, for an input that is not in the kitchen.
     """
 
     MOTION = auto()
@@ -18,16 +20,17 @@ class Having(Enum):
 
 
 class Trait(NamedTuple):
-    """The property of a unit to have a name in a role."""
+    """A property of a unit: the name ``word`` has the role ``role`` in it."""
 
-    having: Having
+    role: Role
     word: str
 
 
-class Wanted(NamedTuple):
-    """A unit that rules require, described in disjunctive normal form: it has all traits of at least one row.
+class RequiredUnit(NamedTuple):
+    """The description of a unit that rules require, in disjunctive normal form.
 
-    ``always`` says that the rules require the unit whatever the network is.
+    The unit has all traits of at least one of ``rows``. ``always`` says that the rules require such a unit in
+    every network; otherwise only in some networks.
     """
 
     rows: Sequence[Sequence[Trait]]

@@ -301,7 +301,7 @@ def check(
     if rule_check is not None:
         broken = None
         if checked.executes and not checked.not_in_network:
-            broken = tuple(rule.listed for rule in rule_check.broken(listed.problem, listed.ids))
+            broken = tuple(rule.listed for rule in rule_check.broken_rules(listed.problem, listed.ids))
         checked = structs.replace(checked, breaks=broken).knowing(**checked.__dict__)
     in_order = checked.in_order
     if certificate is not None and in_order is not None and checked.ending is Ending.DONE:

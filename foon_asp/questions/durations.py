@@ -5,7 +5,7 @@ from os import PathLike
 from pathlib import Path
 
 from foon_asp.errors import UserError
-from foon_asp.problem.number import Number, exact
+from foon_asp.problem.number import Number, exact_number
 from foon_asp.text.tables import DURATIONS, Duration
 
 Durations = str | PathLike[str] | Mapping[str, Number | Duration]
@@ -28,7 +28,7 @@ def duration_of(stated: Number | Duration, motion: str) -> Duration:
     Raises :class:`UserError` if it is not above 0.
     """
     number, passive = stated if isinstance(stated, Duration) else (stated, False)
-    seconds = exact(number, f"the duration of {motion!r}")
+    seconds = exact_number(number, f"the duration of {motion!r}")
     if seconds <= 0:
         raise UserError(f"found the duration {stated} of {motion!r}, expected one above 0")
     return Duration(seconds, passive)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
 from foon_asp.asp.postconditions import Postconditions
-from foon_asp.problem import Costs, Objective, Problem, levels, reach, relevant
+from foon_asp.problem import Costs, Objective, Problem, levels, reach, relevant_units
 from foon_asp.problem.root import Root
 
 _SUCCESS = (Objective.SUCCESS,)
@@ -53,7 +53,7 @@ class Envelope:
         reached = reach(problem)
         # A unit that the goals cannot need makes no tree better, but user rules may require it.
         is_plain = not settings.constraints and settings.replaced is None
-        self._units = relevant(problem, reached) if is_plain else reached.units
+        self._units = relevant_units(problem, reached) if is_plain else reached.units
         self._unit_counts = self._count_by_motion(self._units)
         self.motions = sorted(self._unit_counts)
         try:
@@ -106,7 +106,7 @@ class Envelope:
             if rival is None:
                 return end._replace(proved=proved)
             higher, lower = (rival, tree) if rival.power > tree.power else (tree, rival)
-            at = Root.taken(higher.power - lower.power, lower.factor / higher.factor)
+            at = Root.simplify(higher.power - lower.power, lower.factor / higher.factor)
             end = IntervalEnd(at, rival.units)
             if at == rate or (degree and proved and higher.power - lower.power == 1):
                 return end

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from foon_asp.asp import Settings
-from foon_asp.asp.bare_program import printed_program
+from foon_asp.asp.bare_program import printable_program
 from foon_asp.problem import Objective, Problem
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.values_of import head_of
@@ -30,6 +30,6 @@ def facts_of(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, soft: Mapping[Constraint, int]
 ) -> Facts:
     """Return the facts and rules that clingo gets; ``soft`` maps soft constraints to their weights."""
-    program = printed_program(problem, objectives, settings, soft).text
+    program = printable_program(problem, objectives, settings, soft).text
     lines = program.rstrip("\n").split("\n")  # a name may hold what other letters end a line
     return Facts(**head_of(problem, objectives), facts=tuple(lines))

@@ -27,7 +27,7 @@ class Flip(NamedTuple):
         if self.at.rational == self.rate:
             return self.rate
         while True:
-            rounded = self.at.below(digits) if self.above else self.at.above(digits)
+            rounded = self.at.round_down(digits) if self.above else self.at.round_up(digits)
             if rounded >= self.rate if self.above else rounded <= self.rate:
                 return rounded
             digits += 1
@@ -41,7 +41,7 @@ class Flip(NamedTuple):
             if low == high == 0:
                 return "0 %"
             if low > 0:
-                shown = {Root(1, 100 * end).below(3) for end in (low, high)}
+                shown = {Root(1, 100 * end).round_down(3) for end in (low, high)}
                 if len(shown) == 1:
                     return f"{'+' if self.above else '-'}{decimal_text(shown.pop())} %"
             digits *= 2
@@ -52,9 +52,9 @@ class Flip(NamedTuple):
         The quotient of ``at`` and ``rate`` is enclosed in ``digits`` significant digits. If it is rational,
         both bounds are equal to the change.
         """
-        factor = self.at.over(self.rate)
+        factor = self.at.divide_by(self.rate)
         exact = factor.rational
-        low, high = (factor.below(digits), factor.above(digits)) if exact is None else (exact, exact)
+        low, high = (factor.round_down(digits), factor.round_up(digits)) if exact is None else (exact, exact)
         return (low - 1, high - 1) if self.above else (1 - high, 1 - low)
 
     def __lt__(self, other: object) -> bool:
@@ -66,7 +66,7 @@ class Flip(NamedTuple):
         another, are linearly independent over the rational numbers (Besicovitch, 1940).
         """
         assert isinstance(other, Flip)
-        if self.at.over(self.rate) == other.at.over(other.rate):
+        if self.at.divide_by(self.rate) == other.at.divide_by(other.rate):
             return False  # on one side, or both at the rate itself
         digits = 4
         while True:

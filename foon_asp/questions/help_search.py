@@ -6,7 +6,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
-from foon_asp.asp.assisted import assisted, require_local, sees_who_does_it
+from foon_asp.asp.assisted import assistance_bounds, read_who_does_units, require_local
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.ranking import Ranked
 from foon_asp.problem import Objective, Problem, reach
@@ -141,7 +141,7 @@ class CountedHelp:
         """Return the best tree with help for at most ``max_helped`` units."""
         number = self._twins.network.unit_number
         twins = {number(twin): number(unit) for twin, unit in self._originals.items()}
-        settings = self._settings._replace(bounded=assisted(twins, max_helped))
+        settings = self._settings._replace(bounded=assistance_bounds(twins, max_helped))
         outcome = solve(self._twins, _SUCCESS, settings, self._reporter)
         self._reporter = Reporter()  # later searches have other objectives or bounds
         if outcome.units is None:
@@ -193,7 +193,7 @@ def helped_trees(
         if (rate := Fraction(1) if person is None else person.get(motion, Fraction(0))) > robot
     }
     must_count = settings.replaced is not None
-    if not must_count and sees_who_does_it(settings.constraints):
+    if not must_count and read_who_does_units(settings.constraints):
         require_local(settings)
         must_count = True
     search = (CountedHelp if must_count else PricedHelp)(problem, better, settings, reporter)
@@ -253,5 +253,5 @@ def _require_sound(max_helped: int, row: Outcome, before: Outcome, settings: Set
             f"the tree {row.units} with help for {max_helped} units at most has help for {sorted(helped)}"
         ),
     )
-    holds.outcome(row)
-    holds.no_better(before, row, f"with help for {max_helped} units")
+    holds.require_true_claims(row)
+    holds.require_no_better(before, row, f"with help for {max_helped} units")

@@ -8,7 +8,7 @@ from typing import Unpack
 from foon_asp.dataset.item_options import items_of
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
-from foon_asp.planning.name_map import map_of, read_name_map
+from foon_asp.planning.name_map import name_map_of, read_name_map
 from foon_asp.planning.plan_file import PlanStep, read_plan_text
 from foon_asp.planning.planning_task import planning_task
 from foon_asp.problem import ITEMS, Problem
@@ -141,7 +141,7 @@ def read_plan(
     """
     if names is None:
         problem = whole(problem)
-        named = map_of(planning_task(problem, whole=True))
+        named = name_map_of(planning_task(problem, whole=True))
     else:
         named = read_name_map(Path(names))
     with start_deadline(options).watched("reading"):

@@ -215,7 +215,7 @@ def regret(
         regrets.append(_regret(best, remaining, **parts))
         # a missing item is not taken from the kitchen, so a tree that makes it costs less by ``kitchen``
         if remaining and unrestricted and ("item" not in parts or Objective.KITCHEN not in chosen):
-            holds.no_better(remaining, best, f"without {regrets[-1]}")
+            holds.require_no_better(remaining, best, f"without {regrets[-1]}")
         return regrets[-1]
 
     for unit in sorted({*best.units, *(unit for unit in asked_units if unit is not None)}):

@@ -15,7 +15,7 @@ from foon_asp.escapes import escaped
 from foon_asp.network import ALL_ONE, FunctionalUnit, counted
 from foon_asp.pictures.gantt import Gantt, time_text
 from foon_asp.planning.schedule_task import schedule_task
-from foon_asp.planning.scheduling import BestSchedule, shortest, timed_steps
+from foon_asp.planning.scheduling import BestSchedule, shortest_schedule, timed_steps
 from foon_asp.problem import Number, Problem
 from foon_asp.proof.replay import Shortage, replay_for, replayable, waits
 from foon_asp.proof.simulation import Verdict, simulate_for
@@ -314,7 +314,7 @@ def schedule(
         raise NoTreeError(_shortage_text(tree, replay.shortage))
     means = Means(_durations(tree, durations, from_video, default_duration), agents, _tools(tools))
     task = schedule_task(replayed, tree.units, replay, means)
-    solution = shortest(task, deadline)
+    solution = shortest_schedule(task, deadline)
     timed = () if solution.starts is None else tuple(timed_steps(task, solution.starts))
     if solution.starts is not None and (fault := timetable_fault(replayed, tree.units, timed, means)):
         raise BugError(f"the schedule does not hold: {fault}")

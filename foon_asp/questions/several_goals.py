@@ -60,7 +60,7 @@ def _solved_apart(answer: Answer, settings: Settings, posed: Problem) -> list[Ou
     if settings.constraints == () and settings.replaced is None:  # else goals may have rules of their own
         holds = Postconditions(problem, levels(objectives), settings)
         for goal, alone in zip(problem.goals, apart, strict=True):
-            holds.no_better(together, alone, f"for goal {goal} alone")
+            holds.require_no_better(together, alone, f"for goal {goal} alone")
     return apart
 
 

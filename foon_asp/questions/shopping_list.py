@@ -24,7 +24,7 @@ from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import BugError, UserError
 from foon_asp.hypergraph import SolvedGoals
 from foon_asp.network import ObjectNode, Source, counted
-from foon_asp.problem import Costs, Number, Objective, Problem, exact, levels
+from foon_asp.problem import Costs, Number, Objective, Problem, exact_number, levels
 from foon_asp.problem.dead_ends import dead_ends
 from foon_asp.problem.for_sale import Offer, Shop
 from foon_asp.problem.number import INT32_MAX
@@ -408,7 +408,7 @@ def _listed(prices: File | Mapping[str, Number]) -> list[Row[str | ObjectNode, F
         return PRICES.rows(Path(prices))
     rows = []
     for number, (name, stated) in enumerate(prices.items(), 1):
-        price = exact(stated, f"the price of {name!r}")
+        price = exact_number(stated, f"the price of {name!r}")
         if price < 0:
             raise UserError(f"found the price {stated} of {name!r}, expected one from 0")
         try:
@@ -536,7 +536,9 @@ class _Shopper:
         bought, units = purchases.split(outcome.units)
         problem = _stocked(self._problem, bought)
         if problem.items is None:
-            order = Postconditions(problem, levels(self._objectives), self._settings).tree(units)
+            order = Postconditions(problem, levels(self._objectives), self._settings).require_executable(
+                units
+            )
         else:
             order = units
             lacking = counted_run(problem, order).lacking

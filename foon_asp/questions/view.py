@@ -451,7 +451,7 @@ def pages(
         )
         lasting = answer_problem(endless, chosen, settings) if proof is None else proof
         if below:
-            Postconditions(endless, levels(tuple(chosen)), settings).no_better(
+            Postconditions(endless, levels(tuple(chosen)), settings).require_no_better(
                 answer.outcome, lasting.outcome, "where items last"
             )
         if lasting and not answer:

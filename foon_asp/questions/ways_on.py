@@ -9,7 +9,7 @@ from foon_asp.asp import Settings, Status
 from foon_asp.dataset.paths import as_path
 from foon_asp.network import ObjectNode, counted
 from foon_asp.problem import Problem
-from foon_asp.problem.relevance import reach, relevant
+from foon_asp.problem.relevance import reach, relevant_units
 from foon_asp.questions.answer import Answer, WithAnswer, answer_problem
 from foon_asp.questions.caller import asked_by, caller
 from foon_asp.questions.common_options import Posed, start_deadline
@@ -146,7 +146,7 @@ def _units(problem: Problem, stocked: Problem, answer: Answer | None) -> Iterato
     best = frozenset() if answer is None else frozenset(answer.ids or ())
     lacking = {
         unit: [o for o in problem.needs[unit] if o not in problem.kitchen]
-        for unit in relevant(stocked, reach(stocked))
+        for unit in relevant_units(stocked, reach(stocked))
     }
     for unit in sorted(lacking, key=lambda unit: (bool(lacking[unit]), unit not in best, unit)):
         yield unit_as(WayOn, problem.network, unit, lacks=nodes_of(problem.network, lacking[unit]))

@@ -12,8 +12,7 @@ from foon_asp.dataset.paths import File
 from foon_asp.network import STAND_IN, NodePattern, ObjectNode, StandInTable, counted, pattern_at_level
 from foon_asp.network.near_nodes import nearest, slip_between
 from foon_asp.problem import Objective, Problem
-from foon_asp.problem.dead_ends import Cause, DeadEnds, dead_ends
-from foon_asp.problem.dead_ends import Root as FoundRoot
+from foon_asp.problem.dead_ends import Cause, DeadEnds, RootCause, dead_ends
 from foon_asp.problem.for_sale import Shop
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.options import CONTAINERS, GOALS
@@ -128,7 +127,7 @@ class Root(Value, frozen=True):
     alike: tuple[AlikeNode, ...] = ()
 
     @classmethod
-    def of(cls, problem: Problem, root: FoundRoot) -> "Root":
+    def of(cls, problem: Problem, root: RootCause) -> "Root":
         """Return the value of a root, without similar names."""
         network = problem.network
         makers = problem.makers[root.object] if root.cycle is None else ()

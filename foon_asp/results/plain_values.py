@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import msgspec
 
-from foon_asp.problem import Costs, Known, Objective
+from foon_asp.problem import Costs, Objective, OptionalData
 from foon_asp.text.json_value import Json
 
 T = TypeVar("T")
@@ -44,7 +44,7 @@ def costs_by_name(costs: Costs) -> dict[str, int | Fraction | None]:
 
     Costs without stand-ins have no dissimilarity.
     """
-    usual = (objective for objective in Objective if objective.row.needs is not Known.STAND_INS)
+    usual = (objective for objective in Objective if objective.row.needs is not OptionalData.STAND_INS)
     measures = {**dict.fromkeys(usual), **costs.measures}
     return {**exact_measures(measures), "ingredients": costs.ingredients}
 

@@ -194,7 +194,7 @@ class _Evaluation:
         try:
             if self._rules.plain and len(text) < TUNING.quick_letters:
                 return derived.derive(text, name, arity)
-            from foon_asp.encoding.worker_process import derive  # noqa: PLC0415
+            from foon_asp.encoding.program_client import derive  # noqa: PLC0415
 
             return derive(text, name, arity, self._deadline)
         except ProgramError as refused:

@@ -6,16 +6,16 @@ from itertools import count, product
 from clingo.ast import AST, ASTType
 from clingo.symbol import Symbol, SymbolType
 
-from foon_asp.problem import Having, Trait
+from foon_asp.problem import Role, Trait
 from foon_asp.rules.clause import Clause, Conjunct, Constants, Literal, Signature, value
 from foon_asp.rules.dependence import AVAILABLE, TIMES, USE
 from foon_asp.rules.fact_subject import SUBJECTS
 
 _KITCHEN = ("kitchen", 1)
 _HAVING = {
-    "motion": Having.MOTION,
-    **dict.fromkeys(("input", "needs"), Having.INPUT),
-    **dict.fromkeys(("output", "gives"), Having.OUTPUT),
+    "motion": Role.MOTION,
+    **dict.fromkeys(("input", "needs"), Role.INPUT),
+    **dict.fromkeys(("output", "gives"), Role.OUTPUT),
 }
 _Term = str | Symbol  # the name of a variable, or a constant
 _Atom = tuple[Signature, int, tuple[_Term, ...]]  # with its negations
@@ -80,11 +80,11 @@ def _traits(atoms: Sequence[_Atom]) -> Iterator[Trait]:
     for name, terms in facts:
         if name not in _HAVING or terms[0] not in units:
             continue
-        having, words = _HAVING[name], [terms[-1]]
-        if having is not Having.MOTION:
+        role, words = _HAVING[name], [terms[-1]]
+        if role is not Role.MOTION:
             words = [of[-1] for other, of in facts if other in {"label", "ingredient"} and of[0] == terms[-1]]
-            if having is Having.INPUT and terms[-1] in outside:
-                having = Having.MADE
+            if role is Role.INPUT and terms[-1] in outside:
+                role = Role.MADE
         for word in words:
             if isinstance(word, Symbol) and word.type is SymbolType.String:
-                yield Trait(having, word.string)
+                yield Trait(role, word.string)

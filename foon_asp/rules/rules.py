@@ -12,7 +12,7 @@ from foon_asp.deadline import Deadline
 from foon_asp.encoding.encoding import Encoding, read_encoding
 from foon_asp.encoding.stated import Stated
 from foon_asp.network import Source
-from foon_asp.problem import Contradiction, LinearRow, Problem, Restriction, Wanted, reach
+from foon_asp.problem import Contradiction, LinearRow, Problem, RequiredUnit, Restriction, reach
 from foon_asp.rules.clause import Signature, literals, written
 from foon_asp.rules.dependence import TIMES
 from foon_asp.rules.rule_kind import Analysis, Kind, Rule
@@ -149,7 +149,7 @@ class Rules:
         )
 
     @property
-    def wanted(self) -> list[Wanted] | None:
+    def wanted(self) -> list[RequiredUnit] | None:
         """The traits of required units, for each at-least-one constraint.
 
         ``None`` if a rule is not local, or does more than to remove or require units.

@@ -16,7 +16,7 @@ from typing import Final, NamedTuple
 from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator
 from clingo.symbol import Number, SymbolType
 
-from foon_asp.problem import Trait, Wanted
+from foon_asp.problem import RequiredUnit, Trait
 from foon_asp.problem.number import INT32_MAX
 from foon_asp.rules.clause import (
     Aggregate,
@@ -64,7 +64,7 @@ class AtLeastOne(NamedTuple):
     """
 
     program: tuple[str, ...]
-    wanted: Wanted
+    wanted: RequiredUnit
 
 
 class Row(NamedTuple):
@@ -142,7 +142,7 @@ class Translator:
             program.append(f"{self._head('meets', of, self._world)} :- {body}.")
             rows += TraitReader(self._clauses, self._constants).rows(conjuncts)
             always &= self._has_unit(conjuncts)
-        return AtLeastOne(tuple(program), Wanted(rows, always))
+        return AtLeastOne(tuple(program), RequiredUnit(rows, always))
 
     def row(self, clause: Clause) -> Row | None:
         """Return the row that a rule such as ``:- #sum { N,U : times(U,N) } > 9`` stands for."""

@@ -9,7 +9,7 @@ from foon_asp.encoding.fact_writer import write_facts_read
 from foon_asp.encoding.run import ProgramError
 from foon_asp.errors import UserError
 from foon_asp.network import Network
-from foon_asp.problem import Contradiction, Having, Problem, Restriction, Wanted, reach
+from foon_asp.problem import Contradiction, Problem, RequiredUnit, Restriction, Role, reach
 from foon_asp.rules.clause import Signature
 from foon_asp.rules.understood import ANSWER, NOTHING
 
@@ -43,15 +43,15 @@ def ask_units(
         if deadline is None:
             rows = derive(text, *ANSWER)
         else:
-            from foon_asp.encoding import worker_process  # noqa: PLC0415 (of use with rules of the user only)
+            from foon_asp.encoding import program_client  # noqa: PLC0415 (of use with rules of the user only)
 
-            rows = worker_process.derive(text, *ANSWER, deadline)
+            rows = program_client.derive(text, *ANSWER, deadline)
     except ProgramError:
         return None
     return _read(problem, rows)
 
 
-def candidates(network: Network, wanted: Iterable[Wanted]) -> set[int] | None:
+def candidates(network: Network, wanted: Iterable[RequiredUnit]) -> set[int] | None:
     """Return all units with a name that the traits ask for, a superset of the units that rules require.
 
     ``None`` if a rule requires units without saying a name.
@@ -60,12 +60,12 @@ def candidates(network: Network, wanted: Iterable[Wanted]) -> set[int] | None:
     for row in (row for one in wanted for row in one.rows):
         if not row:
             return None
-        having, word = row[0]
-        if having is Having.MOTION:
+        role, word = row[0]
+        if role is Role.MOTION:
             units |= {unit for unit, motion in enumerate(network.motions) if motion == word}
         else:
             nodes = {*network.by_label.get(word, ()), *network.by_ingredient.get(word, ())}
-            sides = network.producers if having is Having.OUTPUT else network.consumers
+            sides = network.producers if role is Role.OUTPUT else network.consumers
             units.update(unit for o in nodes for unit in sides[o])
     return units
 

@@ -1,7 +1,7 @@
 """Iterative deepening: depth-limited depth-first search with backtracking and memoization (Korf 1985)."""
 
 from foon_asp.deadline import Deadline
-from foon_asp.problem import Problem, backwards
+from foon_asp.problem import Problem, search_backward
 from foon_asp.searches.breadth_first import breadth_first
 from foon_asp.searches.retrieval import Ending, Retrieval
 from foon_asp.searches.search_interface import SearchSettings
@@ -49,7 +49,7 @@ class _DepthLimited:
         self.deadline = deadline
         self.failed: dict[int, int] = {}
         self.solved: dict[int, tuple[int, int]] = {}
-        _, relevant = backwards(problem.goals, problem.makers, problem.needs, problem.kitchen)
+        _, relevant = search_backward(problem.goals, problem.makers, problem.needs, problem.kitchen)
         self.objects = sorted(relevant)
 
     def solve(self, goal: int, limit: int) -> bool:

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from foon_asp.problem import Having, Trait
+from foon_asp.problem import Role, Trait
 from foon_asp.store.columns import encode_label, json_string
 
 Numbers = NDArray[np.uint32]
@@ -102,13 +102,13 @@ class Outline:
         ``kitchen`` does not count as made.
         """
         mask = np.ones(len(self.motions), dtype=np.bool_)
-        for having, word in traits:
-            if having is Having.MOTION:
+        for role, word in traits:
+            if role is Role.MOTION:
                 mask &= np.isin(self.motions, [n for n, name in enumerate(self.motion_names) if name == word])
             else:
-                lists = self.outputs if having is Having.OUTPUT else self.inputs
+                lists = self.outputs if role is Role.OUTPUT else self.inputs
                 nodes = self.nodes_named(word)
-                if having is Having.MADE:
+                if role is Role.MADE:
                     nodes = nodes & ~kitchen
                 mask &= lists.lists_with_any(nodes[lists.entries])
         return mask

@@ -22,7 +22,7 @@ from foon_asp.cli.main import cli as commands
 from foon_asp.cli.main import main
 from foon_asp.cli.shared_options import start_deadline
 from foon_asp.deadline import Deadline, LimitError, resend_lost_interrupts, uninterrupted
-from foon_asp.encoding import worker_process
+from foon_asp.encoding import program_client
 from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.processes import worker
 from foon_asp.proof.simulation import Verdict, simulate_for
@@ -326,12 +326,12 @@ def test_a_search_without_memory_for_a_thread_is_stopped_by_the_memory_limit(
 ) -> None:
     monkeypatch.setattr(worker, "_idle", {})  # one that has had a thread has a stack to spare
     rules, deadline = "{use(1..3)}.", Deadline(memory=2**40)
-    program = worker_process.WorkerProgram([], rules, [], 0, deadline)
+    program = program_client.WorkerProgram([], rules, [], 0, deadline)
     status = Path(f"/proc/{program._worker._process.pid}/status").read_text()
     program.close()
     in_use = int(status.partition("VmData:")[2].split()[0]) * 1024
-    monkeypatch.setattr(worker_process, "_memory", lambda _: in_use + 2**21)
-    program = worker_process.WorkerProgram([], rules, [], 0, deadline)
+    monkeypatch.setattr(program_client, "_memory", lambda _: in_use + 2**21)
+    program = program_client.WorkerProgram([], rules, [], 0, deadline)
     with pytest.raises(LimitError):
         program.search("opt", [("use", 1)], lambda _: None, lambda _: None)
     assert str(deadline.stopped).startswith("the memory limit of 1T")

@@ -127,10 +127,10 @@ def test_no_tree_is_said_where_there_is_none(rule: ContainerRule) -> None:
         none = solve(problem, (Objective.UNITS,)).status is Status.INFEASIBLE
         seen.add(none)
         if none:
-            holds.no_tree()
+            holds.require_no_tree()
         else:
             with pytest.raises(BugError, match="can be made"):
-                holds.no_tree()
+                holds.require_no_tree()
     assert seen == {True, False}
 
 
@@ -162,9 +162,9 @@ def test_what_an_outcome_claims_is_held_against_its_tree(
     problem = two_ways(*TWO)
     outcome = outcome_of(problem, "success")
     holds = Postconditions(problem, levels(SUCCESS), Settings())
-    holds.outcome(outcome)
+    holds.require_true_claims(outcome)
     with pytest.raises(BugError, match=message):
-        holds.outcome(change(outcome))
+        holds.require_true_claims(change(outcome))
 
 
 def test_a_limit_may_leave_room_above_the_tree() -> None:
@@ -177,7 +177,7 @@ def test_a_limit_may_leave_room_above_the_tree() -> None:
         {Objective.SUCCESS: Fraction(1), Objective.UNITS: 9},
     ]
     for bounds in allowed:
-        holds.outcome(outcome._replace(bounds=bounds))
+        holds.require_true_claims(outcome._replace(bounds=bounds))
 
 
 def test_a_better_tree_heard_of_before_is_not_forgotten() -> None:
@@ -185,9 +185,9 @@ def test_a_better_tree_heard_of_before_is_not_forgotten() -> None:
     outcome = outcome_of(problem, "success")
     assert outcome.costs is not None
     holds = Postconditions(problem, levels(SUCCESS), Settings())
-    holds.outcome(outcome, outcome.costs)
+    holds.require_true_claims(outcome, outcome.costs)
     with pytest.raises(BugError, match="but one was found for"):
-        holds.outcome(outcome, with_measures(outcome.costs, success=Fraction(1, 2)))
+        holds.require_true_claims(outcome, with_measures(outcome.costs, success=Fraction(1, 2)))
 
 
 # --- Other questions.
@@ -253,7 +253,7 @@ def test_cuts_prove_the_tree_that_they_were_found_for() -> None:
     problem = two_ways(["0.5", "0.5"], ["0.2"])
     found, outcome = reduce(problem, levels(SUCCESS)), outcome_of(problem, "success")
     holds = Postconditions(problem, levels(SUCCESS), Settings())
-    holds.outcome(outcome, None, found)
+    holds.require_true_claims(outcome, None, found)
     for wrong in (found._replace(tree=frozenset({2})), found._replace(bound=found.bound * 2)):
         with pytest.raises(BugError, match=r"called optimal by cuts|bound all trees"):
-            holds.outcome(outcome, None, wrong)
+            holds.require_true_claims(outcome, None, wrong)

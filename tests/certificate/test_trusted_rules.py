@@ -233,7 +233,7 @@ def test_answers_under_random_shrinking_rules_of_the_users_own(
     part: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Each has a certificate, whose claims clingo confirms, and the verifier refuses it without them."""
-    monkeypatch.setattr("foon_asp.asp.assembly._is_own", lambda _: True)  # grounded in this process
+    monkeypatch.setattr("foon_asp.asp.assembly._is_ready_made", lambda _: True)  # grounded in this process
     met = set()
     for seed in range(3, 400, part):
         rng = random.Random(seed)

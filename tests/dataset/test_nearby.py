@@ -14,7 +14,7 @@ from msgspec import structs
 
 import foon_asp
 from foon_asp.asp import Proof, Settings, Status, solve
-from foon_asp.asp.assembly import hold_for_parts
+from foon_asp.asp.assembly import hold_for_subtrees
 from foon_asp.asp.outcome import Outcome
 from foon_asp.batch.answer_row import answer_row
 from foon_asp.batch.batch_question import BatchQuestion
@@ -341,7 +341,7 @@ def test_random_problems_under_rules(rule: ContainerRule, part: int, tmp_path: P
         problem = replace(random_problem(seed, rule, units=14, readable=True), unit_prices=None)
         drawn = random_rule(rng, problem)
         how = settings_of([drawn])
-        if not hold_for_parts(how):
+        if not hold_for_subtrees(how):
             continue
         dataset = stored(problem, tmp_path)
         near = near_of(dataset.nearby(problem.goals, rule.value, first=1))
@@ -455,7 +455,7 @@ def test_rules_see_the_kitchen_as_it_is(
     ],
 )
 def test_rules_that_hold_for_parts(text: str, holds: bool) -> None:
-    assert hold_for_parts(Settings((RuleText(text),))) is holds
+    assert hold_for_subtrees(Settings((RuleText(text),))) is holds
 
 
 @SERIES

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from foon_asp.asp import Proof, Reporter, Settings, Status, solve
-from foon_asp.asp.assembly import ReachOfRules, hold_for_parts, reach_of_rules
+from foon_asp.asp.assembly import ReachOfRules, hold_for_subtrees, reach_of_rules
 from foon_asp.asp.outcome import Outcome
 from foon_asp.dataset import nearby_under_rules
 from foon_asp.dataset.nearby import NearbyProblem
@@ -376,7 +376,7 @@ def test_random_problems_under_rules(part: int, tmp_path: Path, monkeypatch: pyt
         rule = rng.choice(list(ContainerRule))
         problem = replace(random_problem(seed, rule, units=14, readable=True), unit_prices=None)
         asking, *others = (random_rule(rng, problem) for _ in range(rng.choice((1, 1, 2))))
-        while hold_for_parts(settings_of([asking])):
+        while hold_for_subtrees(settings_of([asking])):
             asking = random_rule(rng, problem)
         how = settings_of([*{each["rule"]: each for each in (*others, asking)}.values()])
         dataset = stored(problem, tmp_path)

@@ -90,6 +90,6 @@ def test_an_example_runs(name: str) -> None:
         pytest.importorskip("ortools", reason="OR-Tools is not installed (foon-asp[schedule])")
     if name == "py_trees_root":
         pytest.importorskip("py_trees", reason="py_trees is not installed (foon-asp[robot])")
-    if name in {"relax", "Relaxed"} and not translator.installed():
+    if name in {"relax", "Relaxed"} and not translator.is_installed():
         pytest.skip("Fast Downward's translator is not installed (foon-asp[pddl])")
     assert not failures(name, PUBLIC[name].__doc__)

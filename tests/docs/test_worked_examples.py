@@ -74,7 +74,7 @@ def test_the_examples_of_a_page(page: str, cli: Cli, tmp_path: Path, monkeypatch
     for folder in ("data", "encodings"):
         Path(folder).symlink_to(ROOT / folder)
     text = (ROOT / page).read_text(encoding="utf-8")
-    if "\n$ foon-asp relax" in text and not translator.installed():
+    if "\n$ foon-asp relax" in text and not translator.is_installed():
         pytest.skip("Fast Downward's translator is not installed (foon-asp[pddl])")
     run, lacking = 0, ""
     for name, body in FENCE.findall(text):

@@ -88,7 +88,7 @@ EXCEPTIONS = {
         "linting network questions text store problem planning proof certificate foon.py",
         "the inputs or the outputs of a unit",
     ),
-    "taken": ("problem/root.py results/proof_cases.py", "keys of documents"),
+    "taken": ("results/proof_cases.py", "keys of documents"),
     "there": ("questions/schedule.py questions/trace.py", "a key of documents"),
     "told": ("problem/items.py", "a field of what kitchens say of items"),
     "within": (

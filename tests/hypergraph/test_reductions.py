@@ -38,7 +38,7 @@ from foon_asp.problem import (
     first_tree,
     levels,
     reach,
-    relevant,
+    relevant_units,
 )
 from tests.hypergraph.test_reduction import after, interrupt_at
 from tests.oracle.task_trees import key, measure, trees
@@ -421,7 +421,7 @@ def test_what_can_be_made_and_what_matters(seeds: range) -> None:
         if tree is not None:
             assert executable_order(problem, tree) is not None
             assert frozenset(tree) in {one.units for one in found}
-        matters = frozenset(relevant(problem, reached))
+        matters = frozenset(relevant_units(problem, reached))
         assert all(one.units <= matters for one in without_redundant(found))
 
 

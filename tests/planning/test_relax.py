@@ -27,7 +27,7 @@ from tests.oracle import task_trees
 from tests.planning.test_export import parsed
 
 needs_translator = pytest.mark.skipif(
-    not translator.installed(), reason="Fast Downward's translator is not installed (foon-asp[pddl])"
+    not translator.is_installed(), reason="Fast Downward's translator is not installed (foon-asp[pddl])"
 )
 
 # --- PDDL as its text says: conditions are evaluated in a state, and a state only grows.
@@ -414,7 +414,7 @@ def stand_in(folder: Path, monkeypatch: pytest.MonkeyPatch, code: str) -> list[P
     (package / "__init__.py").touch()
     (package / "__main__.py").write_text(code)
     monkeypatch.setenv("PYTHONPATH", str(folder))
-    monkeypatch.setattr("foon_asp.planning.translator.installed", lambda: True)
+    monkeypatch.setattr("foon_asp.planning.translator.is_installed", lambda: True)
     return written(folder, DOMAIN, PROBLEM)
 
 

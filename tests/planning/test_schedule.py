@@ -19,7 +19,7 @@ from foon_asp.deadline import Deadline, LimitError
 from foon_asp.pictures.gantt import time_text
 from foon_asp.planning import scheduling
 from foon_asp.planning.schedule_task import ScheduleTask, Use, schedule_task
-from foon_asp.planning.scheduling import shortest, timed_steps
+from foon_asp.planning.scheduling import shortest_schedule, timed_steps
 from foon_asp.problem import ContainerRule, UsedUp
 from foon_asp.processes.worker import Worker
 from foon_asp.proof.replay import replay_for, replayable
@@ -349,7 +349,7 @@ def test_nothing_is_shorter_by_brute_force(seeds: range) -> None:
     without = 0
     for seed in seeds:
         task = random_task(seed)
-        found, least = shortest(task, Deadline()), least_time(task)
+        found, least = shortest_schedule(task, Deadline()), least_time(task)
         assert found.proved
         assert (found.starts is None) == (least is None), seed
         if found.starts is None:
@@ -390,7 +390,7 @@ def test_schedules_of_random_plans_hold(seeds: range) -> None:
         tools: dict[Any, int | None] = {"bowl": choose.choice((1, 2, None)), "knife": 2}
         means = Means(lengths, choose.randint(1, 3), {} if choose.random() < 0.3 else tools)
         task = schedule_task(problem, plan, replay_for(problem, plan), means)
-        found = shortest(task, Deadline())
+        found = shortest_schedule(task, Deadline())
         if found.starts is None:
             assert found.lacking
             continue
@@ -413,7 +413,7 @@ def test_at_a_limit_the_best_is_given_with_its_bound(monkeypatch: pytest.MonkeyP
 
     monkeypatch.setattr(Worker, "ask", ask)
     deadline = Deadline()
-    found = shortest(task, deadline)
+    found = shortest_schedule(task, deadline)
     assert deadline.stopped == "ctrl-C while scheduling"
     assert found.starts == tuple(3 * number for number in range(len(task.lengths)))
     assert not found.proved
@@ -426,7 +426,7 @@ def test_without_time_the_bound_is_that_of_the_longest_chain_and_of_all_work() -
         task = random_task(seed)._replace(uses=(), sharing=(), agents=9)
         alone = task._replace(agents=1, passive=(False,) * len(task.lengths))
         for each in (task, alone):
-            assert shortest(each, Deadline(1e-9)).bound == least_time(each)
+            assert shortest_schedule(each, Deadline(1e-9)).bound == least_time(each)
 
 
 @needs_solver
@@ -434,7 +434,7 @@ def test_without_time_one_step_is_done_after_the_other() -> None:
     kinds = set()
     for seed in range(60):
         task = random_task(seed)
-        found = shortest(task, Deadline(1e-9))
+        found = shortest_schedule(task, Deadline(1e-9))
         kinds.add(found.starts is None)
         assert not found.proved
         if found.starts is None:

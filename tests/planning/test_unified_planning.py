@@ -20,7 +20,7 @@ up.get_environment().credits_stream = None
 
 @pytest.fixture
 def engine() -> str:
-    if not translator.installed():
+    if not translator.is_installed():
         pytest.skip("Fast Downward's translator is not installed (foon-asp[pddl])")
     foon_asp.register_engine()
     foon_asp.register_engine()  # once is enough

@@ -30,7 +30,15 @@ from foon_asp.network import (
     node_at_level,
     unit_at_level,
 )
-from foon_asp.problem import ContainerRule, Objective, Problem, executable_order, first_tree, reach, relevant
+from foon_asp.problem import (
+    ContainerRule,
+    Objective,
+    Problem,
+    executable_order,
+    first_tree,
+    reach,
+    relevant_units,
+)
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.proof.verifier import TREE_FORM, RefusedError, seal
 from tests.conftest import Cli
@@ -126,7 +134,7 @@ def test_the_checker_and_the_plain_searches_do_without_it() -> None:
     assert not reached.available[problem.goals[0]]
     assert reached.units == (0,)
     assert first_tree(problem, reached) is None
-    assert relevant(problem, reached) == ()
+    assert relevant_units(problem, reached) == ()
     boil = ("boil", [POT], [STEAM])
     circle = ask(boil[2][0], of=network(boil))
     assert executable_order(circle, [0, 1]) is None

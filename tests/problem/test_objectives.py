@@ -18,8 +18,8 @@ from foon_asp.network import UnitPrices
 from foon_asp.problem import (
     ContainerRule,
     Costs,
-    Known,
     Objective,
+    OptionalData,
     Problem,
     Row,
     levels,
@@ -48,7 +48,7 @@ NEW = {
         )
     ),
     "rounded": made_up(
-        Row("tries", "cost", lambda unit: 1 / unit.rate, needs=Known.RATES, is_fact=True, whole=False)
+        Row("tries", "cost", lambda unit: 1 / unit.rate, needs=OptionalData.RATES, is_fact=True, whole=False)
     ),
 }
 
@@ -185,5 +185,5 @@ def test_rates_do_not_count_where_nothing_multiplies() -> None:
     problem = replace(problem, unit_prices=prices)
     assert [multiplies(objective) for objective in Objective].count(True) == 1
     for objective in Objective:
-        if objective.row.needs is not Known.RATES:
+        if objective.row.needs is not OptionalData.RATES:
             assert solve(problem, (objective,)).units == (2,)

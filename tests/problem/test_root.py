@@ -5,13 +5,13 @@ from fractions import Fraction
 
 import pytest
 
-from foon_asp.problem.root import Root, whole_root
+from foon_asp.problem.root import Root, integer_root
 
 
 def test_the_whole_part_of_a_root() -> None:
     for degree in range(1, 7):
         for number in [*range(100), 7**30, 7**30 - 1, 7**30 + 1, 2**200 + 5]:
-            root = whole_root(degree, number)
+            root = integer_root(degree, number)
             assert root**degree <= number < (root + 1) ** degree
 
 
@@ -26,7 +26,7 @@ def test_the_whole_part_of_a_root() -> None:
     ],
 )
 def test_a_root_is_of_the_least_degree(degree: int, of: str, least: int, base: str) -> None:
-    root = Root.taken(degree, Fraction(of))
+    root = Root.simplify(degree, Fraction(of))
     assert root == Root(least, Fraction(base))
     assert root.rational == (Fraction(base) if least == 1 else None)
 
@@ -34,23 +34,23 @@ def test_a_root_is_of_the_least_degree(degree: int, of: str, least: int, base: s
 @pytest.mark.parametrize(("degree", "of"), [(0, 1), (2, 0), (1, -1)])
 def test_only_positive_numbers_have_one(degree: int, of: int) -> None:
     with pytest.raises(ValueError, match="positive"):
-        Root.taken(degree, Fraction(of))
+        Root.simplify(degree, Fraction(of))
 
 
 def test_roots_are_in_order_and_rounded_to_both_sides() -> None:
     rng = random.Random(1)
     for _ in range(300):
         of = Fraction(rng.randint(1, 10 ** rng.randint(1, 30)), rng.randint(1, 10 ** rng.randint(1, 30)))
-        root, other = (Root.taken(rng.randint(1, 5), of) for _ in range(2))
+        root, other = (Root.simplify(rng.randint(1, 5), of) for _ in range(2))
         digits = rng.randint(1, 12)
-        below, above = root.below(digits), root.above(digits)
+        below, above = root.round_down(digits), root.round_up(digits)
         assert Root(1, below) <= root <= Root(1, above)
         if step := above - below:
             assert 1 in step.as_integer_ratio()
             assert below / step < 10**digits
             assert above / step >= 10 ** (digits - 1)
         assert (root < other) == (root.of**other.degree < other.of**root.degree)
-        assert root.over(Fraction(2, 3)).of * Fraction(2, 3) ** root.degree == root.of
-    assert Root(1, Fraction(3, 4)).below(4) == Root(1, Fraction(3, 4)).above(2) == Fraction(3, 4)
-    assert Root(2, Fraction(1, 2)).below(4) == Fraction("0.7071")
-    assert Root(2, Fraction(1, 2)).above(4) == Fraction("0.7072")
+        assert root.divide_by(Fraction(2, 3)).of * Fraction(2, 3) ** root.degree == root.of
+    assert Root(1, Fraction(3, 4)).round_down(4) == Root(1, Fraction(3, 4)).round_up(2) == Fraction(3, 4)
+    assert Root(2, Fraction(1, 2)).round_down(4) == Fraction("0.7071")
+    assert Root(2, Fraction(1, 2)).round_up(4) == Fraction("0.7072")

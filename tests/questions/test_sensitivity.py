@@ -177,8 +177,8 @@ def assert_agrees(result: Sensitivity, trees: Sequence[tuple[FunctionalUnit, ...
     for motion in sorted(set(problem.network.motions)):
         power, rest = line(problem, list(map(problem.network.unit, units)), motion)
         lines = {(*line(problem, tree, motion), len(tree)) for tree in trees}
-        tops = [(Root.taken(p - power, rest / r), p, -n) for p, r, n in lines if p > power and rest < r]
-        bottoms = [(Root.taken(power - p, r / rest), -p, -n) for p, r, n in lines if p < power]
+        tops = [(Root.simplify(p - power, rest / r), p, -n) for p, r, n in lines if p > power and rest < r]
+        bottoms = [(Root.simplify(power - p, r / rest), -p, -n) for p, r, n in lines if p < power]
         top, bottom = min(tops, default=None), max(bottoms, default=None)
         # of those that meet at one end the one that is the best beyond, and with the fewest units
         if top is not None:

@@ -145,7 +145,7 @@ def printed(cli: Cli, files: dict[str, str]) -> Any:
     def ask(verb: str, *words: str) -> Any:
         if verb == "schedule" and find_spec("ortools") is None:
             pytest.skip("OR-Tools is not installed (foon-asp[schedule])")
-        if verb == "relax" and not translator.installed():
+        if verb == "relax" and not translator.is_installed():
             pytest.skip("Fast Downward's translator is not installed (foon-asp[pddl])")
         for name in {*words} & _CONTENTS.keys():
             content = _CONTENTS[name]

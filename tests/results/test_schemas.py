@@ -18,6 +18,6 @@ def test_schemas_are_what_the_fields_say() -> None:
     assert {kind for kind in made if found[kind] != made[kind]} == set(), "python -m tests.results"
 
 
-@pytest.mark.skipif(not translator.installed(), reason="an example needs foon-asp[pddl]")
+@pytest.mark.skipif(not translator.is_installed(), reason="an example needs foon-asp[pddl]")
 def test_the_page_is_what_schemas_and_examples_say() -> None:
     assert PAGE.read_text(encoding="utf-8") == page(), "python -m tests.results"

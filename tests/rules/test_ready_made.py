@@ -11,7 +11,7 @@ import pytest
 
 import foon_asp
 from foon_asp.asp import Settings, Status, solve
-from foon_asp.asp.assembly import ready_made
+from foon_asp.asp.assembly import ready_made_program
 from foon_asp.asp.ranking import Ranked
 from foon_asp.asp.user_rule_check import UserRuleCheck
 from foon_asp.errors import UserError
@@ -29,7 +29,7 @@ from tests.rules.test_constraint_meanings import drawn, trees
 
 def known(problem: Problem, settings: Settings) -> ReadyMade:
     """Understand ready-made constraints for a problem."""
-    program = ready_made(problem, settings, lambda _: None)
+    program = ready_made_program(problem, settings, lambda _: None)
     assert program is not None
     assert program.ready_made is not None
     return program.ready_made
@@ -96,7 +96,7 @@ def test_trees_in_order_keep_to_them_and_others_break_them(seeds: range) -> None
             assert {frozenset(units) for units, _ in ranked} == minimal, chosen
             for units, tree in found[:3]:
                 for rule in chosen:
-                    broken = UserRuleCheck(settings_of([rule])).broken(problem, units)
+                    broken = UserRuleCheck(settings_of([rule])).broken_rules(problem, units)
                     assert bool(broken) is not keeps(problem, tree, rule), rule
 
 
@@ -157,8 +157,8 @@ def test_parts_of_stores_are_asked_about_without_clingo(tmp_path: Path) -> None:
         ("before:earlier_motion=cut,later_motion=mix", True),
     ):
         settings = Settings((given_constraint(text),))
-        assert ready_made(part, settings, lambda _: None)
-        assert bool(ready_made(relaxed, settings, lambda _: None)) is not rest
+        assert ready_made_program(part, settings, lambda _: None)
+        assert bool(ready_made_program(relaxed, settings, lambda _: None)) is not rest
 
 
 def test_what_they_settle_needs_no_clingo() -> None:

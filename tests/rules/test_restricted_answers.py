@@ -201,7 +201,7 @@ def test_the_rules_that_a_tree_breaks_are_named(seeds: range) -> None:
         breaking = UserRuleCheck(Settings(given))
         for tree in random.Random(seed).sample(every, min(len(every), 4)):
             expected = {rule.text for rule in some if not rule.keeps(tree.units)} & set(map(str, given))
-            found = breaking.broken(problem, tree.units)
+            found = breaking.broken_rules(problem, tree.units)
             assert {each.text for each in found} == expected, (seed, tree)
             broken += len(found)
     assert broken > len(seeds) / 2
