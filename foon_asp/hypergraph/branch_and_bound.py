@@ -293,7 +293,7 @@ class Branching:
         """Return the proof of a closed node, and the columns of forbidden actions that it relies on."""
         if node.hopeless is not None:
             cut = frozenset(node.hopeless.objects)
-            return Hopeless(self._stated(cut, node)), {*self._relaxation.members(cut)} & node.forbidden
+            return Hopeless(self._stated(cut, node)), {*self._relaxation.landmark_of(cut)} & node.forbidden
         if node.without is None or node.using is None or node.action is None:
             return self._packing(node)
         proof, barred = self._proof(node.without)
@@ -322,7 +322,7 @@ class Branching:
 
     def _stated(self, cut: frozenset[int], node: _Node) -> Cut:
         """Return a cut by its numbers in the whole graph, without landmark actions that a node forbids."""
-        crossing = (self._actions[a] for a in self._relaxation.members(cut) if a not in node.forbidden)
+        crossing = (self._actions[a] for a in self._relaxation.landmark_of(cut) if a not in node.forbidden)
         return Cut(tuple(sorted(self._relaxation.whole(cut))), tuple(sorted(crossing)))
 
 

@@ -29,7 +29,7 @@ def coprime_base(numbers: Iterable[int]) -> list[int]:
     return base
 
 
-def powers(number: int, base: Sequence[int]) -> dict[int, int]:
+def factor_exponents(number: int, base: Sequence[int]) -> dict[int, int]:
     """Return the exponents of a number by factor of its coprime base, without exponents of 0."""
     exponents: dict[int, int] = {}
     for factor in base:

@@ -48,7 +48,7 @@ class Cutter:
         self.hopeless: Cut | None = None
         lost = [o for o in self.targets if not reachable[o]]
         if lost:
-            self.hopeless = self._shrink(lost[0], set(), reachable, {})
+            self.hopeless = self._grow_small_cut(lost[0], set(), reachable, {})
             return
         # relevant objects are numbered anew: a large network has few of them
         self._numbers: dict[int, int] = {}
@@ -80,7 +80,7 @@ class Cutter:
 
     def reached_by(self, actions: Collection[int]) -> bool:
         """Return whether these actions alone reach all targets."""
-        return _Growth(self, self._missing).admit_all(
+        return _Growth(self, self._missing).reaches_targets_with(
             self._positions[a] for a in actions if a in self._positions
         )
 
@@ -94,21 +94,21 @@ class Cutter:
         """
         growth = _Growth(self, self._missing)
         positions = self._positions
-        if growth.admit_all(positions[a] for a in keep if a in positions):
+        if growth.reaches_targets_with(positions[a] for a in keep if a in positions):
             return None
-        refused = {self.actions[i] for i in growth.refuse([positions[a] for a in order])}
+        refused = {self.actions[i] for i in growth.admit([positions[a] for a in order])}
         reached = bytearray(self._reachable)
         for o in [o for o, is_reached in zip(self._numbers, growth.reached, strict=True) if not is_reached]:
             reached[o] = False
         first = next(o for o in self.targets if not reached[o])
-        return self._shrink(first, refused, reached, self._consumer_counts)
+        return self._grow_small_cut(first, refused, reached, self._consumer_counts)
 
-    def among(self, actions: Iterable[int]) -> tuple[int, ...] | None:
+    def without_forbidden(self, actions: Iterable[int]) -> tuple[int, ...] | None:
         """Return the given actions that are not forbidden; ``None`` if one is not in :attr:`actions`."""
         remaining = tuple(a for a in actions if a not in self._forbidden)
         return remaining if self._positions.keys() >= set(remaining) else None
 
-    def widened(self, objects: Iterable[int]) -> Cut:
+    def widen(self, objects: Iterable[int]) -> Cut:
         """Return the cut of some objects, with unreachable objects added to keep its landmark small.
 
         An action that cannot run needs an unreachable object. Once this object is in the cut, the action does
@@ -116,9 +116,9 @@ class Cutter:
         """
         graph, reachable = self._graph, self._reachable
         inside = {o for o in objects if not graph.at_start[o]}
-        return self._closed(inside, lambda a: next((o for o in graph.needs[a] if not reachable[o]), None))
+        return self._extend_to_cut(inside, lambda a: next((o for o in graph.needs[a] if not reachable[o]), None))
 
-    def _shrink(
+    def _grow_small_cut(
         self, target: int, members: set[int], reached: bytearray, consumer_counts: Mapping[int, float]
     ) -> Cut:
         """Return a small cut, grown backwards from the unreached ``target``.
@@ -135,9 +135,9 @@ class Cutter:
             lacking = (o for o in self._graph.needs[action] if not reached[o])
             return max(lacking, key=lambda o: (consumer_counts.get(o, math.inf), -o))
 
-        return self._closed({target}, most_consumed)
+        return self._extend_to_cut({target}, most_consumed)
 
-    def _closed(self, inside: set[int], needed: Callable[[int], int | None]) -> Cut:
+    def _extend_to_cut(self, inside: set[int], needed: Callable[[int], int | None]) -> Cut:
         """Return the cut of the objects ``inside``, extended until crossing actions need nothing more.
 
         For each crossing action, ``needed`` returns a precondition to add to the cut; ``None`` leaves the
@@ -173,18 +173,18 @@ class _Growth:
         self._unreached = len(cutter.targets)  # targets have the first numbers
         self._targets = len(cutter.targets)
 
-    def admit_all(self, actions: Iterable[int]) -> bool:
+    def reaches_targets_with(self, actions: Iterable[int]) -> bool:
         """Admit actions; return ``True`` if they reach all targets: then the growth must not go on."""
-        return not self._unreached or bool(self.refuse(actions, max_refused=1))
+        return not self._unreached or bool(self.admit(actions, max_refused=1))
 
-    def refuse(self, actions: Iterable[int], max_refused: int = sys.maxsize) -> list[int]:
+    def admit(self, actions: Iterable[int], max_refused: int = sys.maxsize) -> list[int]:
         """Admit actions one by one; refuse and return those with which all targets would be reached.
 
         Ends after ``max_refused`` refusals. If an object alone suffices to reach all targets, that is found
         out once; afterwards, actions that achieve the object are refused at once.
         """
         waiting, missing, gives = self._waiting, self._missing, self._gives
-        reached, decisive, spread = self.reached, self._decisive, self._spread
+        reached, decisive, reach_from = self.reached, self._decisive, self._reach_from
         refused: list[int] = []
         for action in actions:
             if missing[action]:
@@ -197,26 +197,26 @@ class _Growth:
                 if decisive[o]:
                     break
             else:
-                if spread(new) is not None:
+                if reach_from(new) is not None:
                     continue
-                self._learn(new)
+                self._record_decisive(new)
             refused.append(action)
             if len(refused) == max_refused:
                 break
         return refused
 
-    def _learn(self, refused: list[int]) -> None:
+    def _record_decisive(self, refused: list[int]) -> None:
         """If one of the ``refused`` objects alone suffices to reach all targets, record it as decisive."""
         for o in refused:
             unreached = self._unreached
-            new = None if len(refused) == 1 else self._spread([o])
+            new = None if len(refused) == 1 else self._reach_from([o])
             if new is None:
                 self._decisive[o] = True
                 return
-            self._undo(new)
+            self._unreach(new)
             self._unreached = unreached
 
-    def _spread(self, objects: list[int]) -> list[int] | None:
+    def _reach_from(self, objects: list[int]) -> list[int] | None:
         """Mark objects, and all that admitted actions make of them, as reached; return the new ones.
 
         If all targets would be reached, nothing changes, and ``None`` is returned.
@@ -238,12 +238,12 @@ class _Growth:
                     if not lacking and waiting[consumer]:
                         stack.append(gives[consumer])
                 if not unreached or decisive[o]:
-                    self._undo(new)
+                    self._unreach(new)
                     return None
         self._unreached = unreached
         return new
 
-    def _undo(self, new: list[int]) -> None:
+    def _unreach(self, new: list[int]) -> None:
         """Mark objects as not reached again."""
         missing, reached = self._missing, self.reached
         for o in new:

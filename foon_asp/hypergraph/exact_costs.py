@@ -7,7 +7,7 @@ from decimal import ROUND_CEILING, Context, Decimal
 from fractions import Fraction
 from itertools import pairwise
 
-from foon_asp.hypergraph.coprime_base import coprime_base, powers
+from foon_asp.hypergraph.coprime_base import coprime_base, factor_exponents
 from foon_asp.hypergraph.landmark_cuts import Cuts
 from foon_asp.hypergraph.lexicographic import Lexicographic
 from foon_asp.problem import Costs, Objective, Problem, multiplies
@@ -258,7 +258,7 @@ def _weights(rates: set[Fraction]) -> dict[Fraction, int]:
     logarithms = {factor: _logarithm(factor) for factor in base}
 
     def weight(number: int) -> int:
-        return sum(power * logarithms[f] for f, power in powers(number, base).items())
+        return sum(power * logarithms[f] for f, power in factor_exponents(number, base).items())
 
     return {rate: weight(rate.denominator) - weight(rate.numerator) for rate in rates}
 

@@ -30,7 +30,7 @@ class FirstAchievers:
             else tuning.RELAXATION.landmark_bits // graph.size
         )
         self._landmarks = _landmarks(graph, tracked, expired)
-        self._before = [self._of(needed) for needed in graph.needs]
+        self._before = [self._landmarks_of(needed) for needed in graph.needs]
         self.graph = Hypergraph(
             graph.size,
             graph.needs,
@@ -41,28 +41,28 @@ class FirstAchievers:
             graph.start,
         )
 
-    def _of(self, objects: Iterable[int]) -> int:
+    def _landmarks_of(self, objects: Iterable[int]) -> int:
         """Return the landmarks of some objects together, as a bit set."""
         made = 0
         for o in objects:
             made |= self._landmarks[o]
         return made
 
-    def members(self, cut: frozenset[int]) -> list[int]:
+    def landmark_of(self, cut: frozenset[int]) -> list[int]:
         """Return the landmark of a cut: the first achievers of its objects."""
         achievers, needs, before = self.graph.makers, self.graph.needs, self._before
-        inside = _bits(cut)
+        inside = _bit_set(cut)
         return sorted(
             {a for o in cut for a in achievers[o] if not before[a] & inside and cut.isdisjoint(needs[a])}
         )
 
-    def widened(self, cut: frozenset[int]) -> frozenset[int]:
+    def widen(self, cut: frozenset[int]) -> frozenset[int]:
         """Return the cut of the given graph with the same landmark as this cut of :attr:`graph`.
 
         If an action achieves an object of the cut, but never first, one of its preconditions has a landmark
         in the cut. This precondition is added, so that the action does not cross the cut.
         """
-        widened, inside, stack = set(cut), _bits(cut), list(cut)
+        widened, inside, stack = set(cut), _bit_set(cut), list(cut)
         needs, before, landmarks = self._plain.needs, self._before, self._landmarks
         while stack:
             for action in self._plain.makers[stack.pop()]:
@@ -73,7 +73,7 @@ class FirstAchievers:
         return frozenset(widened)
 
 
-def _bits(objects: Iterable[int]) -> int:
+def _bit_set(objects: Iterable[int]) -> int:
     """Return a set of objects as a bit set."""
     bits = 0
     for o in objects:
@@ -90,7 +90,7 @@ def _landmarks(graph: Hypergraph, tracked: int, expired: Callable[[], bool]) -> 
     """
     own = [1 << o if o < tracked else 0 for o in range(graph.size)]
     landmarks: list[int | None] = [None] * graph.size
-    missing = list(graph.missing)
+    missing = list(graph.missing_counts)
     waiting = deque(action for action, count in enumerate(missing) if not count)
     queued = bytearray(not count for count in missing)
     steps = 0
@@ -110,7 +110,7 @@ def _landmarks(graph: Hypergraph, tracked: int, expired: Callable[[], bool]) -> 
             landmarks[o] = current = (before if previous is None else before & previous) | own[o]
             if current == previous:
                 continue
-            for consumer in graph.takers[o]:
+            for consumer in graph.consumers[o]:
                 if previous is None:
                     missing[consumer] -= 1
                 if not missing[consumer] and not queued[consumer]:

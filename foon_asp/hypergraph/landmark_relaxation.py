@@ -56,7 +56,7 @@ class LandmarkRelaxation:
 
     def add(self, cut: frozenset[int]) -> None:
         """Add a row for a cut, given by objects: its columns are the landmark actions."""
-        self.rows.append(self._np.array(self.members(cut), dtype=self._np.int32))
+        self.rows.append(self._np.array(self.landmark_of(cut), dtype=self._np.int32))
         self.cuts.append(cut)
         self.covering.add(self.rows[-1])
 
@@ -66,9 +66,9 @@ class LandmarkRelaxation:
         for objects in cuts:
             self.add(frozenset(position[o] for o in objects if o in position))
 
-    def members(self, cut: frozenset[int]) -> list[int]:
+    def landmark_of(self, cut: frozenset[int]) -> list[int]:
         """Return the landmark of a cut."""
-        return self._achievers.members(cut)
+        return self._achievers.landmark_of(cut)
 
     def whole(self, cut: frozenset[int]) -> frozenset[int]:
         """Return the cut of the whole graph with the same landmark as a cut of this subgraph.
@@ -76,7 +76,7 @@ class LandmarkRelaxation:
         The result has object numbers of the whole graph.
         """
         if cut not in self._whole_cuts:
-            self._whole_cuts[cut] = frozenset(self._objects[o] for o in self._achievers.widened(cut))
+            self._whole_cuts[cut] = frozenset(self._objects[o] for o in self._achievers.widen(cut))
         return self._whole_cuts[cut]
 
     def separate(

@@ -12,7 +12,7 @@ from decimal import Context, Decimal
 from fractions import Fraction
 from functools import cached_property, lru_cache
 
-from foon_asp.hypergraph.coprime_base import coprime_base, powers
+from foon_asp.hypergraph.coprime_base import coprime_base, factor_exponents
 
 Vector = tuple[Fraction, ...]
 
@@ -117,9 +117,9 @@ class Lexicographic:
             base = coprime_base(n for rate in rates or () for n in rate.as_integer_ratio())
             factors: dict[int, dict[int, int]] = {b: {} for b in base}
             for i, rate in enumerate(rates or ()):
-                for b, power in powers(rate.numerator, base).items():
+                for b, power in factor_exponents(rate.numerator, base).items():
                     factors[b][i] = power
-                for b, power in powers(rate.denominator, base).items():
+                for b, power in factor_exponents(rate.denominator, base).items():
                     factors[b][i] = -power
             factors_by_level.append(factors)
         return factors_by_level

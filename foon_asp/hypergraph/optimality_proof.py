@@ -103,7 +103,7 @@ class Prover:
         self._graph, self._targets, self._costs, self._order = graph, targets, costs, order
         self._forbidden, self._expired = forbidden, expired
         self._random = random.Random(0)
-        self._members = cache(graph.crossing)
+        self._members = cache(graph.landmark_of)
         floats = [order.approximate(cost) for cost in set(costs)]
         scale, self._scales = 1.0, list[float]()
         for level, rates in enumerate(order.levels):
@@ -378,8 +378,8 @@ class Prover:
     def _widened(self, cutter: Cutter, objects: Iterable[int]) -> Cut:
         """Return a cut; objects are added if an action that cannot run crosses it."""
         inside = frozenset(o for o in objects if not self._graph.at_start[o])
-        members = cutter.among(self._members(inside))
-        return cutter.widened(inside) if members is None else Cut(tuple(sorted(inside)), members)
+        members = cutter.without_forbidden(self._members(inside))
+        return cutter.widen(inside) if members is None else Cut(tuple(sorted(inside)), members)
 
     def _searched(
         self, cutter: Cutter, goal: Vector, known_cuts: Sequence[Cut], step: Fraction
