@@ -90,7 +90,7 @@ class _IncumbentListener(Listener):
             self.reporter.tree(costs)
 
     def bound(self, costs: ExactCosts, bound: int) -> None:
-        self.reporter.bound(self.levels[0], costs.first(bound))
+        self.reporter.bound(self.levels[0], costs.first_objective_bound(bound))
 
     def ended(self, run: "Run") -> None:
         """Receive the statistics of a finished run of clingo, and report them."""
@@ -249,9 +249,9 @@ class _Solver:
 
     def _near_goals(self, subproblem: Subproblem, tree: Units) -> "Run":
         """Search ever larger neighbourhoods of the goals for the best tree; return the last run."""
-        everything, size = subproblem.everything(), SEARCH.nearest_units
+        everything, size = subproblem.all_units(), SEARCH.nearest_units
         while True:
-            among = everything if size >= len(everything) else subproblem.nearest(size) | tree
+            among = everything if size >= len(everything) else subproblem.nearest_units(size) | tree
             size *= SEARCH.nearest_growth
             self._restrict_to(among)
             run = self._run(self.levels)
@@ -295,7 +295,7 @@ class _Solver:
         program = program._replace(files=files, arguments=arguments)
         landmarks = subproblem.landmarks()
         required = write_required([map(number, sorted(landmark)) for landmark in landmarks])
-        before = subproblem.left_of(self._mattered)
+        before = subproblem.units_of_numbers(self._mattered)
         max_units = SEARCH.explored_units + len(before)
         explored = subproblem.with_only_achievers(
             before.union(tree, *(e for e in landmarks if len(e) <= SEARCH.nearest_units)), max_units
@@ -639,7 +639,7 @@ class _Solver:
         reduced = self.prepared.reduced
         if reduced is None or reduced.costs is None:
             return bounds
-        objective_first, proved = self.levels[0], reduced.costs.first(reduced.bound)
+        objective_first, proved = self.levels[0], reduced.costs.first_objective_bound(reduced.bound)
         if multiplies(objective_first):
             return {objective_first: min(bounds[objective_first], proved)}
         assert self.listener.incumbent is not None
@@ -708,8 +708,8 @@ def _cuts(reduced: Reduced | None) -> list[frozenset[int]]:
     if reduced is None:
         return []
     best = _few_objects(reduced.cuts)
-    if reduced.shared:
-        best = [objects for objects, _ in reduced.shared.cuts]
+    if reduced.partition:
+        best = [objects for objects, _ in reduced.partition.cuts]
     first = _few_objects(reduced.subproblem.cuts if reduced.subproblem else None)
     return [*dict.fromkeys([*best, *first, *reduced.tight])]
 

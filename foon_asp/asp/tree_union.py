@@ -110,7 +110,7 @@ class _Union:
                 return prepared.units
             if self._worse:
                 none = dict.fromkeys(by, Fraction(0)) | {o: Fraction(1) for o in by if multiplies(o)}
-                limit = costs.of(Costs({**none, by[0]: self._limit()}))
+                limit = costs.combined_cost(Costs({**none, by[0]: self._limit()}))
             else:
                 limit = subproblem.total(self._in_some) + costs.doubt
             with deadline.watched("cutting the network"):

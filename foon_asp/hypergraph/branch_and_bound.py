@@ -15,7 +15,7 @@ from heapq import heappop, heappush
 from typing import Any
 
 from foon_asp.hypergraph import tuning
-from foon_asp.hypergraph.cost_partition import stalled
+from foon_asp.hypergraph.cost_partition import has_stalled
 from foon_asp.hypergraph.covering import TOLERANCE, UnsolvedError
 from foon_asp.hypergraph.cut import Cut, Cutter
 from foon_asp.hypergraph.hypergraph import Hypergraph
@@ -80,9 +80,9 @@ class Branching:
         self._relaxation = LandmarkRelaxation(graph, targets, actions, cost)
         self._actions, self._costs = self._relaxation.actions, self._relaxation.costs
         self._graph, self._targets = self._relaxation.graph, self._relaxation.targets
-        self._relative, self._covering = self._relaxation.relative, self._relaxation.covering
-        self._unit = math.gcd(*self._costs) or 1  # costs of derivations are multiples of it
-        self._parts = self._relaxation.in_parts()
+        self._relative_costs, self._covering = self._relaxation.relative_costs, self._relaxation.covering
+        self._common_divisor = math.gcd(*self._costs) or 1  # costs of derivations are multiples of it
+        self._costs_in_parts = self._relaxation.costs_in_parts()
         self._total, self._guess = total, guess
         self.incumbent: frozenset[int] | None = None
         self.bound, self.closed = 0, False
@@ -92,7 +92,7 @@ class Branching:
         self._length_budget: float = math.inf  # objects and actions that the proof may still list
         self._expired: Callable[[], bool] = lambda: False
         self._root = _Node(frozenset(), frozenset(), 0, [])
-        self._relaxation.add_known(cuts)
+        self._relaxation.add_whole_cuts(cuts)
 
     def search(self, effort: int, expired: Callable[[], bool]) -> Iterator[None]:
         """Branch, best bound first, until no node is open or ``effort`` actions were looked at.
@@ -108,9 +108,9 @@ class Branching:
                 bound, depth, _, node = waiting[0]
                 before = self.bound, self._total
                 self.bound = max(self.bound, min(-(-bound // PARTS), self._total))
-                stopped = self._stopped(expired)
-                if not stopped and not self._closes(bound):
-                    stopped = not self._solve(node, number, expired)
+                stopped = self._must_stop(expired)
+                if not stopped and not self._is_above_cutoff(bound):
+                    stopped = not self._close_or_branch(node, number, expired)
                 if (self.bound, self._total) != before:
                     yield
                 if stopped:
@@ -132,42 +132,42 @@ class Branching:
         ``max_length`` objects and landmark actions.
         """
         self._length_budget, self._expired = max_length, expired
-        return self._proof(self._root)[0]
+        return self._proof_of(self._root)[0]
 
     def cases(self) -> Cases:
         """Return the case split: the tree of actions branched on, without actions fixed by reduced cost."""
-        return self._cases(self._root)
+        return self._cases_below(self._root)
 
-    def _cases(self, node: _Node) -> Cases:
+    def _cases_below(self, node: _Node) -> Cases:
         if node.hopeless or node.without is None or node.using is None or node.action is None:
             return None
-        return self._actions[node.action], self._cases(node.without), self._cases(node.using)
+        return self._actions[node.action], self._cases_below(node.without), self._cases_below(node.using)
 
-    def _stopped(self, expired: Callable[[], bool]) -> bool:
+    def _must_stop(self, expired: Callable[[], bool]) -> bool:
         return self.effort <= 0 or expired()
 
-    def _closes(self, bound: int) -> bool:
+    def _is_above_cutoff(self, bound: int) -> bool:
         """Return whether a bound, in parts, excludes every derivation that is better than the incumbent."""
-        return bound > self._below() * PARTS
+        return bound > self._cutoff() * PARTS
 
-    def _below(self) -> int:
+    def _cutoff(self) -> int:
         """Return the cutoff: the greatest cost that a derivation better than the incumbent can have."""
-        return (self._total - 1) // self._unit * self._unit
+        return (self._total - 1) // self._common_divisor * self._common_divisor
 
-    def _go_to(self, node: _Node, targets: set[int]) -> None:
+    def _set_bounds(self, node: _Node, targets: set[int]) -> None:
         """Set the bounds of columns and rows of the relaxation for a node with these targets."""
         used, forbidden = self._relaxed_at
         for action in (used ^ node.used) | (forbidden ^ node.forbidden):
             upper = 0.0 if action in node.forbidden else 1.0 if action in node.used else math.inf
-            self._covering.bound(action, float(action in node.used), upper)
+            self._covering.set_bounds(action, float(action in node.used), upper)
         self._relaxed_at = node.used, node.forbidden
         for row, cut in enumerate(self._relaxation.cuts):
             active = not cut.isdisjoint(targets)
             if active != self._active.get(row, True):
                 self._active[row] = active
-                self._covering.demand(row, float(active))
+                self._covering.set_row_minimum(row, float(active))
 
-    def _solve(self, node: _Node, number: int, expired: Callable[[], bool]) -> bool:
+    def _close_or_branch(self, node: _Node, number: int, expired: Callable[[], bool]) -> bool:
         """Close a node or branch on it; return ``False`` if time or effort ran out before that."""
         targets = set(self._targets).union(*(self._graph.needs[a] for a in node.used))
         self.effort -= len(self._actions)
@@ -175,46 +175,50 @@ class Branching:
         if cutter.hopeless is not None:
             node.hopeless = cutter.hopeless
             return True
-        self._go_to(node, targets)
-        free = self._np.ones(len(self._actions), dtype=bool)
-        free[list(node.used | node.forbidden)] = False
+        self._set_bounds(node, targets)
+        undecided = self._np.ones(len(self._actions), dtype=bool)
+        undecided[list(node.used | node.forbidden)] = False
         values: list[float] = []
         while True:
             relaxed = self._covering.solve(expired)
-            shares = self._np.array(relaxed.x)
+            lp_values = self._np.array(relaxed.x)
             values.append(relaxed.value)
-            self._weigh(node)
-            if self._closes(node.bound):
+            self._raise_bound(node)
+            if self._is_above_cutoff(node.bound):
                 return True
-            if self._stopped(expired):
+            if self._must_stop(expired):
                 return False
-            halves = self._np.flatnonzero(free & (shares > TOLERANCE) & (shares < 1 - TOLERANCE))
-            if not len(halves):
-                chosen = self._rounded_derivation(cutter, shares, node)
+            fractional = self._np.flatnonzero(
+                undecided & (lp_values > TOLERANCE) & (lp_values < 1 - TOLERANCE)
+            )
+            if not len(fractional):
+                chosen = self._rounded_derivation(cutter, lp_values, node)
                 if not chosen:
                     continue
-                if self._closes(node.bound):
+                if self._is_above_cutoff(node.bound):
                     return True
-                halves = self._np.array(
+                fractional = self._np.array(
                     sorted(chosen - node.used)
                 )  # rounding left a gap that floats do not close
                 break
             if number:
                 ends = len(values) > tuning.RELAXATION.node_rounds
             else:
-                ends = stalled(values, self._total / self._relaxation.dearest - relaxed.value)
-            if ends or not self._separate(cutter, shares, node, expired):
+                ends = has_stalled(values, self._total / self._relaxation.greatest_cost - relaxed.value)
+            if ends or not self._separate(cutter, lp_values, node, expired):
                 break
         if number % tuning.RELAXATION.guess_interval == 0:
-            self._try_guesses(shares, node)
-            if self._closes(node.bound):
+            self._try_guesses(lp_values, node)
+            if self._is_above_cutoff(node.bound):
                 return True
         reduced_costs = self._reduced_costs(node)
-        gap = self._below() * PARTS - node.bound
+        gap = self._cutoff() * PARTS - node.bound
         above_cutoff = self._np.flatnonzero(reduced_costs > gap).tolist()
         node.above_cutoff = frozenset(above_cutoff) - node.used - node.forbidden
-        scores = self._np.minimum(shares, 1.001 - shares)[halves] * (self._relative[halves] + 0.05)
-        action = int(halves[scores.argmax()])
+        scores = self._np.minimum(lp_values, 1.001 - lp_values)[fractional] * (
+            self._relative_costs[fractional] + 0.05
+        )
+        action = int(fractional[scores.argmax()])
         node.above_cutoff -= {action}
         node.action = action
         forbidden = node.forbidden | node.above_cutoff
@@ -223,51 +227,51 @@ class Branching:
         node.using = _Node(node.used | {action}, forbidden, paid, node.weights)
         return True
 
-    def _rounded_derivation(self, cutter: Cutter, shares: Any, node: _Node) -> set[int]:
+    def _rounded_derivation(self, cutter: Cutter, lp_values: Any, node: _Node) -> set[int]:
         """Record the rounded LP solution as a derivation and return its columns.
 
         If it does not reach all targets, add a cut that it violates, and return the empty set.
         """
-        chosen = node.used.union(self._np.flatnonzero(shares > 0.5).tolist()) - node.forbidden
+        chosen = node.used.union(self._np.flatnonzero(lp_values > 0.5).tolist()) - node.forbidden
         self.effort -= len(cutter.actions)
         cut = cutter.cut(chosen, cutter.actions)
         if cut is not None:
-            self._relaxation.add(frozenset(cut.objects))
+            self._relaxation.add_cut(frozenset(cut.objects))
             return set()
-        self._record({self._actions[a] for a in chosen})
+        self._record_derivation({self._actions[a] for a in chosen})
         return set(chosen)
 
-    def _record(self, actions: set[int]) -> None:
+    def _record_derivation(self, actions: set[int]) -> None:
         """Make a derivation the incumbent if it is better."""
         total = sum(self._costs[i] for i, a in enumerate(self._actions) if a in actions)
         if total < self._total:
             self._total, self.incumbent = total, frozenset(actions)
 
-    def _try_guesses(self, shares: Any, node: _Node) -> None:
+    def _try_guesses(self, lp_values: Any, node: _Node) -> None:
         """Replace the incumbent by better derivations that the heuristic proposes."""
         self.effort -= 2 * len(self._actions)
-        solution = dict(zip(self._actions, shares.tolist(), strict=True))
+        solution = dict(zip(self._actions, lp_values.tolist(), strict=True))
         for derivation in self._guess(solution, {self._actions[a] for a in node.forbidden}):
             if set(derivation) <= solution.keys():
-                self._record(set(derivation))
+                self._record_derivation(set(derivation))
 
-    def _separate(self, cutter: Cutter, shares: Any, node: _Node, expired: Callable[[], bool]) -> bool:
+    def _separate(self, cutter: Cutter, lp_values: Any, node: _Node, expired: Callable[[], bool]) -> bool:
         """Add disjoint cuts that an LP solution violates; return whether any was added."""
         budget = min(self.effort, tuning.RELAXATION.cuts * len(cutter.actions))
-        added, looks = self._relaxation.separate([cutter], node.used, shares.copy(), budget, expired)
+        added, looks = self._relaxation.separate([cutter], node.used, lp_values.copy(), budget, expired)
         self.effort -= looks
         return added > 0
 
-    def _weigh(self, node: _Node) -> None:
+    def _raise_bound(self, node: _Node) -> None:
         """Round the LP dual to weights of rows; the node takes them if they raise its bound."""
-        reduced_costs = self._parts.copy()
+        reduced_costs = self._costs_in_parts.copy()
         paid = sum(self._costs[a] for a in node.used) * PARTS
         reduced_costs[list(node.used)] = 0
         reduced_costs[list(node.forbidden)] = sum(self._costs) * PARTS  # more than cuts can take
         dual_values = (
-            (row, w) for row, w in enumerate(self._covering.weights()) if self._active.get(row, True)
+            (row, w) for row, w in enumerate(self._covering.duals()) if self._active.get(row, True)
         )
-        weights = self._relaxation.shared_out(dual_values, reduced_costs)
+        weights = self._relaxation.feasible_weights(dual_values, reduced_costs)
         bound = paid + sum(weights.values())
         if bound > node.bound or not node.weights:
             node.bound = max(bound, node.bound)
@@ -278,41 +282,43 @@ class Branching:
 
         A cut is open if its landmark has no used action.
         """
-        reduced_costs = self._parts.copy()
-        for row, weight in self._carrying(node):
+        reduced_costs = self._costs_in_parts.copy()
+        for row, weight in self._open_cuts(node):
             reduced_costs[self._relaxation.rows[row]] -= weight
         return reduced_costs
 
-    def _carrying(self, node: _Node) -> Iterator[tuple[int, int]]:
+    def _open_cuts(self, node: _Node) -> Iterator[tuple[int, int]]:
         """Yield the rows of open cuts and their weights, without rows that a used action satisfies."""
         for row, weight in node.weights:
             if node.used.isdisjoint(self._relaxation.rows[row].tolist()):
                 yield row, weight
 
-    def _proof(self, node: _Node) -> tuple[Proof, set[int]]:
+    def _proof_of(self, node: _Node) -> tuple[Proof, set[int]]:
         """Return the proof of a closed node, and the columns of forbidden actions that it relies on."""
         if node.hopeless is not None:
             cut = frozenset(node.hopeless.objects)
-            return Hopeless(self._stated(cut, node)), {*self._relaxation.landmark_of(cut)} & node.forbidden
+            return Hopeless(self._cut_in_whole_graph(cut, node)), {
+                *self._relaxation.landmark_of(cut)
+            } & node.forbidden
         if node.without is None or node.using is None or node.action is None:
-            return self._packing(node)
-        proof, barred = self._proof(node.without)
-        using, barred_too = self._proof(node.using)
+            return self._packing_of(node)
+        proof, barred = self._proof_of(node.without)
+        using, barred_too = self._proof_of(node.using)
         proof = Branch(self._actions[node.action], proof, using)
         barred = (barred - {node.action}) | barred_too
         fixed = sorted(barred & node.above_cutoff)
         if not fixed:
             return proof, barred
-        packing, overloaded = self._packing(node)
+        packing, overloaded = self._packing_of(node)
         proof = CostFixing(tuple(self._actions[a] for a in fixed), packing, proof)
         return proof, (barred - node.above_cutoff) | overloaded
 
-    def _packing(self, node: _Node) -> tuple[Packing, set[int]]:
+    def _packing_of(self, node: _Node) -> tuple[Packing, set[int]]:
         """Return the cost partition of a node, and the columns of forbidden actions that it overloads."""
         weights: list[tuple[Cut, tuple[Fraction]]] = []
         self._length_budget -= 5000  # which limits the depth of the branching, too
-        for row, weight in self._carrying(node):
-            cut = self._stated(self._relaxation.cuts[row], node)
+        for row, weight in self._open_cuts(node):
+            cut = self._cut_in_whole_graph(self._relaxation.cuts[row], node)
             self._length_budget -= len(cut.objects) + len(cut.members)
             if self._length_budget < 0 or self._expired():
                 raise TooLongError
@@ -320,13 +326,13 @@ class Branching:
         overloaded = set(self._np.flatnonzero(self._reduced_costs(node) < 0).tolist())
         return Packing(tuple(weights)), overloaded & node.forbidden
 
-    def _stated(self, cut: frozenset[int], node: _Node) -> Cut:
+    def _cut_in_whole_graph(self, cut: frozenset[int], node: _Node) -> Cut:
         """Return a cut by its numbers in the whole graph, without landmark actions that a node forbids."""
         crossing = (self._actions[a] for a in self._relaxation.landmark_of(cut) if a not in node.forbidden)
-        return Cut(tuple(sorted(self._relaxation.whole(cut))), tuple(sorted(crossing)))
+        return Cut(tuple(sorted(self._relaxation.whole_cut(cut))), tuple(sorted(crossing)))
 
 
-def branched(
+def prove_by_branching(
     graph: Hypergraph,
     targets: Iterable[int],
     actions: Collection[int],

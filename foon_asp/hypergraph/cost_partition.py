@@ -13,30 +13,30 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.hypergraph import tuning
-from foon_asp.hypergraph.covering import ROUGH_TOLERANCE, UnsolvedError, Weighed
+from foon_asp.hypergraph.covering import ROUGH_TOLERANCE, LpSolution, UnsolvedError
 from foon_asp.hypergraph.cut import Cutter
 from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.landmark_relaxation import PARTS, LandmarkRelaxation
 
 
-class SharedCosts(NamedTuple):
+class CostPartition(NamedTuple):
     """A cost partition over cuts, in :data:`PARTS` of 1.
 
     ``bound``: a lower bound on the cost of derivations by the actions of the relaxation.
     ``reduced_costs``: the reduced cost of each action.
     ``cuts``: the objects of each cut, and its weight.
-    ``shares``: the LP value of each action.
+    ``lp_values``: the LP value of each action.
     ``tight``: the cuts that the LP solution satisfies with equality; the next relaxation begins with them.
     """
 
     bound: int
     reduced_costs: dict[int, int]
     cuts: list[tuple[frozenset[int], int]]
-    shares: dict[int, float]
+    lp_values: dict[int, float]
     tight: Sequence[frozenset[int]] = ()
 
 
-def quotient(a: int, b: int) -> float:
+def float_quotient(a: int, b: int) -> float:
     """Return ``a / b``, or infinity where no float is so large."""
     try:
         return a / b
@@ -44,12 +44,12 @@ def quotient(a: int, b: int) -> float:
         return math.inf
 
 
-def stalled(values: Sequence[float], lacks: float) -> bool:
-    """Return whether the last few of the LP ``values`` closed hardly any of the remaining gap ``lacks``."""
+def has_stalled(values: Sequence[float], remaining_gap: float) -> bool:
+    """Return whether the last few of the LP ``values`` closed hardly any of the remaining gap ``remaining_gap``."""
     return (
         len(values) > tuning.RELAXATION.stalled_solutions
         and values[-1] - values[-1 - tuning.RELAXATION.stalled_solutions]
-        < tuning.RELAXATION.stalled_growth * lacks
+        < tuning.RELAXATION.stalled_growth * remaining_gap
     )
 
 
@@ -74,17 +74,17 @@ class CostPartitioning:
         self._cutter = Cutter(relaxation.graph, relaxation.targets)
         self._random = random.Random(0)
         self._single_target_cutters, self._other_targets_cutters = (
-            ([], []) if self._cutter.hopeless else self._by_target(relaxation.graph)
+            ([], []) if self._cutter.hopeless else self._make_cutters(relaxation.graph)
         )
         self._interior_point = True  # faster, until it is not exact enough
         self._values: list[float] = []
-        self._last: Weighed | None = None
+        self._last: LpSolution | None = None
         self.converged = False
         if not self._cutter.hopeless:
-            relaxation.add_known(known_cuts)
+            relaxation.add_whole_cuts(known_cuts)
 
-    def advance(self, enough: int, max_solutions: float = math.inf) -> SharedCosts | None:
-        """Solve the LP and add violated cuts, until the bound is ``enough``, ``max_solutions`` times at most.
+    def advance(self, sufficient_bound: int, max_solutions: float = math.inf) -> CostPartition | None:
+        """Solve the LP and add violated cuts, until the bound is ``sufficient_bound``, ``max_solutions`` times at most.
 
         Returns the cost partition of the last solution; ``None`` where the targets cannot be reached or are
         all initial, and where HiGHS fails.
@@ -92,33 +92,35 @@ class CostPartitioning:
         if self._cutter.hopeless or not self._cutter.targets:
             self.converged = True
             return None
-        above = 100 * enough - 99  # hundredths: costs are whole, and so are bounds
+        above = 100 * sufficient_bound - 99  # hundredths: costs are whole, and so are bounds
         solutions = 0
         while self._last is None or not self._expired():
-            relaxed = self._solved()
+            relaxed = self._solve_lp()
             if relaxed is None:
                 break
             self._last = relaxed
             self._values.append(relaxed.value)
             solutions += 1
-            lacks = quotient(above, 100 * self._relaxation.dearest) - relaxed.value
-            ends = lacks <= 0 or stalled(self._values, lacks)
+            remaining_gap = float_quotient(above, 100 * self._relaxation.greatest_cost) - relaxed.value
+            ends = remaining_gap <= 0 or has_stalled(self._values, remaining_gap)
             if ends or not self._separate(relaxed.x):
                 if self._interior_point and not ends:
                     self._interior_point = False
                     continue
-                shared = self._shared(relaxed)
-                lost = Fraction(relaxed.value) * self._relaxation.dearest - Fraction(shared.bound, PARTS)
+                partition = self._rounded_partition(relaxed)
+                lost = Fraction(relaxed.value) * self._relaxation.greatest_cost - Fraction(
+                    partition.bound, PARTS
+                )
                 if not self._interior_point or lost < Fraction(1, 100):
                     self.converged = True
-                    return shared
+                    return partition
                 self._interior_point = False
             elif solutions >= max_solutions:
-                return self._shared(relaxed)
+                return self._rounded_partition(relaxed)
         self.converged = True
-        return None if self._last is None else self._shared(self._last)
+        return None if self._last is None else self._rounded_partition(self._last)
 
-    def _solved(self) -> Weighed | None:
+    def _solve_lp(self) -> LpSolution | None:
         """Return an LP solution; ``None`` where HiGHS finds none before time is up."""
         if self._interior_point:
             relaxed = self._relaxation.covering.interior_point(self._expired)
@@ -129,21 +131,21 @@ class CostPartitioning:
             solved = self._relaxation.covering.solve(self._expired)
         except UnsolvedError:
             return None
-        return Weighed(solved.value, solved.x, self._relaxation.covering.weights())
+        return LpSolution(solved.value, solved.x, self._relaxation.covering.duals())
 
     def _separate(self, x: list[float]) -> bool:
         """Add disjoint cuts that an LP solution violates; return whether any was added."""
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
         relaxation = self._relaxation
-        shares = np.where(relaxation.relative > 0, x, 1.0)
+        lp_values = np.where(relaxation.relative_costs > 0, x, 1.0)
         self._random.shuffle(self._single_target_cutters)
         cutters = (*self._single_target_cutters, *self._other_targets_cutters)
         budget = tuning.RELAXATION.cuts * len(relaxation.actions)
-        added, _ = relaxation.separate(cutters, (), shares, budget, self._expired)
+        added, _ = relaxation.separate(cutters, (), lp_values, budget, self._expired)
         return added > 0
 
-    def _by_target(self, graph: Hypergraph) -> tuple[list[Cutter], list[Cutter]]:
+    def _make_cutters(self, graph: Hypergraph) -> tuple[list[Cutter], list[Cutter]]:
         """Return cutters for single targets with few relevant actions, and a cutter for all other targets.
 
         The second list is empty if there are no other targets.
@@ -164,19 +166,19 @@ class CostPartitioning:
         together = [Cutter(graph, others, reachable=everything)] if others else []
         return alone, together
 
-    def _shared(self, solved: Weighed) -> SharedCosts:
+    def _rounded_partition(self, solved: LpSolution) -> CostPartition:
         """Return the cost partition by the rounded dual values of an LP solution."""
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
-        relaxation, shares = self._relaxation, np.array(solved.x)
-        capacity, rows = relaxation.in_parts(), relaxation.rows
-        dual_values = [*solved.weights] + [0.0] * (len(rows) - len(solved.weights))  # for rows added since
-        weights = relaxation.shared_out(enumerate(dual_values), capacity)
-        whole, cuts, tight = relaxation.whole, relaxation.cuts, 1 + ROUGH_TOLERANCE
-        return SharedCosts(
+        relaxation, lp_values = self._relaxation, np.array(solved.x)
+        capacity, rows = relaxation.costs_in_parts(), relaxation.rows
+        dual_values = [*solved.duals] + [0.0] * (len(rows) - len(solved.duals))  # for rows added since
+        weights = relaxation.feasible_weights(enumerate(dual_values), capacity)
+        whole, cuts, tight = relaxation.whole_cut, relaxation.cuts, 1 + ROUGH_TOLERANCE
+        return CostPartition(
             sum(weights.values()),
             dict(zip(relaxation.actions, capacity.tolist(), strict=True)),
             [(whole(cuts[row]), weight) for row, weight in weights.items() if weight],
             dict(zip(relaxation.actions, solved.x, strict=True)),
-            [whole(cut) for cut, row in zip(cuts, rows, strict=True) if shares[row].sum() < tight],
+            [whole(cut) for cut, row in zip(cuts, rows, strict=True) if lp_values[row].sum() < tight],
         )

@@ -116,7 +116,9 @@ class Cutter:
         """
         graph, reachable = self._graph, self._reachable
         inside = {o for o in objects if not graph.at_start[o]}
-        return self._extend_to_cut(inside, lambda a: next((o for o in graph.needs[a] if not reachable[o]), None))
+        return self._extend_to_cut(
+            inside, lambda a: next((o for o in graph.needs[a] if not reachable[o]), None)
+        )
 
     def _grow_small_cut(
         self, target: int, members: set[int], reached: bytearray, consumer_counts: Mapping[int, float]

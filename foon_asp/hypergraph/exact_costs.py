@@ -37,8 +37,10 @@ class ExactCosts:
         self._multiplied = frozenset(filter(multiplies, self._objectives))
         self._units = units = len(problem.network)
         chosen = (a for a in actions if a < units)
-        self._weights = _weights(problem.different_rates(chosen) if self._multiplied else set())
-        self._steps = {objective: self._step(objective, actions) for objective in self._objectives}
+        self._logarithms = _scaled_logarithms(problem.different_rates(chosen) if self._multiplied else set())
+        self._denominators = {
+            objective: self._common_denominator(objective, actions) for objective in self._objectives
+        }
         last_first = self._objectives[::-1]
         self._factors = {last_first[0]: 1}
         for after, objective in pairwise(last_first):
@@ -47,10 +49,10 @@ class ExactCosts:
         self._cache: dict[int, int] = {}
         self._actions = actions
         self._price: Callable[[int], int] | None = None
-        self._times = 1
+        self._multiplier = 1
         self._limit: int | None = None
 
-    def priced(
+    def with_price(
         self, counts: Callable[[int], int], price: int | Fraction, limit: int | None = None
     ) -> "ExactCosts":
         """Return these costs with ``price * counts(unit)`` added to the cost of each unit.
@@ -59,62 +61,67 @@ class ExactCosts:
         ends as soon as a bound reaches the limit or a tree costs less.
         """
         units, costs = self._units, copy(self)
-        whole, costs._times = Fraction(price).as_integer_ratio()
-        costs._cache, costs._limit, costs.doubt = {}, limit, self.doubt * costs._times
+        whole, costs._multiplier = Fraction(price).as_integer_ratio()
+        costs._cache, costs._limit, costs.doubt = {}, limit, self.doubt * costs._multiplier
         costs._price = lambda action: whole * counts(action) if action < units else 0
         return costs
 
     @property
-    def limited(self) -> bool:
+    def has_limit(self) -> bool:
         """Whether there is a limit, so that a search ends at the first tree below it."""
         return self._limit is not None
 
     @property
-    def beyond(self) -> int:
+    def strict_upper_bound(self) -> int:
         """A number above the cost of every set of actions."""
         first = self._objectives[0]
         return self._factors[first] * (1 + self._upper_bound(first, self._actions))
 
-    def _step(self, objective: Objective, actions: Collection[int]) -> int:
+    def _common_denominator(self, objective: Objective, actions: Collection[int]) -> int:
         """Return the common denominator of the costs of actions by an objective."""
         if objective.row.whole or objective in self._multiplied:
             return 1
-        return math.lcm(*{cost.denominator for cost in self._costs(objective, actions)})
+        return math.lcm(*{cost.denominator for cost in self._unit_costs(objective, actions)})
 
     def _upper_bound(self, objective: Objective, actions: Collection[int]) -> int:
         """Return an upper bound on the scaled cost of a set of actions by one objective."""
         if objective is Objective.UNITS:
             return len(actions)
         if objective in self._multiplied:
-            return len(actions) * max(self._weights.values(), default=0)
-        steps = self._steps[objective]
+            return len(actions) * max(self._logarithms.values(), default=0)
+        steps = self._denominators[objective]
         items = sum(a >= self._units for a in actions)
-        return sum(int(cost * steps) for cost in self._costs(objective, actions)) + objective.row.item * items
+        return (
+            sum(int(cost * steps) for cost in self._unit_costs(objective, actions))
+            + objective.row.item * items
+        )
 
-    def _costs(self, objective: Objective, actions: Collection[int]) -> Iterable[int | Fraction]:
+    def _unit_costs(self, objective: Objective, actions: Collection[int]) -> Iterable[int | Fraction]:
         return self._problem.figures(objective, (a for a in actions if a < self._units))
 
     def __call__(self, action: int) -> int:
         """Return the cost of an action."""
         cost = self._cache.get(action)
         if cost is None:
-            cost = self._times * sum(self._figure(o, action) * factor for o, factor in self._factors.items())
+            cost = self._multiplier * sum(
+                self._figure(o, action) * factor for o, factor in self._factors.items()
+            )
             cost += self._price(action) if self._price else 0
             self._cache[action] = cost
         return cost
 
-    def first(self, total: int) -> int | Fraction:
+    def first_objective_bound(self, total: int) -> int | Fraction:
         """Turn a lower bound on total costs into a bound on the first objective.
 
         The result is an upper bound for success.
         """
         figure = total // self._factors[self._objectives[0]]
         if self._objectives[0] not in self._multiplied:
-            return self.total(self._objectives[0], figure)
+            return self.unscale(self._objectives[0], figure)
         value = _FINE.next_plus(_FINE.exp(_FINE.divide(Decimal(_ROUNDED - figure), Decimal(_SCALE))))
         return min(Fraction(1), Fraction(_SHOWN.plus(value)))
 
-    def met(self, cuts: Cuts, tree: Collection[int]) -> bool:
+    def proves_optimal(self, cuts: Cuts, tree: Collection[int]) -> bool:
         """Return whether a cost partition proves this tree optimal, exactly.
 
         With a limit, return whether the bound reaches the limit or the tree costs less. The weight of each
@@ -128,15 +135,15 @@ class ExactCosts:
             return cuts.bound >= total
         if self._price or cuts.bound + self.doubt < total:  # a price is no product of rates
             return False
-        rates = [rate for rate, weight in self._weights.items() if weight]
+        rates = [rate for rate, weight in self._logarithms.items() if weight]
         order = Lexicographic([rates if o in self._multiplied else None for o in self._objectives])
         coordinates = {rate: i for i, rate in enumerate(rates)}
         vectors = _Vectors(self, coordinates)
-        reduced_costs = {action: vectors.of(action) for action in cuts.reduced_costs}
+        reduced_costs = {action: vectors.vector(action) for action in cuts.reduced_costs}
         proved = [0] * order.width
         for cut in cuts.cuts:
             weight = tuple(reduced_costs[cut.cheapest])
-            if _large(weight) or order.sign(weight) < 0:
+            if _is_too_large(weight) or order.sign(weight) < 0:
                 return False
             for i, coordinate in enumerate(weight):
                 if coordinate:
@@ -144,15 +151,16 @@ class ExactCosts:
                     for action in cut.members:
                         reduced_costs[action][i] -= coordinate
         if any(
-            _large(reduced_cost) or order.sign(reduced_cost) < 0 for reduced_cost in reduced_costs.values()
+            _is_too_large(reduced_cost) or order.sign(reduced_cost) < 0
+            for reduced_cost in reduced_costs.values()
         ):
             return False
         for action in tree:
-            for i, coordinate in enumerate(vectors.of(action)):
+            for i, coordinate in enumerate(vectors.vector(action)):
                 proved[i] -= coordinate
-        return not _large(proved) and order.sign(proved) >= 0
+        return not _is_too_large(proved) and order.sign(proved) >= 0
 
-    def of(self, costs: Costs) -> int:
+    def combined_cost(self, costs: Costs) -> int:
         """Return the cost of a tree from its costs by objective; rounding may make it too great."""
         total = 0
         for objective, factor in self._factors.items():
@@ -160,17 +168,17 @@ class ExactCosts:
             if objective in self._multiplied:
                 figure = _logarithm(measure.denominator) - _logarithm(measure.numerator) + _ROUNDED
             else:
-                figure = math.ceil(measure * self._steps[objective])
+                figure = math.ceil(measure * self._denominators[objective])
             total += figure * factor
-        return total * self._times
+        return total * self._multiplier
 
     def figures(self, action: int) -> list[tuple[Objective, int]]:
         """Return the scaled cost of an action by each objective; for ``success`` a rounded logarithm."""
         return [(objective, self._figure(objective, action)) for objective in self._objectives]
 
-    def total(self, objective: Objective, figure: int) -> int | Fraction:
+    def unscale(self, objective: Objective, figure: int) -> int | Fraction:
         """Return the cost by an additive objective for ``figure``, a sum of scaled costs."""
-        return figure if objective.row.whole else Fraction(figure, self._steps[objective])
+        return figure if objective.row.whole else Fraction(figure, self._denominators[objective])
 
     def is_logarithm(self, figure: int, product: Fraction) -> bool:
         """Return whether ``figure``, a sum of rounded logarithms, is ``-log(product)`` up to rounding."""
@@ -187,11 +195,11 @@ class ExactCosts:
         if action >= self._units:
             return objective.row.item
         if objective in self._multiplied:
-            return self._weights[self._problem.rate(action)]
-        return int(self._problem.figure(objective, action) * self._steps[objective])
+            return self._logarithms[self._problem.rate(action)]
+        return int(self._problem.figure(objective, action) * self._denominators[objective])
 
 
-def _large(vector: Sequence[int]) -> bool:
+def _is_too_large(vector: Sequence[int]) -> bool:
     """Return whether products of rates with these exponents take too long to be compared."""
     return sum(map(abs, vector)) > 50_000
 
@@ -202,7 +210,7 @@ class _Vectors:
     def __init__(self, costs: ExactCosts, coordinates: dict[Fraction, int]) -> None:
         self._costs, self._coordinates = costs, coordinates
 
-    def of(self, action: int) -> list[int]:
+    def vector(self, action: int) -> list[int]:
         """Return the cost of an action as a vector."""
         vector: list[int] = []
         for objective, figure in self._costs.figures(action):
@@ -233,20 +241,20 @@ class CoarseCosts:
             rated = action if action in problem.own_rates else problem.network.motions[action]
             cost = self._of_rates.get(rated)
             if cost is None:
-                cost = self._of_rates[rated] = _coarse(problem.rate(action))
+                cost = self._of_rates[rated] = _coarse_logarithm(problem.rate(action))
             return cost
         figure = problem.figure(self._objective, action)
         return int(figure if self._objective.row.whole else figure * 1000)
 
 
-def _coarse(rate: Fraction) -> int:
+def _coarse_logarithm(rate: Fraction) -> int:
     """Return ``-ln(rate)`` in thousandths; a rate of 0 counts as about ``10**-43``."""
     if not rate:
         return 100_000
     return int((math.log(rate.denominator) - math.log(rate.numerator)) * 1000)  # a float may not hold it
 
 
-def _weights(rates: set[Fraction]) -> dict[Fraction, int]:
+def _scaled_logarithms(rates: set[Fraction]) -> dict[Fraction, int]:
     """Return ``-log(rate)`` of each rate, scaled, as a sum of rounded logarithms of its coprime factors.
 
     Raises :class:`TooFineError` for rates that are 0 or have large denominators.

@@ -5,7 +5,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.hypergraph import tuning
-from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, times
+from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, multiply
 
 _ZERO, _ONE = Fraction(), Fraction(1)
 
@@ -25,7 +25,7 @@ class ExactOptimum(NamedTuple):
     value: Vector
 
 
-class NowhereError(Exception):
+class UnusableBasisError(Exception):
     """A basis is singular, or its solution is infeasible."""
 
 
@@ -55,15 +55,15 @@ def exact_optimum(
     try:
         for _ in range(tuning.PROOF.pivots):
             basis = _Basis(full, least, costs, basic_columns, tight_rows)
-            entering = basis.entering(order)
-            if entering is None:
+            entering_variable = basis.entering_variable(order)
+            if entering_variable is None:
                 kept = {row: weight for row, weight in basis.weights.items() if order.sign(weight)}
-                shares = {column: share for column, share in basis.x.items() if share}
-                value = order.total(times(weight, least[row]) for row, weight in kept.items())
-                return ExactOptimum(shares, kept, value)
-            for number, is_row in (entering, basis.leaving(*entering)):
+                lp_values = {column: share for column, share in basis.x.items() if share}
+                value = order.total(multiply(weight, least[row]) for row, weight in kept.items())
+                return ExactOptimum(lp_values, kept, value)
+            for number, is_row in (entering_variable, basis.leaving_variable(*entering_variable)):
                 (tight_rows if is_row else basic_columns).symmetric_difference_update({number})
-    except NowhereError:
+    except UnusableBasisError:
         pass
     return None
 
@@ -73,7 +73,7 @@ class _Basis:
 
     ``x`` are the values of the basic columns; with these, tight rows hold with equality. ``slack`` is the
     slack of each row. ``weights`` are the duals of the tight rows; with these, basic columns have reduced
-    cost 0. Raises :class:`NowhereError` where the basis is singular, or a value or slack is negative.
+    cost 0. Raises :class:`UnusableBasisError` where the basis is singular, or a value or slack is negative.
     """
 
     def __init__(
@@ -99,9 +99,9 @@ class _Basis:
             for r, row in enumerate(rows)
         ]
         if any(value < 0 for value in (*self.x.values(), *self.slack)):
-            raise NowhereError
+            raise UnusableBasisError
 
-    def entering(self, order: Lexicographic) -> tuple[int, bool] | None:
+    def entering_variable(self, order: Lexicographic) -> tuple[int, bool] | None:
         """Return the entering variable by Bland's rule, and whether it is the slack of a row.
 
         The first column of negative reduced cost enters, else the first row of negative dual. ``None`` at the
@@ -111,20 +111,20 @@ class _Basis:
         for row, weight in self.weights.items():
             for column, value in self._rows[row].items():
                 if column not in self.x:  # basic columns have reduced cost 0
-                    loads.setdefault(column, []).append(times(weight, value))
+                    loads.setdefault(column, []).append(multiply(weight, value))
         for column in sorted(loads):
             if order.compare(order.total(loads[column]), self._costs[column]) > 0:
                 return column, False
         return next(((row, True) for row in sorted(self.weights) if order.sign(self.weights[row]) < 0), None)
 
-    def leaving(self, number: int, is_row: bool) -> tuple[int, bool]:
+    def leaving_variable(self, number: int, is_row: bool) -> tuple[int, bool]:
         """Return the leaving column or row by the ratio test, and whether it is a row."""
         gains = [
             Fraction(-(row == number)) if is_row else coefficients.get(number, _ZERO)
             for row, coefficients in enumerate(self._rows)
         ]
-        right = {row: (gains[row],) for row in self._matrix}
-        fall = {column: value for column, (value,) in solve_exactly(self._matrix, right).items()}
+        right_sides = {row: (gains[row],) for row in self._matrix}
+        fall = {column: value for column, (value,) in solve_exactly(self._matrix, right_sides).items()}
         limits = [(self.x[c] / f, False, c) for c, f in fall.items() if f > 0]
         for row, space in enumerate(self.slack):
             lost = sum((value * fall[c] for c, value in self._rows[row].items() if c in fall), _ZERO)
@@ -135,22 +135,22 @@ class _Basis:
         return leaving, leaves_row
 
 
-def solve_exactly(matrix: Matrix, right: Mapping[int, Vector]) -> dict[int, Vector]:
+def solve_exactly(matrix: Matrix, right_sides: Mapping[int, Vector]) -> dict[int, Vector]:
     """Solve a sparse square system for several right-hand sides at once, by Gaussian elimination.
 
-    ``matrix[i]`` maps the unknowns of row i to coefficients; ``right[i]`` has its right-hand sides. The
+    ``matrix[i]`` maps the unknowns of row i to coefficients; ``right_sides[i]`` has its right-hand sides. The
     shortest row is eliminated first, which keeps systems of cuts sparse. Returns for each unknown its values,
-    one per right-hand side. Raises :class:`NowhereError` where the system is singular.
+    one per right-hand side. Raises :class:`UnusableBasisError` where the system is singular.
     """
     rows = {number: dict(row) for number, row in matrix.items()}
-    right_sides = dict(right)
+    right_sides = dict(right_sides)
     waiting = set(rows)
     pivots: list[tuple[int, int, Fraction]] = []
     while waiting:
         number = min(waiting, key=lambda n: (len(rows[n]), n))
         row = rows[number]
         if not row:
-            raise NowhereError
+            raise UnusableBasisError
         unknown, pivot = row.popitem()
         pivots.append((number, unknown, pivot))
         waiting.remove(number)
@@ -162,15 +162,15 @@ def solve_exactly(matrix: Matrix, right: Mapping[int, Vector]) -> dict[int, Vect
                     other[u] = other.get(u, _ZERO) - factor * value
                     if not other[u]:
                         del other[u]
-                right_sides[rival] = _less(right_sides[rival], factor, right_sides[number])
+                right_sides[rival] = _subtract_multiple(right_sides[rival], factor, right_sides[number])
     solution: dict[int, Vector] = {}
     for number, unknown, pivot in reversed(pivots):
         right_side = right_sides[number]
         for u, value in rows[number].items():
-            right_side = _less(right_side, value, solution[u])
+            right_side = _subtract_multiple(right_side, value, solution[u])
         solution[unknown] = tuple(numerator / pivot for numerator in right_side)
     return solution
 
 
-def _less(vector: Vector, factor: Fraction, other: Vector) -> Vector:
+def _subtract_multiple(vector: Vector, factor: Fraction, other: Vector) -> Vector:
     return tuple(b - factor * a for a, b in zip(other, vector, strict=True))

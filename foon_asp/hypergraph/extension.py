@@ -12,7 +12,7 @@ from foon_asp.hypergraph.restricted_subproblem import restricted_subproblem
 _FIRST = 500  # actions nearest to the required sets, among which an extension is looked for
 
 
-def extended(
+def extend_tree(
     graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int], max_actions: int
 ) -> set[int] | None:
     """Return a tree with a unit of each required set added, and the actions that derive the units by h_add.
@@ -20,7 +20,7 @@ def extended(
     ``None`` where no extension is found among ``max_actions`` actions.
     """
     towards = _towards_required(graph)
-    price = _free(tree, cost)
+    price = _cost_without(tree, cost)
     candidates = {
         *tree,
         *neighbourhood(towards, range(len(graph.needs)), price, sum(map(cost, tree)), enough=_FIRST),
@@ -32,7 +32,7 @@ def extended(
     return None if extension is None else {*tree, *extension}
 
 
-def extensions(
+def actions_of_extensions(
     graph: GoalGraph,
     free: Collection[int],
     cost: Callable[[int], int],
@@ -44,7 +44,7 @@ def extensions(
     An action is excluded if its derivation and its path to a required set cost more. All actions on the path
     belong to the extension, so they count in full, while free actions of the derivation count as 0.
     """
-    towards, price = _towards_required(graph), _free(free, cost)
+    towards, price = _towards_required(graph), _cost_without(free, cost)
     all_actions = range(len(graph.needs))
     remaining = neighbourhood(
         towards,
@@ -68,5 +68,5 @@ def _towards_required(graph: GoalGraph) -> GoalGraph:
     return replace(graph, goals=tuple(graph.required), known_makers=graph.makers)
 
 
-def _free(free: Collection[int], cost: Callable[[int], int]) -> Callable[[int], int]:
+def _cost_without(free: Collection[int], cost: Callable[[int], int]) -> Callable[[int], int]:
     return lambda action: 0 if action in free else cost(action)

@@ -50,7 +50,7 @@ class Subproblem:
         made = {o for unit in units for o in graph.gives[unit] if o not in kitchen}
         return {achiever for o in made for achiever in graph.makers[o]}
 
-    def left_of(self, numbers: Iterable[int]) -> set[int]:
+    def units_of_numbers(self, numbers: Iterable[int]) -> set[int]:
         """Return the ids of units by public number, without removed units and units of other networks."""
         network, restriction = self.problem.network, self.problem.restriction
         units = {unit for number in numbers if (unit := network.unit_of_number(number)) is not None}
@@ -81,7 +81,7 @@ class Subproblem:
         needed = {o for unit in tree for o in self.problem.needs[unit]}
         return tree | {self.graph.units + o for o in needed & self.problem.kitchen}
 
-    def nearest(self, min_units: int) -> frozenset[int]:
+    def nearest_units(self, min_units: int) -> frozenset[int]:
         """Return the units nearest to the goals by reduced cost: at least ``min_units``, or all."""
         return self._units(
             neighbourhood(
@@ -93,12 +93,12 @@ class Subproblem:
             )
         )
 
-    def everything(self) -> frozenset[int]:
+    def all_units(self) -> frozenset[int]:
         """Return all units that a tree of any cost can have."""
         if self.redundant:
-            return self._units(self._able(self._all()))
+            return self._units(self._runnable_actions(self._all_actions()))
         cone, _ = self.graph.cone()
-        relevant, _ = self.graph.cone(self._able(cone))
+        relevant, _ = self.graph.cone(self._runnable_actions(cone))
         return self._units(relevant)
 
     def units_within(self, limit: int, expired: Callable[[], bool]) -> frozenset[int]:
@@ -114,7 +114,7 @@ class Subproblem:
         that excludes many. Raises ``KeyboardInterrupt`` where the search for cuts is interrupted.
         """
         graph, costs, cuts = self.graph, self.costs, self.cuts
-        remaining: Collection[int] = self._all() if self.redundant else self.remaining
+        remaining: Collection[int] = self._all_actions() if self.redundant else self.remaining
         while True:
             gap = limit - cuts.bound + costs.doubt
             if gap < 0:
@@ -134,10 +134,10 @@ class Subproblem:
                 graph.goals,
                 candidates,
                 costs,
-                derive(graph, candidates, costs, h_add=False).cost,
+                derive(graph, candidates, costs, h_add=False).h_objects,
                 expired,
                 lambda reduced_cost, candidates=candidates: (
-                    derive(graph, candidates, reduced_cost, h_add=False).cost
+                    derive(graph, candidates, reduced_cost, h_add=False).h_objects
                 ),  # type: ignore[misc]
             )
             if cuts.interrupted:
@@ -146,7 +146,7 @@ class Subproblem:
                 return ()
         return remaining
 
-    def _all(self) -> list[int]:
+    def _all_actions(self) -> list[int]:
         """Return all actions that a tree may have."""
         units, restriction = self.graph.units, self.problem.restriction
         actions = (
@@ -155,7 +155,7 @@ class Subproblem:
         counted = not self.graph.start
         return [*actions, *(units + o for o in self.problem.kitchen if counted)]
 
-    def _able(self, actions: Collection[int]) -> Collection[int]:
+    def _runnable_actions(self, actions: Collection[int]) -> Collection[int]:
         """Return the actions that can run; all costs count as 0, since not every action has a known cost."""
         return derive(self.graph, actions, lambda _: 0, h_add=False).h_actions
 

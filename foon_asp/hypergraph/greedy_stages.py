@@ -9,7 +9,7 @@ from foon_asp.hypergraph.dominance import undominated
 from foon_asp.hypergraph.gap_bounded_subproblem import reduced_cost_fixing, reduced_costs_of
 from foon_asp.hypergraph.h_values import derive
 from foon_asp.hypergraph.incumbent_gap import FirstCuts, Gap, Stage
-from foon_asp.hypergraph.incumbent_trees import improved, irredundant
+from foon_asp.hypergraph.incumbent_trees import improve_locally, irredundant_subset
 from foon_asp.hypergraph.landmark_cuts import Cuts, landmark_cuts
 from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
 from foon_asp.hypergraph.reductions import Reduction
@@ -26,7 +26,7 @@ class Bounded(NamedTuple):
     cuts: Cuts
 
 
-def bound(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide | None) -> Bounded:
+def raise_bound(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide | None) -> Bounded:
     """Raise the lower bound by landmark cuts over the candidates, which have to contain a tree.
 
     ``guide`` is as for :func:`landmark_cuts`.
@@ -42,41 +42,41 @@ def bound(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide | None
         evidence = evidence._replace(first=FirstCuts(cuts, gap.candidates))
     if evidence.cuts is None or cuts.bound > evidence.cuts.bound:
         evidence = evidence._replace(cuts=cuts)
-    return Bounded(gap.raised(min(cuts.bound, task.total(gap)), evidence), cuts)
+    return Bounded(gap.with_bound(min(cuts.bound, task.total(gap)), evidence), cuts)
 
 
 def tighten(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide | None, thorough: bool) -> Stage:
     """Raise the lower bound by cuts, look for better trees, and fix candidates by reduced costs."""
-    gap, cuts = bound(task, gap, h_values, guide)
+    gap, cuts = raise_bound(task, gap, h_values, guide)
     yield gap
     if cuts.interrupted:
         raise KeyboardInterrupt
-    met = meets(task, gap, cuts)
+    met = is_proved_by(task, gap, cuts)
     if not met and not task.expired():
-        improved_gap = improve(task, gap, cuts, thorough)
-        met = improved_gap is not gap and meets(task, improved_gap, cuts)
+        improved_gap = search_neighbourhood(task, gap, cuts, thorough)
+        met = improved_gap is not gap and is_proved_by(task, improved_gap, cuts)
         gap = improved_gap
         yield gap
     if met:
-        gap = gap.closed()
+        gap = gap.as_proved()
     elif Reduction.DEAR in task.reductions and not task.expired():
-        gap = fix(task, gap, cuts)
+        gap = fix_candidates(task, gap, cuts)
     yield gap
     return gap
 
 
-def guide_by(task: Task, gap: Gap) -> Guide:
+def h_max_guide(task: Task, gap: Gap) -> Guide:
     """Return the guide for landmark cuts: a function from reduced costs to h_max over the candidates."""
-    return lambda reduced_cost: derive(task.graph, gap.candidates, reduced_cost, h_add=False).cost
+    return lambda reduced_cost: derive(task.graph, gap.candidates, reduced_cost, h_add=False).h_objects
 
 
-def meets(task: Task, gap: Gap, cuts: Cuts) -> bool:
+def is_proved_by(task: Task, gap: Gap, cuts: Cuts) -> bool:
     """Return whether cuts prove the incumbent optimal and only better trees are wanted."""
     assert task.costs is not None
-    return task.only_better(gap) and task.costs.met(cuts, gap.incumbent)
+    return task.only_better(gap) and task.costs.proves_optimal(cuts, gap.incumbent)
 
 
-def improve(task: Task, gap: Gap, cuts: Cuts, thorough: bool) -> Gap:
+def search_neighbourhood(task: Task, gap: Gap, cuts: Cuts, thorough: bool) -> Gap:
     """Look for better trees in the reduced-cost neighbourhood."""
     costs = task.costs
     assert costs is not None
@@ -85,11 +85,11 @@ def improve(task: Task, gap: Gap, cuts: Cuts, thorough: bool) -> Gap:
     candidates = neighbourhood(
         task.thin, gap.candidates, reduced_cost, distance, enough=task.tuning.neighbourhood_actions
     )
-    better = improved(task.graph, candidates | tree, tree, costs, reduced_cost, task.expired, thorough)
+    better = improve_locally(task.graph, candidates | tree, tree, costs, reduced_cost, task.expired, thorough)
     return gap if better is tree else gap.with_incumbent(better)
 
 
-def improve_repeatedly(task: Task, gap: Gap) -> Stage:
+def search_repeatedly(task: Task, gap: Gap) -> Stage:
     """Look thoroughly for better trees from each new incumbent, within the budget of branching."""
     budget, previous = task.tuning.branching_budget, frozenset[int]()
     while gap.incumbent != previous and not task.expired():
@@ -97,7 +97,7 @@ def improve_repeatedly(task: Task, gap: Gap) -> Stage:
         budget -= len(previous) * len(gap.candidates)
         if budget < 0:
             break
-        gap = improve(task, gap, gap.evidence.cuts or NO_CUTS, thorough=True)
+        gap = search_neighbourhood(task, gap, gap.evidence.cuts or NO_CUTS, thorough=True)
         yield gap
     return gap
 
@@ -107,11 +107,11 @@ def follow_h_add(task: Task, gap: Gap) -> Gap:
     costs = task.costs
     assert costs is not None
     tree = derive(task.graph, gap.candidates, costs, h_add=True).tree(task.graph, task.graph.goals)
-    better = irredundant(task.graph, tree or gap.incumbent, costs)
+    better = irredundant_subset(task.graph, tree or gap.incumbent, costs)
     return gap.with_incumbent(better) if task.is_better(better, gap) else gap
 
 
-def fix(task: Task, gap: Gap, cuts: Cuts) -> Gap:
+def fix_candidates(task: Task, gap: Gap, cuts: Cuts) -> Gap:
     """Exclude the candidates above the cutoff by reduced-cost fixing."""
     assert task.costs is not None
     reduced_cost, distance = reduced_costs_of(task.costs, cuts), task.cutoff(gap) - cuts.bound
@@ -138,7 +138,7 @@ def prune_beside_landmarks(task: Task, gap: Gap) -> Gap:
     return gap.with_candidates(relevant_beside_landmarks(task.graph, gap.candidates))
 
 
-def relevant(task: Task, gap: Gap) -> tuple[Gap, dict[int, int]] | None:
+def restrict_to_relevant(task: Task, gap: Gap) -> tuple[Gap, dict[int, int]] | None:
     """Return the gap over the relevant actions that can run, and the h-value of each object.
 
     A gap without an incumbent gets the tree that follows h_max. ``None`` if there is no tree.
@@ -152,4 +152,6 @@ def relevant(task: Task, gap: Gap) -> tuple[Gap, dict[int, int]] | None:
     candidates: Collection[int] = derivations.h_actions
     if len(candidates) < len(cone):  # others may lead only to actions that cannot run
         candidates = graph.cone(candidates)[0]
-    return replace(gap, incumbent=gap.incumbent or frozenset(tree), candidates=candidates), derivations.cost
+    return replace(
+        gap, incumbent=gap.incumbent or frozenset(tree), candidates=candidates
+    ), derivations.h_objects

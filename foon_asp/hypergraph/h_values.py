@@ -16,13 +16,13 @@ class Derivations(NamedTuple):
     that cannot run, objects that are not reached, and initial objects are missing.
     """
 
-    cost: dict[int, int]
-    maker: dict[int, int]
+    h_objects: dict[int, int]
+    best_achievers: dict[int, int]
     h_actions: dict[int, int]
 
     def tree(self, graph: GoalGraph, objects: Iterable[int]) -> set[int] | None:
         """Return the actions that derive objects by best achievers; ``None`` if an object is not reached."""
-        return follow(objects, self.maker, graph.needs, graph.start)
+        return follow(objects, self.best_achievers, graph.needs, graph.start)
 
 
 def derive(

@@ -9,10 +9,10 @@ from foon_asp.hypergraph.h_values import derive
 from foon_asp.hypergraph.support import Support
 
 if TYPE_CHECKING:  # few questions need it
-    from foon_asp.hypergraph.cost_partition import SharedCosts
+    from foon_asp.hypergraph.cost_partition import CostPartition
 
 
-def irredundant(graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int]) -> set[int]:
+def irredundant_subset(graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int]) -> set[int]:
     """Return an irredundant subset of a tree, by removing redundant actions, expensive ones first.
 
     All actions of the tree have to be able to run. Actions that the cheapest derivations by h_add do not use
@@ -33,46 +33,46 @@ def irredundant(graph: GoalGraph, tree: Collection[int], cost: Callable[[int], i
     return support.actions
 
 
-def guessed(
+def trees_by_lp_values(
     graph: GoalGraph,
     actions: Collection[int],
     cost: Callable[[int], int],
-    shares: Mapping[int, float],
+    lp_values: Mapping[int, float],
     without: Collection[int],
 ) -> Iterator[set[int]]:
-    """Yield irredundant trees that follow the LP values ``shares`` and have no action of ``without``."""
+    """Yield irredundant trees that follow the LP values ``lp_values`` and have no action of ``without``."""
     allowed = [a for a in actions if a not in without]
 
-    def unshared(action: int) -> int:
-        return 1 + _scaled(cost(action), 1 - min(1.0, shares[action]))
+    def price_by_lp_value(action: int) -> int:
+        return 1 + _scaled_cost(cost(action), 1 - min(1.0, lp_values[action]))
 
     for h_add in (True, False):
-        tree = derive(graph, allowed, unshared, h_add).tree(graph, graph.goals)
+        tree = derive(graph, allowed, price_by_lp_value, h_add).tree(graph, graph.goals)
         if tree is not None:
-            yield irredundant(graph, tree, cost)
+            yield irredundant_subset(graph, tree, cost)
 
 
-def _scaled(cost: int, share: float) -> int:
+def _scaled_cost(cost: int, share: float) -> int:
     """Return ``1000 * cost * share``, rounded down; computed in integers, since costs may exceed floats."""
     return cost * int(share * 1_000_000) // 1000
 
 
-def following(
-    graph: GoalGraph, actions: Collection[int], cost: Callable[[int], int], shared: "SharedCosts"
+def trees_by_partition(
+    graph: GoalGraph, actions: Collection[int], cost: Callable[[int], int], partition: "CostPartition"
 ) -> Iterator[set[int]]:
     """Yield irredundant trees that follow an LP solution, by its values and by its reduced costs."""
 
-    def unshared(action: int) -> int:
-        return 1 + _scaled(cost(action), 1 - min(1.0, shared.shares[action]))
+    def price_by_lp_value(action: int) -> int:
+        return 1 + _scaled_cost(cost(action), 1 - min(1.0, partition.lp_values[action]))
 
-    def loose(action: int) -> int:
-        return cost(action) + shared.reduced_costs[action]
+    def price_by_reduced_cost(action: int) -> int:
+        return cost(action) + partition.reduced_costs[action]
 
-    for price in (unshared, loose):
+    for price in (price_by_lp_value, price_by_reduced_cost):
         for h_add in (True, False):
             tree = derive(graph, actions, price, h_add).tree(graph, graph.goals)
             if tree is not None:
-                yield irredundant(graph, tree, cost)
+                yield irredundant_subset(graph, tree, cost)
 
 
 def perturbation_search(
@@ -82,7 +82,7 @@ def perturbation_search(
     cost: Callable[[int], int],
     enough: int,
     expired: Callable[[], bool],
-    shares: Mapping[int, float],
+    lp_values: Mapping[int, float],
     random_number: Callable[[], float],
     tries: int,
 ) -> set[int]:
@@ -91,7 +91,7 @@ def perturbation_search(
     Each round derives a tree at perturbed costs: each cost is multiplied by a random factor from 0.5 to 1.5.
     In half of the rounds, a random part of the current tree also costs nothing, and sometimes only a random
     part of the other actions is allowed. In the other rounds, costs are also multiplied by 1 minus the LP
-    values ``shares``. A tree of equal cost becomes the current tree. Ends when each action was looked at
+    values ``lp_values``. A tree of equal cost becomes the current tree. Ends when each action was looked at
     ``tries`` times since the last improvement.
     """
     best = last = tree
@@ -101,16 +101,16 @@ def perturbation_search(
     while effort > 0 and total > enough and not expired():
         if random_number() < 0.5:
             candidates = ordered
-            unused = ((a, (1 - min(1.0, shares[a])) * (0.5 + random_number())) for a in candidates)
-            price = {a: 1 + _scaled(cost(a), share) for a, share in unused}
+            unused = ((a, (1 - min(1.0, lp_values[a])) * (0.5 + random_number())) for a in candidates)
+            price = {a: 1 + _scaled_cost(cost(a), share) for a, share in unused}
         else:
             share, fraction = random_number(), 1.0 if random_number() < 0.5 else random_number() ** 2
             candidates = [a for a in ordered if random_number() < fraction or a in last]
-            price = {a: _scaled(cost(a), 0.5 + random_number()) for a in candidates}
+            price = {a: _scaled_cost(cost(a), 0.5 + random_number()) for a in candidates}
             price |= {a: 0 for a in sorted(last) if random_number() < share}
         effort -= len(candidates)
         derived = derive(graph, candidates, price, h_add=random_number() < 0.5).tree(graph, graph.goals)
-        candidate = irredundant(graph, derived or last, cost)
+        candidate = irredundant_subset(graph, derived or last, cost)
         candidate_total = sum(map(cost, candidate))
         if candidate_total < total:
             best, effort = candidate, tries * len(ordered)
@@ -119,7 +119,7 @@ def perturbation_search(
     return best
 
 
-def improved(
+def improve_locally(
     graph: GoalGraph,
     actions: Collection[int],
     tree: set[int],
@@ -137,22 +137,24 @@ def improved(
     best = tree
     total = sum(map(cost, best))
 
-    def offer(actions: Collection[int], price: Callable[[int], int], h_add: bool) -> None:
+    def try_derived_tree(actions: Collection[int], price: Callable[[int], int], h_add: bool) -> None:
         """Keep the tree that follows h_add or h_max at some prices, if it is the best so far."""
         nonlocal best, total
         derived = derive(graph, actions, price, h_add).tree(graph, graph.goals)
         if derived is not None:
-            candidate = irredundant(graph, derived, cost)
+            candidate = irredundant_subset(graph, derived, cost)
             candidate_total = sum(map(cost, candidate))
             if candidate_total < total:
                 best, total = candidate, candidate_total
 
     for use_h_add in (True, False):
-        offer(actions, cost, use_h_add)
-        offer(actions, lambda a: reduced_cost(a) * total + cost(a), use_h_add)
+        try_derived_tree(actions, cost, use_h_add)
+        try_derived_tree(actions, lambda a: reduced_cost(a) * total + cost(a), use_h_add)
     tried: set[int] = set()
     while thorough and not expired() and (untried := best - tried):
         action = max(untried, key=lambda a: (reduced_cost(a), cost(a), -a))
         tried.add(action)
-        offer([a for a in actions if a != action], lambda a: 0 if a in best else cost(a), h_add=True)
+        try_derived_tree(
+            [a for a in actions if a != action], lambda a: 0 if a in best else cost(a), h_add=True
+        )
     return best

@@ -24,9 +24,9 @@ class LandmarkRelaxation:
 
     ``actions``: the old number of each action.
     ``graph``, ``targets``: the subgraph of first achievers, and its targets.
-    ``costs``, ``dearest``: the cost of each action, and the greatest cost.
-    ``relative``: costs divided by the greatest one, since costs may be too great for floats.
-    ``covering``: the linear program, with ``relative`` as the costs of columns.
+    ``costs``, ``greatest_cost``: the cost of each action, and the greatest cost.
+    ``relative_costs``: costs divided by the greatest one, since costs may be too great for floats.
+    ``covering``: the linear program, with ``relative_costs`` as the costs of columns.
     ``cuts``, ``rows``: the objects of each cut, and its landmark.
     """
 
@@ -42,35 +42,35 @@ class LandmarkRelaxation:
 
         self._np = np
         self.actions = sorted(actions)
-        plain, self._objects, self.targets = _renumbered(graph, targets, self.actions)
+        plain, self._objects, self.targets = _subgraph(graph, targets, self.actions)
         self._achievers = FirstAchievers(plain, expired)
         self.graph = self._achievers.graph
         self.costs = [cost(a) for a in self.actions]
-        self.dearest = max(self.costs, default=1)
-        self.relative = np.array([c / self.dearest for c in self.costs])
-        self.covering = Covering(self.relative.tolist())
+        self.greatest_cost = max(self.costs, default=1)
+        self.relative_costs = np.array([c / self.greatest_cost for c in self.costs])
+        self.covering = Covering(self.relative_costs.tolist())
         self.cuts: list[frozenset[int]] = []
         self.rows: list[Any] = []
         self._random = random.Random(0)
         self._whole_cuts: dict[frozenset[int], frozenset[int]] = {}
 
-    def add(self, cut: frozenset[int]) -> None:
+    def add_cut(self, cut: frozenset[int]) -> None:
         """Add a row for a cut, given by objects: its columns are the landmark actions."""
         self.rows.append(self._np.array(self.landmark_of(cut), dtype=self._np.int32))
         self.cuts.append(cut)
-        self.covering.add(self.rows[-1])
+        self.covering.add_row(self.rows[-1])
 
-    def add_known(self, cuts: Iterable[Iterable[int]]) -> None:
+    def add_whole_cuts(self, cuts: Iterable[Iterable[int]]) -> None:
         """Add rows for cuts of the whole graph, each given by its objects."""
         position = {o: i for i, o in enumerate(self._objects)}
         for objects in cuts:
-            self.add(frozenset(position[o] for o in objects if o in position))
+            self.add_cut(frozenset(position[o] for o in objects if o in position))
 
     def landmark_of(self, cut: frozenset[int]) -> list[int]:
         """Return the landmark of a cut."""
         return self._achievers.landmark_of(cut)
 
-    def whole(self, cut: frozenset[int]) -> frozenset[int]:
+    def whole_cut(self, cut: frozenset[int]) -> frozenset[int]:
         """Return the cut of the whole graph with the same landmark as a cut of this subgraph.
 
         The result has object numbers of the whole graph.
@@ -83,40 +83,40 @@ class LandmarkRelaxation:
         self,
         cutters: Iterable[Cutter],
         used: Collection[int],
-        shares: Any,
+        lp_values: Any,
         budget: int,
         stopped: Callable[[], bool],
     ) -> tuple[int, int]:
         """Add disjoint cuts that an LP solution violates, until ``budget`` actions were looked at.
 
-        ``shares`` is the array of the LP value of each action, which is changed in place. No landmark has an
+        ``lp_values`` is the array of the LP value of each action, which is changed in place. No landmark has an
         action of ``used``. Returns the number of cuts added and the number of actions looked at.
         """
         added = looks = 0
         for cutter in cutters:
-            cuts = disjoint_violated_cuts(cutter, used, shares, self.relative, self._random.random)
+            cuts = disjoint_violated_cuts(cutter, used, lp_values, self.relative_costs, self._random.random)
             while looks < budget and not stopped():
                 looks += len(cutter.actions)
                 cut = next(cuts, None)
                 if cut is None:
                     break
                 added += 1
-                self.add(frozenset(cut.objects))
+                self.add_cut(frozenset(cut.objects))
         return added, looks
 
-    def in_parts(self) -> Any:
+    def costs_in_parts(self) -> Any:
         """Return an array of costs in parts: 64-bit integers where their sum fits, else Python integers."""
         fits = sum(self.costs) * PARTS < 2**62
         return self._np.array(self.costs, dtype=self._np.int64 if fits else object) * PARTS
 
-    def shared_out(self, dual_values: Iterable[tuple[int, float]], capacity: Any) -> dict[int, int]:
+    def feasible_weights(self, dual_values: Iterable[tuple[int, float]], capacity: Any) -> dict[int, int]:
         """Return a feasible weight in parts for each row: its dual value rounded, limited by ``capacity``.
 
         ``dual_values`` are pairs of row and dual value. ``capacity`` is an array of the cost of each action
         in parts; weights are subtracted from it, so that reduced costs remain. Afterwards, weights are raised
         greedily while capacity is left. They add up to a lower bound, whatever the dual values are.
         """
-        of_1 = self.dearest * PARTS
+        of_1 = self.greatest_cost * PARTS
         wanted = {row: round(Fraction(w) * of_1) if 0 < w < math.inf else 0 for row, w in dual_values}
         weights = dict.fromkeys(wanted, 0)
         dearest_first = sorted(wanted, key=lambda row: -wanted[row])
@@ -130,7 +130,7 @@ class LandmarkRelaxation:
         return weights
 
 
-def _renumbered(
+def _subgraph(
     graph: Hypergraph, targets: Iterable[int], actions: Sequence[int]
 ) -> tuple[Hypergraph, list[int], list[int]]:
     """Return the graph of the given actions, the old numbers of its objects, and its targets."""

@@ -28,11 +28,11 @@ class Lexicographic:
     def __init__(self, levels: Sequence[Sequence[Fraction] | None]) -> None:
         self.levels = tuple(None if rates is None else tuple(rates) for rates in levels)
         # the factor of each coordinate in its level, in floats
-        self._measures = [
+        self._float_factors = [
             [1.0] if rates is None else [float(minus_log(rate, _DIGITS)[0]) for rate in rates]
             for rates in self.levels
         ]
-        self.width = sum(map(len, self._measures))
+        self.width = sum(map(len, self._float_factors))
 
     @property
     def zero(self) -> Vector:
@@ -48,7 +48,7 @@ class Lexicographic:
 
         A vector with coordinates other than 0 can cost nothing: 7/10 * 7/10 divided by 49/100 is 1.
         """
-        for level, coordinates in self._parts(vector):
+        for level, coordinates in self._split_by_level(vector):
             rates = self.levels[level]
             sign = (
                 _sign(coordinates[0]) if rates is None else self._sign_of_product(level, rates, coordinates)
@@ -59,7 +59,7 @@ class Lexicographic:
 
     def compare(self, one: Vector, other: Vector) -> int:
         """Return -1, 0 or 1 for a cost below, equal to or above another, exactly."""
-        return self.sign(minus(one, other))
+        return self.sign(subtract(one, other))
 
     def approximate(self, vector: Sequence[Fraction | int]) -> list[float]:
         """Return each level as a float, for heuristics.
@@ -68,20 +68,22 @@ class Lexicographic:
         """
         greatest = 10**12
         return [
-            sum(self._terms(level, [max(-greatest, min(e, greatest)) for e in coordinates]))
-            for level, coordinates in self._parts(vector)
+            sum(self._log_terms(level, [max(-greatest, min(e, greatest)) for e in coordinates]))
+            for level, coordinates in self._split_by_level(vector)
         ]
 
-    def _parts(self, vector: Sequence[Fraction | int]) -> Iterator[tuple[int, Sequence[Fraction | int]]]:
+    def _split_by_level(
+        self, vector: Sequence[Fraction | int]
+    ) -> Iterator[tuple[int, Sequence[Fraction | int]]]:
         """Yield each level, by index, and its coordinates."""
         begin = 0
-        for level, measures in enumerate(self._measures):
+        for level, measures in enumerate(self._float_factors):
             end = begin + len(measures)
             yield level, vector[begin:end]
             begin = end
 
-    def _terms(self, level: int, exponents: Sequence[Fraction | int]) -> list[float]:
-        return [float(e) * measure for e, measure in zip(exponents, self._measures[level], strict=True)]
+    def _log_terms(self, level: int, exponents: Sequence[Fraction | int]) -> list[float]:
+        return [float(e) * measure for e, measure in zip(exponents, self._float_factors[level], strict=True)]
 
     def _sign_of_product(
         self, level: int, rates: Sequence[Fraction], exponents: Sequence[Fraction | int]
@@ -91,12 +93,12 @@ class Lexicographic:
             return 0
         large = 10**15  # with larger exponents, lost digits could matter
         if all(-large < exponent < large for exponent in exponents):
-            terms = self._terms(level, exponents)
+            terms = self._log_terms(level, exponents)
             about = sum(terms)
             # the sum is this exact, at least; below 1e-290 floats lose their last digits
             if abs(about) > 1e-9 * sum(map(abs, terms)) + 1e-290:
                 return _sign(about)
-        if self._is_one(level, exponents):
+        if self._is_product_one(level, exponents):
             return 0
         digits = _DIGITS
         while True:
@@ -110,7 +112,7 @@ class Lexicographic:
             digits += digits
 
     @cached_property
-    def _factors(self) -> list[dict[int, dict[int, int]]]:
+    def _coprime_factors(self) -> list[dict[int, dict[int, int]]]:
         """For each level, a coprime base of its rates; each factor has its exponents by index of the rate."""
         factors_by_level: list[dict[int, dict[int, int]]] = []
         for rates in self.levels:
@@ -124,19 +126,20 @@ class Lexicographic:
             factors_by_level.append(factors)
         return factors_by_level
 
-    def _is_one(self, level: int, exponents: Sequence[Fraction | int]) -> bool:
+    def _is_product_one(self, level: int, exponents: Sequence[Fraction | int]) -> bool:
         """Return whether a product of powers of a level's rates is exactly 1."""
         return not any(
-            sum(power * exponents[i] for i, power in rates.items()) for rates in self._factors[level].values()
+            sum(power * exponents[i] for i, power in rates.items())
+            for rates in self._coprime_factors[level].values()
         )
 
 
-def minus(one: Vector, other: Vector) -> Vector:
+def subtract(one: Vector, other: Vector) -> Vector:
     """Return the difference of two costs, ``one - other``."""
     return tuple(a - b for a, b in zip(one, other, strict=True))
 
 
-def times(vector: Vector, factor: Fraction) -> Vector:
+def multiply(vector: Vector, factor: Fraction) -> Vector:
     """Multiply a cost by a rational number."""
     return vector if factor == 1 else tuple(coordinate * factor for coordinate in vector)
 

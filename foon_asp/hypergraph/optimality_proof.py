@@ -19,14 +19,14 @@ from operator import mul
 from typing import Protocol
 
 from foon_asp.hypergraph import tuning
-from foon_asp.hypergraph.branch_and_bound import branched
-from foon_asp.hypergraph.cost_partition import CostPartitioning, SharedCosts
+from foon_asp.hypergraph.branch_and_bound import prove_by_branching
+from foon_asp.hypergraph.cost_partition import CostPartition, CostPartitioning
 from foon_asp.hypergraph.covering import TOLERANCE, Covering
 from foon_asp.hypergraph.cut import Cut, Cutter
 from foon_asp.hypergraph.exact_optimum import ExactOptimum, Limit, exact_optimum
 from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.landmark_relaxation import PARTS
-from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, minus, times
+from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, multiply, subtract
 from foon_asp.hypergraph.proof_tree import (
     Branch,
     Broken,
@@ -176,7 +176,7 @@ class Prover:
         cutter = Cutter(self._graph, targets, forbidden.union(*bars.values()))
         if cutter.hopeless:
             return Hopeless(cutter.hopeless)
-        remaining_goal = None if goal is None else minus(goal, self._total(used))
+        remaining_goal = None if goal is None else subtract(goal, self._total(used))
         undecided = set(cutter.actions) - used if cases else ()
         while cases is not None and cases[0] not in undecided:
             cases = cases[2] if cases[0] in used else cases[1]
@@ -216,7 +216,7 @@ class Prover:
             if not breaking:
                 cheaper = goal is not None and self._order.compare(self._total(rounded_solution), goal) < 0
                 if cheaper and cutter.reached_by(rounded_solution) and not node.exceeds(rounded_solution):
-                    raise CheaperError(self._able(rounded_solution))
+                    raise CheaperError(self._runnable_actions(rounded_solution))
                 raise _TimeUpError  # floats led nowhere
             action = breaking[0]
         known_cuts = [frozenset(cut.objects) for cut in node.cuts]
@@ -260,7 +260,7 @@ class Prover:
         chosen = frozenset(derivation)
         return None if self._rules is None or not chosen else self._rules.exceeded(chosen)
 
-    def _able(self, actions: Sequence[int]) -> list[int]:
+    def _runnable_actions(self, actions: Sequence[int]) -> list[int]:
         """Return the actions that can run in a derivation by the given actions alone."""
         graph = self._graph
         reached = graph.reach(frozenset(range(len(graph.needs))).difference(actions))
@@ -281,7 +281,7 @@ class Prover:
 
         Tries a greedy cost partition over ``known_cuts``, then reduced-cost fixing by it; ``others`` proves
         the goal for derivations without the fixed actions. Then both are tried with the rounded dual solution
-        of the LP, and at the root :func:`branched` comes last. With ``alone`` or a ``step`` of 0, the LP is
+        of the LP, and at the root :func:`prove_by_branching` comes last. With ``alone`` or a ``step`` of 0, the LP is
         not used.
         """
         targets = set(cutter.targets)
@@ -300,16 +300,18 @@ class Prover:
 
         enough = math.ceil(goal[0] / step)
 
-        shared = self._optimal_partition(cutter, steps, known_cuts, enough)
-        if shared is not None:
+        partition = self._optimal_partition(cutter, steps, known_cuts, enough)
+        if partition is not None:
             weighted_cuts = [
-                (self._widened(cutter, cut), (weight * step / PARTS,)) for cut, weight in shared.cuts
+                (self._widened(cutter, cut), (weight * step / PARTS,)) for cut, weight in partition.cuts
             ]
             weighted_cuts = [(cut, weight) for cut, weight in weighted_cuts if used.isdisjoint(cut.members)]
             packing, reduced_costs = self._share_out(weighted_cuts)
             if self._reaches(packing, goal):
                 return packing, cuts
-            proof = self._fix_by_cost(cutter, used, goal, packing, reduced_costs, others, shared.tight, step)
+            proof = self._fix_by_cost(
+                cutter, used, goal, packing, reduced_costs, others, partition.tight, step
+            )
             if proof is not None:
                 return proof, cuts
             cuts += [cut for cut, _ in weighted_cuts]
@@ -317,7 +319,7 @@ class Prover:
 
     def _optimal_partition(
         self, cutter: Cutter, cost: Callable[[int], int], known_cuts: Iterable[frozenset[int]], enough: int
-    ) -> SharedCosts | None:
+    ) -> CostPartition | None:
         """Return the optimal cost partition, or an earlier one that puts many actions above the cutoff.
 
         ``enough`` is the bound that is needed. ``None`` where there is no partition.
@@ -326,13 +328,13 @@ class Prover:
             self._graph, cutter.targets, cutter.actions, cost, self._expired, known_cuts
         )
         while True:
-            shared = partitioning.advance(enough, max_solutions=1)
-            if shared is None or partitioning.converged:
-                return shared
-            cutoff = (enough - 1) * PARTS - shared.bound
-            above_cutoff = sum(reduced_cost > cutoff for reduced_cost in shared.reduced_costs.values())
+            partition = partitioning.advance(enough, max_solutions=1)
+            if partition is None or partitioning.converged:
+                return partition
+            cutoff = (enough - 1) * PARTS - partition.bound
+            above_cutoff = sum(reduced_cost > cutoff for reduced_cost in partition.reduced_costs.values())
             if above_cutoff > tuning.PROOF.fixed_share * len(cutter.actions):
-                return shared
+                return partition
 
     def _step(self) -> Fraction:
         """Return a number that all costs are multiples of; 0 for costs of several coordinates.
@@ -384,10 +386,10 @@ class Prover:
     def _searched(
         self, cutter: Cutter, goal: Vector, known_cuts: Sequence[Cut], step: Fraction
     ) -> Proof | None:
-        """Return a proof by :func:`branched`, its cuts valid for all actions; ``None`` without a proof."""
+        """Return a proof by :func:`prove_by_branching`, its cuts valid for all actions; ``None`` without a proof."""
         if not step:
             return None
-        result = branched(
+        result = prove_by_branching(
             *(self._graph, cutter.targets, cutter.actions),
             *(lambda action: int(self._costs[action][0] / step), [cut.objects for cut in known_cuts]),
             *(math.ceil(goal[0] / step), self._expired),
@@ -429,7 +431,7 @@ class Prover:
             if self._order.sign(weight) > 0:
                 weights.append((cut, weight))
                 reduced_costs.update(
-                    (a, minus(reduced_cost, weight)) for a, reduced_cost in remaining.items()
+                    (a, subtract(reduced_cost, weight)) for a, reduced_cost in remaining.items()
                 )
         _, rounded = self.rounded(self._order.total(weight for _, weight in weights))
         return Packing(tuple(weights), rounded=rounded), reduced_costs
@@ -446,7 +448,7 @@ class Prover:
 class _Node:
     """The relaxation at one node of the branching: a column for each action, a row for each limit and cut.
 
-    ``shares`` are the LP values of the columns in the last solution, ``cuts`` the cuts in order of rows.
+    ``lp_values`` are the LP values of the columns in the last solution, ``cuts`` the cuts in order of rows.
     """
 
     def __init__(self, prover: Prover, cutter: Cutter, used: frozenset[int], goal: Vector | None) -> None:
@@ -457,18 +459,18 @@ class _Node:
         floats = {cost: prover.scaled(cost) for cost in set(self._costs)}
         self._floats = [floats[cost] for cost in self._costs]
         self._limits = [self._limited(column, limit) for column, limit in enumerate(prover._limits)]
-        excess_cost = (Fraction(1),) * prover._order.width if goal is None else times(goal, Fraction(1000))
+        excess_cost = (Fraction(1),) * prover._order.width if goal is None else multiply(goal, Fraction(1000))
         self._costs += [excess_cost] * len(self._limits)
         self._covering = Covering([*self._floats, *[prover.scaled(excess_cost)] * len(self._limits)])
         for amounts, max_amount in self._limits:
-            self._covering.limit(amounts, max_amount)
+            self._covering.add_limit(amounts, max_amount)
         constrained = self._limits or prover._rules is not None
         self._free = (
             [] if constrained else [column for column, cost in enumerate(self._costs) if not any(cost)]
         )
         self.cuts: list[Cut] = []
         self._rows: list[list[int]] = []
-        self.shares: Sequence[float]
+        self.lp_values: Sequence[float]
 
     def _limited(self, row: int, limit: Limit) -> Limit:
         """Return limit number ``row`` over columns, reduced by the amounts of the used actions.
@@ -525,9 +527,9 @@ class _Node:
 
     def _share(self, x: Sequence[float]) -> None:
         """Record an LP solution; actions that cost 0 get the value 1 if there are no limits and rules."""
-        self.shares = [*x]
+        self.lp_values = [*x]
         for column in self._free:
-            self.shares[column] = 1.0
+            self.lp_values[column] = 1.0
 
     def packing(self, exact: ExactOptimum) -> Packing:
         """Return the cost partition of an exact optimum."""
@@ -541,27 +543,29 @@ class _Node:
 
     def undecided(self) -> int | None:
         """Return the most fractional action, of equal ones the most expensive; ``None`` without one."""
-        halves = [
+        fractional = [
             (abs(x - 0.5), -self._floats[column], self._actions[column])
-            for column, x in enumerate(self.shares[: len(self._actions)])
+            for column, x in enumerate(self.lp_values[: len(self._actions)])
             if abs(x - 0.5) < 0.5 - TOLERANCE
         ]
-        return min(halves)[2] if halves else None
+        return min(fractional)[2] if fractional else None
 
     def rounded_solution(self) -> list[int]:
         """Return the actions of the rounded LP solution, with the used ones."""
-        shares = zip(self._actions, self.shares, strict=False)  # after those of actions come those of limits
-        return sorted({action for action, x in shares if round(x)} | self._used)
+        lp_values = zip(
+            self._actions, self.lp_values, strict=False
+        )  # after those of actions come those of limits
+        return sorted({action for action, x in lp_values if round(x)} | self._used)
 
     def _separate(self) -> bool:
         """Add violated cuts with disjoint landmarks; return whether any was added."""
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
         count = len(self._actions)
-        shares, costs = np.zeros((2, len(self._prover._costs)))
-        shares[self._actions], costs[self._actions] = self.shares[:count], self._floats
+        lp_values, costs = np.zeros((2, len(self._prover._costs)))
+        lp_values[self._actions], costs[self._actions] = self.lp_values[:count], self._floats
         random_number = self._prover._random.random
-        cuts = disjoint_violated_cuts(self._cutter, self._used, shares, costs, random_number, TOLERANCE)
+        cuts = disjoint_violated_cuts(self._cutter, self._used, lp_values, costs, random_number, TOLERANCE)
         violated = list(islice(cuts, tuning.RELAXATION.cuts))
         self.admit(violated)
         return bool(violated)
@@ -573,4 +577,4 @@ class _Node:
                 row = [self._columns[a] for a in cut.members]
                 self.cuts.append(cut)
                 self._rows.append(row)
-                self._covering.add(row)
+                self._covering.add_row(row)

@@ -56,7 +56,7 @@ def limited(
         allowed = subproblem.total(incumbent) + ratio * row.bound
         reduced = _reduced_at(
             subproblem,
-            subproblem.costs.priced(row.weight, ratio),
+            subproblem.costs.with_price(row.weight, ratio),
             objectives,
             expired,
             incumbent,
@@ -107,7 +107,7 @@ def _by_rising_prices(
         if tie <= 0:
             break
         price, next_price = min(tie, next_price), 2 * next_price
-        reduced = _reduced_at(subproblem, subproblem.costs.priced(row.weight, price), objectives, expired)
+        reduced = _reduced_at(subproblem, subproblem.costs.with_price(row.weight, price), objectives, expired)
         if reduced.tree is None:
             break
         bound = Fraction(reduced.bound, price.denominator) - price * row.bound
@@ -130,7 +130,7 @@ def _by_rising_prices(
     _, price = greatest
     allowed = subproblem.total(incumbent) * price.denominator + price.numerator * row.bound
     reduced = _reduced_at(
-        subproblem, subproblem.costs.priced(row.weight, price), objectives, expired, incumbent, allowed
+        subproblem, subproblem.costs.with_price(row.weight, price), objectives, expired, incumbent, allowed
     )
     if reduced.tree is None:
         return Limited(incumbent)
@@ -152,9 +152,12 @@ def any_within_limit(subproblem: Subproblem, row: LinearRow, expired: Callable[[
     known.
     """
     units_cost = ExactCosts(subproblem.problem, (Objective.UNITS,), subproblem.remaining)
-    limit = units_cost.beyond * (row.bound + 1)
+    limit = units_cost.strict_upper_bound * (row.bound + 1)
     reduced = _reduced_at(
-        subproblem, units_cost.priced(row.weight, units_cost.beyond, limit), (Objective.UNITS,), expired
+        subproblem,
+        units_cost.with_price(row.weight, units_cost.strict_upper_bound, limit),
+        (Objective.UNITS,),
+        expired,
     )
     if reduced.bound >= limit:
         return Limited(None)

@@ -14,12 +14,12 @@ from foon_asp.garbage_collection import uncollected
 from foon_asp.hypergraph import greedy_stages as greedy
 from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.exact_costs import CoarseCosts, ExactCosts, TooFineError
-from foon_asp.hypergraph.extension import extended, extensions
+from foon_asp.hypergraph.extension import actions_of_extensions, extend_tree
 from foon_asp.hypergraph.gap_bounded_subproblem import Subproblem
 from foon_asp.hypergraph.goal_graph import graph_of
 from foon_asp.hypergraph.h_values import derive
 from foon_asp.hypergraph.incumbent_gap import Gap, Stage
-from foon_asp.hypergraph.incumbent_trees import irredundant
+from foon_asp.hypergraph.incumbent_trees import irredundant_subset
 from foon_asp.hypergraph.landmark_cuts import Cuts
 from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
 from foon_asp.hypergraph.reductions import ALL, Reduction
@@ -30,7 +30,7 @@ from foon_asp.hypergraph.tuning import PresolveTuning
 from foon_asp.problem import Objective, Problem
 
 if TYPE_CHECKING:  # few questions need it
-    from foon_asp.hypergraph.cost_partition import SharedCosts
+    from foon_asp.hypergraph.cost_partition import CostPartition
     from foon_asp.hypergraph.proof_tree import Cases
 
 Expired = Callable[[], bool]
@@ -58,7 +58,7 @@ class Reduced(NamedTuple):
     ``interrupted``: whether ctrl-C ended the reduction, or time was up before any reduction. Then ``units``
     must not be used.
     ``subproblem``: the gap-bounded subproblem, which is valid under any rules on trees.
-    ``shared``: the optimal cost partition, if one was computed.
+    ``partition``: the optimal cost partition, if one was computed.
     ``cases``: the actions branched on.
     ``tight``: the tight cuts of the LP solutions by which units were excluded, over the units remaining then.
     """
@@ -71,7 +71,7 @@ class Reduced(NamedTuple):
     cuts: Cuts | None
     interrupted: bool = False
     subproblem: Subproblem | None = None
-    shared: "SharedCosts | None" = None
+    partition: "CostPartition | None" = None
     cases: "Cases" = None
     tight: Collection[frozenset[int]] = ()
 
@@ -189,12 +189,12 @@ def at_costs(
             """Fix candidates by the cutoff first, and run all rounds only if few enough remain."""
             if below and len(gap.candidates) > max_actions:
                 before = len(gap.candidates)
-                gap, cuts = greedy.bound(task, gap, h_values, greedy.guide_by(task, gap))
-                gap = greedy.fix(task, gap, cuts)  # the cutoff does not depend on the incumbent
+                gap, cuts = greedy.raise_bound(task, gap, h_values, greedy.h_max_guide(task, gap))
+                gap = greedy.fix_candidates(task, gap, cuts)  # the cutoff does not depend on the incumbent
                 yield gap
                 if len(gap.candidates) > max(max_actions, task.tuning.worthwhile_share * before):
                     return gap
-                h_values = derive(task.graph, gap.candidates, costs, h_add=False).cost
+                h_values = derive(task.graph, gap.candidates, costs, h_add=False).h_objects
             return (yield from rounds(task, gap, h_values))
 
         presolve = _Presolve(task, None, nullcontext)
@@ -239,15 +239,15 @@ def rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
     if costs is not None and len(gap.candidates) > limits.easy_actions:
         gap = greedy.follow_h_add(task, gap)
         yield gap
-    if costs is not None and costs.limited:  # any tree below the limit will do
-        gap = greedy.improve(task, gap, greedy.NO_CUTS, thorough=False)
-        gap = gap.closed() if greedy.meets(task, gap, greedy.NO_CUTS) else gap
+    if costs is not None and costs.has_limit:  # any tree below the limit will do
+        gap = greedy.search_neighbourhood(task, gap, greedy.NO_CUTS, thorough=False)
+        gap = gap.as_proved() if greedy.is_proved_by(task, gap, greedy.NO_CUTS) else gap
         yield gap
     thorough = False  # as a last resort
     while not gap.proved:
         before = gap
         if costs is not None and task.reductions & {Reduction.BOUNDS, Reduction.DEAR}:
-            guide = greedy.guide_by(task, gap)
+            guide = greedy.h_max_guide(task, gap)
             gap = yield from greedy.tighten(task, gap, h_values, guide, thorough)
         if gap.proved or task.expired():
             return gap
@@ -266,7 +266,7 @@ def rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
         if not changed and (thorough or len(gap.candidates) <= limits.easy_actions):
             return gap
         thorough = not changed
-        h_values = derive(task.graph, gap.candidates, costs or task.coarse, h_add=False).cost
+        h_values = derive(task.graph, gap.candidates, costs or task.coarse, h_add=False).h_objects
     return gap
 
 
@@ -300,13 +300,13 @@ def rounds_near_goals(task: Task, gap: Gap, h_values: HValues) -> Stage:
     if len(gap.candidates) == len(task.graph.needs):
         if task.expired():  # before any reduction
             raise KeyboardInterrupt
-        opening = greedy.relevant(task, gap)
+        opening = greedy.restrict_to_relevant(task, gap)
         assert opening is not None
         gap, _ = opening
     gap = greedy.prune_dominated(task, gap)
     yield gap
     if not task.expired():
-        h_values = derive(task.graph, gap.candidates, task.costs or task.coarse, h_add=False).cost
+        h_values = derive(task.graph, gap.candidates, task.costs or task.coarse, h_add=False).h_objects
         gap = yield from rounds(task, gap, h_values)
     return gap
 
@@ -322,7 +322,7 @@ def _follow_h_add(task: Task, gap: Gap, h_values: HValues) -> Stage:
 def _bound_once(task: Task, gap: Gap, h_values: HValues) -> Stage:
     """Raise the lower bound once by landmark cuts."""
     if task.costs is not None:
-        gap = greedy.bound(task, gap, h_values, greedy.guide_by(task, gap)).gap
+        gap = greedy.raise_bound(task, gap, h_values, greedy.h_max_guide(task, gap)).gap
         yield gap
     return gap
 
@@ -330,7 +330,7 @@ def _bound_once(task: Task, gap: Gap, h_values: HValues) -> Stage:
 def _bound_lazily(task: Task, gap: Gap, h_values: HValues) -> Stage:
     """Raise the lower bound by landmark cuts without a guide, since a guide looks at all actions."""
     if task.costs is not None:
-        gap = greedy.bound(task, gap, h_values, None).gap
+        gap = greedy.raise_bound(task, gap, h_values, None).gap
         yield gap
     return gap
 
@@ -355,7 +355,7 @@ def _near_goals(task: Task) -> tuple[Gap, HValues] | None:
     if narrowed is None:
         return None
     derivations, tree = narrowed
-    return Gap(frozenset(tree), 0, all_actions), derivations.cost
+    return Gap(frozenset(tree), 0, all_actions), derivations.h_objects
 
 
 class _Presolve:
@@ -394,14 +394,14 @@ class _Presolve:
         task, stages = self.task, course.near_goals
         opening = _near_goals(task)
         if opening is None:
-            opening, stages = greedy.relevant(task, Gap(frozenset(), 0, ())), course.whole
+            opening, stages = greedy.restrict_to_relevant(task, Gap(frozenset(), 0, ())), course.whole
         if opening is None:
             return
         self.gap, h_values = opening
         if task.reductions:
             trees = [self.gap.incumbent, known_tree] if known_tree else [self.gap.incumbent]
             tree = min(trees, key=lambda tree: sum(map(task.coarse, tree)))
-            self.report(self.gap.with_incumbent(irredundant(task.graph, tree, task.coarse)))
+            self.report(self.gap.with_incumbent(irredundant_subset(task.graph, tree, task.coarse)))
             self.take(stages, h_values)
 
     def run_beside(self, solved: SolvedGoals) -> None:
@@ -418,7 +418,7 @@ class _Presolve:
                 self.report(Gap(gap.incumbent, 0, gap.candidates))
                 self.report(gap)
                 if not gap.proved:
-                    h_values = derive(self.task.graph, gap.candidates, costs, h_add=False).cost
+                    h_values = derive(self.task.graph, gap.candidates, costs, h_add=False).h_objects
                     self.take(ROUNDS.whole, h_values)
             solved.learn(self.task, self.gap)
 
@@ -464,7 +464,7 @@ class _Presolve:
             subproblem = Subproblem(task.problem, task.graph, actions, task.costs, cuts, redundant)
         return Reduced(
             *(tree, tuple(sorted(units)), gap.proved, task.costs, gap.lower_bound, evidence.cuts),
-            *(not self.ended, subproblem, evidence.shared, evidence.cases, evidence.tight),
+            *(not self.ended, subproblem, evidence.partition, evidence.cases, evidence.tight),
         )
 
 
@@ -491,10 +491,10 @@ def _extend(presolve: _Presolve) -> None:
 
     def extend() -> None:
         """Extend the best tree for the goals alone; the candidates are the actions of cheap extensions."""
-        tree = extended(task.thin, gap.incumbent, costs, len(graph.needs) // 4)
+        tree = extend_tree(task.thin, gap.incumbent, costs, len(graph.needs) // 4)
         if tree is None:
             return
-        incumbent = frozenset(irredundant(graph, tree, costs))
+        incumbent = frozenset(irredundant_subset(graph, tree, costs))
         first = Gap(incumbent, 0, range(len(graph.needs)))
         presolve.report(first)
         if reduced.interrupted:
@@ -504,16 +504,16 @@ def _extend(presolve: _Presolve) -> None:
         if only_better and optimal:
             presolve.task = replace(task, costs=costs)
             evidence = gap.evidence._replace(first=None, tight=())
-            presolve.gap = first.raised(gap.lower_bound, evidence).closed()
+            presolve.gap = first.with_bound(gap.lower_bound, evidence).as_proved()
             return
         limit = total - only_better
         candidates = {*subproblem.actions_within(limit, task.expired), *incumbent}
         distance = limit - gap.lower_bound + costs.doubt
-        candidates |= extensions(graph, candidates, costs, distance, task.expired)
+        candidates |= actions_of_extensions(graph, candidates, costs, distance, task.expired)
         if task.expired():
             raise KeyboardInterrupt
         derivations = derive(graph, candidates, task.coarse, h_add=False)
-        h_values.update(derivations.cost)
+        h_values.update(derivations.h_objects)
         presolve.gap = first.with_candidates(graph.cone(derivations.h_actions)[0])
 
     presolve.guarded(extend)

@@ -37,7 +37,7 @@ def restricted_subproblem(
         tree = derivations.tree(graph, graph.goals)
         if tree is not None:
             return derivations, tree
-        fresh = {o for o, candidates in ranked.items() if candidates and o not in derivations.cost}
+        fresh = {o for o, candidates in ranked.items() if candidates and o not in derivations.h_objects}
         if not fresh:
             return None
     return None

@@ -7,7 +7,7 @@ from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.exact_costs import ExactCosts, TooFineError
 from foon_asp.hypergraph.h_values import Derivations, derive
 from foon_asp.hypergraph.incumbent_gap import Gap
-from foon_asp.hypergraph.incumbent_trees import irredundant
+from foon_asp.hypergraph.incumbent_trees import irredundant_subset
 from foon_asp.hypergraph.reductions import Reduction
 from foon_asp.hypergraph.task import Task
 
@@ -35,7 +35,7 @@ class SolvedGoals:
 
     def h_add(self, goal: int) -> int:
         """Return the h_add value of a goal; 0 if landmarks are not shared yet or there is no tree."""
-        return 0 if self._derivations is None else self._derivations.cost.get(goal, 0)
+        return 0 if self._derivations is None else self._derivations.h_objects.get(goal, 0)
 
     def gap(self, task: Task) -> Gap | None:
         """Return the gap of a question from shared landmarks; ``None`` before they are shared.
@@ -44,7 +44,7 @@ class SolvedGoals:
         """
         if self._landmarks is None or self._derivations is None:
             return None
-        if not self._derivations.cost.keys() >= set(task.graph.goals):
+        if not self._derivations.h_objects.keys() >= set(task.graph.goals):
             return None
         restriction, units = task.problem.restriction, task.graph.units
         removed = frozenset(
@@ -77,7 +77,7 @@ class SolvedGoals:
                 assert others is not None
                 trees.append(others.union([achiever], *solved))
         trees.sort(key=lambda tree: sum(map(costs, tree)))
-        smallest = (irredundant(graph, tree, costs) for tree in trees[: tuning.SHARED.unions])
+        smallest = (irredundant_subset(graph, tree, costs) for tree in trees[: tuning.SHARED.unions])
         return frozenset(min(smallest, key=lambda tree: sum(map(costs, tree))))
 
     def _tree_without(self, task: Task, removed: frozenset[int]) -> frozenset[int] | None:
@@ -93,7 +93,7 @@ class SolvedGoals:
         if tree is None:
             return None
         union = (tree | self._trees.get(graph.goals, frozenset())) - removed
-        trees = (irredundant(graph, actions, costs) for actions in (union, tree))
+        trees = (irredundant_subset(graph, actions, costs) for actions in (union, tree))
         return frozenset(min(trees, key=lambda tree: sum(map(costs, tree))))
 
     def learn(self, task: Task, gap: Gap | None) -> None:
@@ -114,7 +114,7 @@ class SolvedGoals:
                 from foon_asp.hypergraph.shared_landmarks import SharedLandmarks  # noqa: PLC0415 (numpy)
 
                 self._derivations = derivations
-                objects = sorted(derivations.cost)
+                objects = sorted(derivations.h_objects)
                 self._landmarks = SharedLandmarks(task, costs, derivations.h_actions, objects)
 
 

@@ -96,15 +96,15 @@ def test_estimates_are_what_they_are_defined_to_be(added: bool) -> None:
         price = {a: rng.randint(seed % 2, 5) for a in range(9)}
         actions = rng.sample(range(9), 8)
         found = derive(graph, actions, price, added)
-        assert (found.cost, found.h_actions) == costs_by_definition(graph, actions, price, added)
+        assert (found.h_objects, found.h_actions) == costs_by_definition(graph, actions, price, added)
         assert list(found.h_actions.values()) == sorted(found.h_actions.values())
-        assert all(found.h_actions[found.maker[o]] == cost for o, cost in found.cost.items())
+        assert all(found.h_actions[found.best_achievers[o]] == cost for o, cost in found.h_objects.items())
         tree = found.tree(graph, graph.goals)
-        if graph.start.union(found.cost).issuperset(graph.goals):
+        if graph.start.union(found.h_objects).issuperset(graph.goals):
             assert tree is not None
             assert executes(graph, tree)
             used = {*graph.goals}.union(*(graph.needs[a] for a in tree)) - graph.start
-            assert tree == {found.maker[o] for o in used}
+            assert tree == {found.best_achievers[o] for o in used}
             made += 1
         else:
             assert tree is None
@@ -220,7 +220,7 @@ def test_what_is_within_reach_is_what_is_derived_at_once(
         asked = [(o, limit) for o in range(graph.size) for limit in range(9)]
         rng.shuffle(asked)
         for o, limit in asked:
-            beyond = o not in graph.start and made.cost.get(o, math.inf) > limit
+            beyond = o not in graph.start and made.h_objects.get(o, math.inf) > limit
             said = not reach(o, limit)
             assert (beyond == said) if exact else (beyond or not said), (seed, o, limit)
             told += said
