@@ -221,7 +221,7 @@ class _Solver:
 
     def _with_priced_limit(self, subproblem: Subproblem, tree: Units) -> Outcome | None:
         """Find the best tree by a Lagrangian price on a limited sum; ``None`` if no price decides."""
-        from foon_asp.hypergraph.priced_limit import limited  # noqa: PLC0415 (of use with few rules)
+        from foon_asp.hypergraph.priced_limit import search_within_limit  # noqa: PLC0415 (of use with few rules)
 
         program = self.prepared.full_program
         assert program is not None
@@ -231,7 +231,9 @@ class _Solver:
                 continue
             try:
                 with self.deadline.watched("cutting the network", late=True):
-                    result = limited(subproblem, self.levels, tree, row, lambda: self.deadline.passed)
+                    result = search_within_limit(
+                        subproblem, self.levels, tree, row, lambda: self.deadline.passed
+                    )
             except KeyboardInterrupt:
                 self.deadline.interrupt()
                 return self._outcome(Status.UNKNOWN, None, {})

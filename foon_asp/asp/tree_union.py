@@ -15,7 +15,7 @@ from foon_asp.asp.solver import solve
 from foon_asp.encoding.fact_writer import write_avoided, write_in_all, write_objectives, write_unseen
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import UserError
-from foon_asp.hypergraph.reduction import at_costs, reduce_under_rules
+from foon_asp.hypergraph.reduction import reduce_at_costs, reduce_under_rules
 from foon_asp.problem import Costs, Objective, Problem, multiplies, reach
 from foon_asp.problem.restriction import Restriction
 
@@ -114,7 +114,7 @@ class _Union:
             else:
                 limit = subproblem.total(self._in_some) + costs.doubt
             with deadline.watched("cutting the network"):
-                kept = at_costs(
+                kept = reduce_at_costs(
                     subproblem, by, costs, lambda: deadline.passed, self._in_some, below=limit + 1
                 ).units
         except KeyboardInterrupt:

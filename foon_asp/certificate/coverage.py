@@ -51,11 +51,11 @@ class Coverage(NamedTuple):
         question, nodes = question_of(problem), len(problem.network.objects)
         return Ruled([meaning(rule, question) for rule in self.rules], nodes, len(problem.network) + nodes)
 
-    def forbids(self, problem: Problem) -> frozenset[int]:
+    def forbidden_units(self, problem: Problem) -> frozenset[int]:
         """Return the units of a problem that rules remove."""
         return self.ruled(problem).removed
 
-    def beyond(self) -> list[str]:
+    def rules_beyond_removal(self) -> list[str]:
         """Return the names of rules that may do more than remove units."""
         return [rule["rule"] for rule in self.rules if not LIBRARY[rule["rule"]].removes]
 
@@ -86,20 +86,20 @@ def coverage(settings: Settings) -> Coverage:
         for name in facts.keys() & LIBRARY[stem].values.keys():
             facts[name] |= {string_constant(constants_given.get(LISTED[name], ""))} - {""}
     if "heats" in facts:  # which begins with motions of the ready-made constraint
-        facts["heats"] |= _facts(find_constraint(Path("never_heated")), among_others=True)["heats"]
+        facts["heats"] |= _facts_of_rules(find_constraint(Path("never_heated")), among_others=True)["heats"]
     named: list[str] = []
     for constraint in others:
-        listed = _facts(constraint) if facts else {}
+        listed = _facts_of_rules(constraint) if facts else {}
         if listed and listed.keys() <= facts.keys():
             for name, listed_values in listed.items():
                 facts[name] |= listed_values
         else:
-            named.append(_named(constraint))
+            named.append(_name_with_digest(constraint))
     rules: dict[str, Rule] = {}
     for stem, constants_given in uses:
         kinds = LIBRARY[stem].values.items()
         values = {
-            name: sorted(facts[name]) if kind is list else _value(constants_given.get(name, ""), kind)
+            name: sorted(facts[name]) if kind is list else _parsed_value(constants_given.get(name, ""), kind)
             for name, kind in kinds
         }
         if all(value not in (None, "", []) for value in values.values()):
@@ -114,17 +114,19 @@ def coverage(settings: Settings) -> Coverage:
     if settings.replaced is not None:
         named.append(f"encodings {settings.replaced.name}")
     named += [f"{name}={value}" for name, value in constants.items() if name not in used_constants]
-    return Coverage(tuple(rules[text] for text in sorted(rules)), tuple(sorted(set(map(_printable, named)))))
+    return Coverage(
+        tuple(rules[text] for text in sorted(rules)), tuple(sorted(set(map(_escape_unprintable, named))))
+    )
 
 
-def _value(written: str, kind: type) -> Any:
+def _parsed_value(written: str, kind: type) -> Any:
     """Return a value of a constraint, as a number or text; ``None`` for a number that is not set."""
     if kind is int:
         return None if written in _UNSET else int(written)
     return string_constant(written)
 
 
-def _facts(constraint: Constraint, among_others: bool = False) -> dict[str, set[str]]:
+def _facts_of_rules(constraint: Constraint, among_others: bool = False) -> dict[str, set[str]]:
     """Return the values that rules list as facts, by predicate.
 
     If the rules also have other statements, the result is empty, unless ``among_others`` is set.
@@ -142,27 +144,29 @@ def _facts(constraint: Constraint, among_others: bool = False) -> dict[str, set[
     return values
 
 
-def _named(constraint: Constraint) -> str:
+def _name_with_digest(constraint: Constraint) -> str:
     """Return the name of rules with their digest, and with their text if they were given as text."""
     if isinstance(constraint, RuleText):
         return (
-            f"{constraint.name} {_digest(constraint.text.encode('utf-8', 'surrogatepass'))} {constraint.text}"
+            f"{constraint.name} {_sha256(constraint.text.encode('utf-8', 'surrogatepass'))} {constraint.text}"
         )
     file = constraint.file if isinstance(constraint, LibraryUse) else constraint
-    return f"{constraint.name} {_digest(file.read_bytes())}"
+    return f"{constraint.name} {_sha256(file.read_bytes())}"
 
 
-def _digest(content: bytes) -> str:
+def _sha256(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
-def needed(rules: Iterable[Rule], members: Iterable[int], limits: Iterable[Limit] = ()) -> tuple[Rule, ...]:
+def without_unused_claims(
+    rules: Iterable[Rule], members: Iterable[int], limits: Iterable[Limit] = ()
+) -> tuple[Rule, ...]:
     """Return the rules, with only those claims about user rules that a proof uses.
 
     A claim that units are removed is used if all these units are ``members`` of cuts. All other claims
     remain. ``limits`` are the limits that the proof uses.
     """
-    kept, stated = set(members), [_stated(*limit) for limit in limits]
+    kept, stated = set(members), [_limit_json(*limit) for limit in limits]
     return tuple(
         {
             **rule,
@@ -175,7 +179,7 @@ def needed(rules: Iterable[Rule], members: Iterable[int], limits: Iterable[Limit
     )
 
 
-def _stated(amounts: Mapping[int, Fraction], max_sum: Fraction) -> list[Any]:
+def _limit_json(amounts: Mapping[int, Fraction], max_sum: Fraction) -> list[Any]:
     """Return the JSON of a limit: units by their amount, and the greatest sum."""
     units: dict[str, list[int]] = {}
     for unit in sorted(amounts):
@@ -183,6 +187,6 @@ def _stated(amounts: Mapping[int, Fraction], max_sum: Fraction) -> list[Any]:
     return [units, int(max_sum)]
 
 
-def _printable(name: str) -> str:
+def _escape_unprintable(name: str) -> str:
     """Return a name with escapes for characters that cannot be printed, such as line ends."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in name)

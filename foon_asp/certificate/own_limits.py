@@ -40,16 +40,16 @@ class OwnLimits:
             settings.constraints, settings.constants, soft=True, deadline=settings.begun
         )
         shrinking = {rule.source for rule in rules.unsettled if rule.kind in {Kind.FACT, Kind.SHRINKING}}
-        theirs = {c.number: 1 for c in numbered if c.constraint in own and c.source in shrinking}
-        relaxed = relaxed._replace(rules=relaxed.rules + write_soft(theirs))
+        user_constraints = {c.number: 1 for c in numbered if c.constraint in own and c.source in shrinking}
+        relaxed = relaxed._replace(rules=relaxed.rules + write_soft(user_constraints))
         self._settings = settings._replace(constraints=(), relaxed=relaxed)
         program = assemble(self._settings, lambda _: None)
         others = program.files[len(ENCODING_FILES) :]
         self._program = program._replace(files=(question_encoding("breaking_units.lp"), *others))
-        self._any = bool(theirs)
-        self._local = all(rule.local for rule in rules.rules if rule.source in shrinking)
+        self._has_user_rules = bool(user_constraints)
+        self._all_local = all(rule.local for rule in rules.rules if rule.source in shrinking)
         self.found_limits: list[Limit] = []
-        if self._any:
+        if self._has_user_rules:
             sums = (
                 sum_limit for sum_limit in rules.limits(problem, settings.begun) if not sum_limit.at_least
             )
@@ -66,15 +66,15 @@ class OwnLimits:
                 )
             ]
 
-    def exceeded(self, units: frozenset[int]) -> Limit | None:
+    def exceeded_limit(self, units: frozenset[int]) -> Limit | None:
         """Return a limit that units exceed, and record it; ``None`` where they keep to the rules.
 
         Raises ``KeyboardInterrupt`` where time is up.
         """
-        if not self._any:
+        if not self._has_user_rules:
             return None
         network = self._problem.network
-        seen = units if self._local else units.union(reach(self._problem).units)
+        seen = units if self._all_local else units.union(reach(self._problem).units)
         question = Prepared(
             self._problem,
             (Objective.UNITS,),

@@ -8,8 +8,8 @@ from fractions import Fraction
 from operator import add
 from typing import Any
 
-from foon_asp.certificate.arrays import written
-from foon_asp.certificate.certificate import Certificate, Claimed, subject_of, write
+from foon_asp.certificate.arrays import fraction_text
+from foon_asp.certificate.certificate import Certificate, Claimed, subject_of, write_certificate
 from foon_asp.certificate.coverage import NOTHING, Coverage
 from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, minus_log
 from foon_asp.network import ObjectNode
@@ -65,7 +65,7 @@ def certify_plan(
     """
     if problem.own_rates and (covered.rules or any(o.row.needs is Known.RATES for o in objectives)):
         return None
-    question = _Question(problem, covered_for_plans(covered), plan, expired)
+    question = _PlanQuestion(problem, covered_for_plans(covered), plan, expired)
     certified: list[Objective] = []
     for objective in objectives:
         if objective.row.needs is Known.RATES and not all(map(problem.rate, range(len(problem.network)))):
@@ -75,14 +75,14 @@ def certify_plan(
             break
         proof, least = proved
         if least is not None:
-            return question.write("bound", [objective], [proof], plan, [least])
+            return question.write_certificate("bound", [objective], [proof], plan, [least])
         certified.append(objective)
         question.proofs.append(proof)
         if expired():
             break
     if not certified:
         return None
-    return question.write("optimal", certified, question.proofs, plan)
+    return question.write_certificate("optimal", certified, question.proofs, plan)
 
 
 def certify_no_plan(
@@ -91,12 +91,12 @@ def certify_no_plan(
     """Return a certificate that there is no plan; ``None`` where that is not proved before time is up."""
     if covered.rules and problem.own_rates:
         return None
-    question = _Question(problem, covered_for_plans(covered), (), expired)
+    question = _PlanQuestion(problem, covered_for_plans(covered), (), expired)
     proof = question.prove_none()
-    return None if proof is None else question.write("infeasible", (), [proof])
+    return None if proof is None else question.write_certificate("infeasible", (), [proof])
 
 
-class _Question:
+class _PlanQuestion:
     """A question about plans as arrays; its actions are the relevant units, by their position among them.
 
     It collects the cuts, balances and rounded conditions that proofs use, and then writes the certificate.
@@ -116,8 +116,8 @@ class _Question:
         required = tuple(frozenset(ruled.makers[goal]) for goal in ruled.goals)
         initial = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
         restriction = Restriction(ruled.removed.__contains__, required)
-        self._lasting = replace(problem, kitchen=initial, restriction=restriction)
-        self._reached = reached = reach(self._lasting)
+        self._simplified = replace(problem, kitchen=initial, restriction=restriction)
+        self._reached = reached = reach(self._simplified)
         self._units = sorted(reached.units if required else relevant_to_plans(problem, reached))
         self._limits: list[tuple[int, SumLimit, int]] = []  # place of the rule, the sum and its scale
         for rule_number, limit in ruled.limits.items():
@@ -152,7 +152,7 @@ class _Question:
         proof, least, columns = proved
         if least != claim.least and before:
             return None
-        stated = _Stated(self, claim.order if multiplies(objective) else None, levels, scales, columns)
+        stated = _ProofWriter(self, claim.order if multiplies(objective) else None, levels, scales, columns)
         return stated.proof(proof), None if least == claim.least else least
 
     def prove_none(self) -> Any | None:
@@ -164,14 +164,14 @@ class _Question:
         reached = set(self._reached.units)
         goals += [goal for goal in ruled.goals if reached.isdisjoint(ruled.makers[goal])]
         if goals:  # a cut that nothing crosses
-            return {"weights": [[self.cut((goals[0],)), "1"]]}
+            return {"weights": [[self.cut_number((goals[0],)), "1"]]}
         order = Lexicographic([None])
         nothing = [order.zero] * len(self._units)
         claim = Claim(order, nothing, order.zero, None, None, [None] * len(nothing))
-        tree = first_tree(self._lasting, self._reached) or ()
+        tree = first_tree(self._simplified, self._reached) or ()
         prover = self._prover([a for a, unit in enumerate(self._units) if unit in tree])
         proved = prover.prove_claim(claim, Measure([0] * len(nothing)), ())
-        return None if proved is None else _Stated(self, None, (), (), proved[2]).proof(proved[0])
+        return None if proved is None else _ProofWriter(self, None, (), (), proved[2]).proof(proved[0])
 
     def _prover(self, derivation: Sequence[int]) -> PlanProver:
         """Return a prover of the question, with the limits and required sets of rules."""
@@ -183,12 +183,12 @@ class _Question:
         prover.require([Landmark(members, objects=(goal,)) for goal, members in makers.items()])
         return prover
 
-    def _figures(self, objective: Objective) -> list[Fraction]:
+    def _unit_costs(self, objective: Objective) -> list[Fraction]:
         return list(map(Fraction, self._problem.figures(objective, self._units)))
 
     def _claim(self, objective: Objective) -> Claim:
         """Return the claim that no plan costs less than the incumbent."""
-        problem, figures = self._problem, self._figures(objective)
+        problem, figures = self._problem, self._unit_costs(objective)
         if multiplies(objective):
             rates = sorted({rate for rate in figures if rate != 1}) or [_HALF]
             order = Lexicographic([rates])
@@ -213,10 +213,10 @@ class _Question:
 
         ``None`` where the integers would be too long.
         """
-        figures = self._figures(objective)
+        figures = self._unit_costs(objective)
         if multiplies(objective):
             costs = [_fine(rate, up=False) for rate in figures]
-            max_cost = sum(_minus_log(self._problem.rate(unit), up=True) for unit in self._plan)
+            max_cost = sum(_minus_log_bound(self._problem.rate(unit), up=True) for unit in self._plan)
             return Level(Measure(costs), Fraction(0), math.ceil(LOGARITHM_SCALE * max_cost)), LOGARITHM_SCALE
         cost = Fraction(self._problem.costs(self._plan).measure(objective))
         scale = math.lcm(cost.denominator, *(figure.denominator for figure in figures))
@@ -227,54 +227,54 @@ class _Question:
 
     # --- writing
 
-    def cut(self, objects: Iterable[int]) -> int:
+    def cut_number(self, objects: Iterable[int]) -> int:
         """Return the number of a cut, which is added to the certificate."""
         return self._cuts.setdefault(tuple(sorted(set(objects))), len(self._cuts))
 
-    def balance(self, o: int) -> int:
+    def use_balance(self, o: int) -> int:
         """Record that the proof uses the balance of an object, and return the object."""
         self._balanced.add(o)
         return o
 
-    def rounded(self, condition: Rounded) -> int:
+    def rounded_number(self, condition: Rounded) -> int:
         """Return the number of a rounded condition, which is added to the certificate after its parts."""
         number = next((i for i, other in enumerate(self._rounded) if other is condition), None)
         if number is not None:
             return number
         by_kind: dict[str, dict[int, Fraction]] = {}
         for of_sum, weight in condition.weights:
-            kind, at, scale = self.of_counts(of_sum)
+            kind, at, scale = self.count_reference(of_sum)
             weights = by_kind.setdefault(kind, {})
             weights[at] = weights.get(at, Fraction(0)) + weight * scale
         self._rounded.append(condition)
         self._rounded_stated.append(
             {
-                kind: [[at, written(weight)] for at, weight in sorted(weights.items())]
+                kind: [[at, fraction_text(weight)] for at, weight in sorted(weights.items())]
                 for kind, weights in sorted(by_kind.items())
             }
         )
         return len(self._rounded) - 1
 
-    def of_counts(self, condition: Condition) -> tuple[str, int, Fraction]:
+    def count_reference(self, condition: Condition) -> tuple[str, int, Fraction]:
         """Return kind and number of a condition on counts alone, and the factor to scale its weight by."""
         if isinstance(condition, Balance):
-            return "balance", self.balance(condition.object), Fraction(1)
+            return "balance", self.use_balance(condition.object), Fraction(1)
         if isinstance(condition, Sum):
-            number, scale = self.limit(condition.limit)
+            number, scale = self.limit_and_scale(condition.limit)
             return "limits", number, Fraction(scale)
         assert isinstance(condition, Rounded)
-        return "rounded", self.rounded(condition), condition.scale
+        return "rounded", self.rounded_number(condition), condition.scale
 
     def unit(self, action: int) -> int:
         """Return the unit of an action."""
         return self._units[action]
 
-    def limit(self, number: int) -> tuple[int, int]:
+    def limit_and_scale(self, number: int) -> tuple[int, int]:
         """Return the number of a limit in the certificate, and the scale by which its sum was multiplied."""
         rule_number, _, scale = self._limits[number]
         return rule_number, scale
 
-    def _unreached(self) -> list[int]:
+    def _unreachable_nodes(self) -> list[int]:
         """Return unreachable nodes, which prove that no plan executes certain irrelevant units.
 
         These are the units that could cross a cut or achieve a balanced node, and the achievers of the
@@ -299,7 +299,7 @@ class _Question:
         """Return all units that add a node."""
         return [unit for unit in self._problem.makers[o] if o in self._problem.flows[unit].adds]
 
-    def _amounts(self) -> list[list[Any]]:
+    def _amounts_json(self) -> list[list[Any]]:
         """Return the amounts of all units of the data."""
         network = self._problem.network
         by_id = ((network.unit_id(unit), sides) for unit, sides in self._problem.amounts.items())
@@ -309,7 +309,7 @@ class _Question:
             if any(sides)
         ]
 
-    def write(
+    def write_certificate(
         self,
         claim: str,
         objectives: Sequence[Objective],
@@ -331,10 +331,10 @@ class _Question:
         stated_nodes = ((o, stays) for o, stays in nodes if o is not None)
         try:
             order = None if bound is None else self._claim(objectives[0]).order
-            stated = None if bound is None else [weight_text(vector, order) for vector in bound]
+            stated = None if bound is None else [weight_json(vector, order) for vector in bound]
         except verifier.LimitError:
             return None
-        return write(
+        return write_certificate(
             PLAN,
             problem,
             Claimed(claim, tuple(objectives), plan, stated),
@@ -346,19 +346,19 @@ class _Question:
                 "stock": [list(pair) for pair in stock],
                 "stays": [list(pair) for pair in (*sorted(stated_labels), *sorted(stated_nodes))],
                 "wanted": [[o, n] for o in sorted(problem.goals) if (n := problem.wanted(o)) > 1],
-                "amounts": self._amounts(),
+                "amounts": self._amounts_json(),
             },
             rounded=self._rounded_stated,
-            unreached=self._unreached(),
+            unreached=self._unreachable_nodes(),
         )
 
 
-class _Stated:
+class _ProofWriter:
     """Writer of proofs by counts as JSON."""
 
     def __init__(
         self,
-        question: _Question,
+        question: _PlanQuestion,
         order: Lexicographic | None,
         levels: Sequence[Level],
         scales: Sequence[int],
@@ -376,42 +376,42 @@ class _Stated:
             return {"branch": branch, "most": proof.max_count, "up_to": up_to, "above": above}
         by_kind: dict[str, dict[tuple[int, ...], Vector]] = {}
         for condition, weight in proof.weights:
-            kind, key, scale = self._key(condition)
+            kind, key, scale = self._reference(condition)
             scaled = tuple(scale * coordinate for coordinate in weight)
             previous = by_kind.setdefault(kind, {}).get(key)
             by_kind[kind][key] = scaled if previous is None else tuple(map(add, previous, scaled))
         return {
-            kind: [[*key, weight_text(weight, self._order)] for key, weight in sorted(weights.items())]
+            kind: [[*key, weight_json(weight, self._order)] for key, weight in sorted(weights.items())]
             for kind, weights in by_kind.items()
         }
 
-    def _key(self, condition: Condition) -> tuple[str, tuple[int, ...], int | Fraction]:
+    def _reference(self, condition: Condition) -> tuple[str, tuple[int, ...], int | Fraction]:
         """Return the kind and key of a condition in a certificate, and the factor of its weight there."""
         question = self._question
         if isinstance(condition, Landmark):
-            cut = question.cut(condition.objects)
+            cut = question.cut_number(condition.objects)
             if condition.action is None:
                 return "weights", (cut,), 1
             return "before", (cut, question.unit(condition.action)), 1
         if isinstance(condition, Supply):
-            key = question.balance(condition.object), question.unit(condition.action)
+            key = question.use_balance(condition.object), question.unit(condition.action)
             return "supply", key, 1
         if isinstance(condition, (Balance, Sum, Rounded)):
-            kind, number, factor = question.of_counts(condition)
+            kind, number, factor = question.count_reference(condition)
             return kind, (number,), factor
         index = next(index for index, (level, _) in enumerate(self._levels) if level is condition)
         return "levels", (index,), self._levels[index][1]
 
 
-def weight_text(weight: Vector, order: Lexicographic | None) -> str | dict[str, str]:
+def weight_json(weight: Vector, order: Lexicographic | None) -> str | dict[str, str]:
     """Return the JSON of a weight by an objective: a number, or the exponents of rates."""
     rates = None if order is None else order.levels[0]
     if rates is None:
-        return written(weight[0])
-    return {str(rate): written(e) for rate, e in zip(rates, weight, strict=True) if e}
+        return fraction_text(weight[0])
+    return {str(rate): fraction_text(e) for rate, e in zip(rates, weight, strict=True) if e}
 
 
-def _minus_log(rate: Fraction, up: bool) -> Fraction:
+def _minus_log_bound(rate: Fraction, up: bool) -> Fraction:
     """Return an upper or lower bound of ``-log(rate)``, in 60 digits."""
     if rate == 1:
         return Fraction(0)
@@ -420,4 +420,4 @@ def _minus_log(rate: Fraction, up: bool) -> Fraction:
 
 
 def _fine(rate: Fraction, up: bool) -> int:
-    return math.floor(LOGARITHM_SCALE * _minus_log(rate, up))
+    return math.floor(LOGARITHM_SCALE * _minus_log_bound(rate, up))

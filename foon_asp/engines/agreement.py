@@ -122,12 +122,12 @@ def _ask(engine: Engine, claim: Asked, seconds: float) -> tuple[Objective, ...]:
     Raises :class:`NotCheckedError` under other rules, and :class:`DisagreementError` as :func:`agree`.
     """
     problem, covered = claim.outcome.problem, coverage(claim.settings)
-    unsupported = [*covered.beyond(), *(name.partition(" ")[0] for name in covered.not_covered)]
+    unsupported = [*covered.rules_beyond_removal(), *(name.partition(" ")[0] for name in covered.not_covered)]
     if unsupported := [*unsupported, *(file.name for file in claim.soft)]:
         raise NotCheckedError(f"it knows no rules such as {', '.join(unsupported)}")
     if not engine.installed():
         raise NotCheckedError(_EXTRA)
-    forbidden = covered.forbids(problem)
+    forbidden = covered.forbidden_units(problem)
     answer = engine.solve(problem, levels(claim.outcome.objectives), forbidden, seconds)
     if not forbidden.isdisjoint(answer.units or ()):
         raise DisagreementError(f"the tree of {answer.engine} has a unit that the rules forbid", answer)

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from foon_asp.hypergraph.goal_graph import GoalGraph
 from foon_asp.hypergraph.h_values import derive
-from foon_asp.hypergraph.lazy_h_max import within_reach
+from foon_asp.hypergraph.lazy_h_max import lazy_h_max_test
 from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
 from foon_asp.hypergraph.restricted_subproblem import restricted_subproblem
 
@@ -52,7 +52,7 @@ def actions_of_extensions(
         cost,
         limit,
         min_reduced_cost=1,
-        reachable=within_reach(graph, all_actions, price),
+        reachable=lazy_h_max_test(graph, all_actions, price),
     )
     while not expired():
         derivations = derive(graph, remaining.union(free), price, h_add=False)

@@ -9,7 +9,7 @@ from foon_asp.hypergraph.exact_costs import ExactCosts
 from foon_asp.hypergraph.goal_graph import GoalGraph
 from foon_asp.hypergraph.h_values import derive
 from foon_asp.hypergraph.landmark_cuts import Cuts, landmark_cuts
-from foon_asp.hypergraph.lazy_h_max import within_reach
+from foon_asp.hypergraph.lazy_h_max import lazy_h_max_test
 from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
 from foon_asp.problem import Problem
 
@@ -182,7 +182,7 @@ def reduced_cost_fixing(
     up.
     """
     remaining = neighbourhood(
-        graph, allowed, reduced_cost, limit, reachable=within_reach(graph, allowed, reduced_cost)
+        graph, allowed, reduced_cost, limit, reachable=lazy_h_max_test(graph, allowed, reduced_cost)
     )
     while not expired():
         derivations = derive(graph, remaining, reduced_cost, h_add=False)

@@ -33,16 +33,23 @@ def raise_bound(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide 
     """
     costs = task.costs
     assert costs is not None
-    max_members = task.tuning.landmark_actions * max(task.tuning.easy_actions, len(gap.candidates))
+    max_landmark_actions = task.tuning.landmark_actions * max(task.tuning.easy_actions, len(gap.candidates))
     cuts = landmark_cuts(
-        task.graph, task.graph.goals, gap.candidates, costs, h_values, task.expired, guide, max_members
+        task.graph,
+        task.graph.goals,
+        gap.candidates,
+        costs,
+        h_values,
+        task.expired,
+        guide,
+        max_landmark_actions,
     )
     evidence = gap.evidence
     if evidence.first is None and not cuts.interrupted:
         evidence = evidence._replace(first=FirstCuts(cuts, gap.candidates))
     if evidence.cuts is None or cuts.bound > evidence.cuts.bound:
         evidence = evidence._replace(cuts=cuts)
-    return Bounded(gap.with_bound(min(cuts.bound, task.total(gap)), evidence), cuts)
+    return Bounded(gap.with_bound(min(cuts.bound, task.incumbent_cost(gap)), evidence), cuts)
 
 
 def tighten(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide | None, thorough: bool) -> Stage:
@@ -81,7 +88,7 @@ def search_neighbourhood(task: Task, gap: Gap, cuts: Cuts, thorough: bool) -> Ga
     costs = task.costs
     assert costs is not None
     reduced_cost = reduced_costs_of(costs, cuts)
-    distance, tree = task.total(gap) - cuts.bound, set(gap.incumbent)
+    distance, tree = task.incumbent_cost(gap) - cuts.bound, set(gap.incumbent)
     candidates = neighbourhood(
         task.thin, gap.candidates, reduced_cost, distance, enough=task.tuning.neighbourhood_actions
     )

@@ -24,8 +24,8 @@ def irredundant_subset(graph: GoalGraph, tree: Collection[int], cost: Callable[[
     needed: set[int] = set()  # and so in every subset of the tree
     while waiting:
         _, action = heappop(waiting)
-        if action in support.actions and action not in needed and support.replaceable(action):
-            freed = support.leave_out(action)
+        if action in support.actions and action not in needed and support.is_replaceable(action):
+            freed = support.remove(action)
             if freed is None:
                 needed.add(action)
             for other in freed or ():  # they may have become replaceable

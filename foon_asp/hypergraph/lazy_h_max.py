@@ -7,7 +7,7 @@ from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.goal_graph import GoalGraph
 
 
-def within_reach(
+def lazy_h_max_test(
     graph: GoalGraph, allowed: Container[int], reduced_cost: Callable[[int], int]
 ) -> Callable[[int, float], bool]:
     """Return a function of an object and a limit: whether allowed actions make the object at such an h_max.
@@ -21,7 +21,7 @@ def within_reach(
     sufficient_limits: dict[int, float] = {}  # limits for which the answer was ``True``
     budget = tuning.CUTS.lazy_looks
 
-    def reached(o: int, limit: float, deep: int = tuning.CUTS.lazy_depth) -> bool:
+    def is_within(o: int, limit: float, depth: int = tuning.CUTS.lazy_depth) -> bool:
         nonlocal budget
         if lower_bounds.get(o, 0) > limit:
             return False
@@ -36,7 +36,7 @@ def within_reach(
             if h_action <= limit:
                 remaining = limit - h_action
                 for needed in needs[action]:
-                    if needed not in start and deep and not reached(needed, remaining, deep - 1):
+                    if needed not in start and depth and not is_within(needed, remaining, depth - 1):
                         missing = lower_bounds[needed]
                         h_action = (
                             missing if missing == math.inf else h_action + missing
@@ -49,4 +49,4 @@ def within_reach(
         lower_bounds[o] = lowest
         return False
 
-    return reached
+    return is_within

@@ -46,17 +46,17 @@ Others = Callable[[frozenset[int], Collection[frozenset[int]]], Proof]
 class Rules(Protocol):
     """Rules on derivations that neither targets nor limits express."""
 
-    def bars(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
+    def barred_actions(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
         """Return for each rule, by number, the actions that it bars.
 
         A derivation with the used actions and no action of ``without`` breaks the rule if it also has a
         barred action.
         """
 
-    def breaking(self, derivation: frozenset[int]) -> Sequence[int]:
+    def breaking_actions(self, derivation: frozenset[int]) -> Sequence[int]:
         """Return actions of a derivation that together break a rule; empty if it breaks none."""
 
-    def exceeded(self, derivation: frozenset[int]) -> Limit | None:
+    def exceeded_limit(self, derivation: frozenset[int]) -> Limit | None:
         """Return a limit that a derivation exceeds and that was not returned before; ``None`` without one."""
 
 
@@ -103,7 +103,7 @@ class Prover:
         self._graph, self._targets, self._costs, self._order = graph, targets, costs, order
         self._forbidden, self._expired = forbidden, expired
         self._random = random.Random(0)
-        self._members = cache(graph.landmark_of)
+        self._landmark_of = cache(graph.landmark_of)
         floats = [order.approximate(cost) for cost in set(costs)]
         scale, self._scales = 1.0, list[float]()
         for level, rates in enumerate(order.levels):
@@ -113,7 +113,7 @@ class Prover:
             self._scales.append(scale / unit)
             scale *= 1e-4 / (1 + largest / unit)  # so that a level weighs much less than the one before
 
-    def scaled(self, vector: Vector) -> float:
+    def as_float(self, vector: Vector) -> float:
         """Return a cost as one float: a sum in which each level weighs much less than the one before."""
         return sum(map(mul, self._order.approximate(vector), self._scales), 0.0)
 
@@ -124,7 +124,7 @@ class Prover:
         :class:`CheaperError` if a cheaper derivation is found.
         """
         try:
-            goal, nothing = self._total(derivation), frozenset[int]()
+            goal, nothing = self._cost_of(derivation), frozenset[int]()
             return self._prove(goal, nothing, self._forbidden, self._known_cuts, cases, at_root=True)
         except _TimeUpError:
             return None
@@ -143,16 +143,16 @@ class Prover:
         up, and where the targets cannot be reached.
         """
         nothing: frozenset[int] = frozenset()
-        barred = self._bars(nothing, self._forbidden).values()
+        barred = self._barred_actions(nothing, self._forbidden).values()
         cutter = Cutter(self._graph, self._targets, self._forbidden.union(*barred))
         if cutter.hopeless:
             return None
         try:
-            node = _Node(self, cutter, nothing, self._total(derivation))
+            node = _Node(self, cutter, nothing, self._cost_of(derivation))
             exact = node.relax(None)
         except _TimeUpError:
             return None
-        return None if exact is None else (node.packing(exact), self.rounded(exact.value)[0])
+        return None if exact is None else (node.packing(exact), self.round_up(exact.value)[0])
 
     def _prove(
         self,
@@ -169,14 +169,14 @@ class Prover:
         ``at_root`` is true before any branching; there may have been reduced-cost fixing.
         """
         targets = [*self._targets, *(o for action in sorted(used) for o in self._graph.needs[action])]
-        bars = self._bars(used, forbidden)
+        bars = self._barred_actions(used, forbidden)
         for rule, barred in bars.items():
             if not used.isdisjoint(barred):
                 return Broken(rule)
         cutter = Cutter(self._graph, targets, forbidden.union(*bars.values()))
         if cutter.hopeless:
             return Hopeless(cutter.hopeless)
-        remaining_goal = None if goal is None else subtract(goal, self._total(used))
+        remaining_goal = None if goal is None else subtract(goal, self._cost_of(used))
         undecided = set(cutter.actions) - used if cases else ()
         while cases is not None and cases[0] not in undecided:
             cases = cases[2] if cases[0] in used else cases[1]
@@ -189,10 +189,10 @@ class Prover:
             many = len(cutter.actions) > tuning.PROOF.rounded_actions or (
                 at_root and forbidden != self._forbidden
             )
-            step = self._step() if many else Fraction(0)
-            alone = cases is not None and not at_root
-            proof, widened = self._packed(
-                cutter, used, remaining_goal, known_cuts, others, step, alone, at_root
+            step = self._cost_step() if many else Fraction(0)
+            without_lp = cases is not None and not at_root
+            proof, widened = self._prove_by_partition(
+                cutter, used, remaining_goal, known_cuts, others, step, without_lp, at_root
             )
             if proof is not None:
                 return proof
@@ -200,22 +200,26 @@ class Prover:
             return self._branch(goal, used, forbidden, known_cuts, cases[0], cases[1:])
         while True:
             node = _Node(self, cutter, used, goal)
-            node.admit(widened)
+            node.add_cuts(widened)
             exact = node.relax(remaining_goal)
-            if exact is not None and node.suffices(exact.value, remaining_goal):
+            if exact is not None and node.is_sufficient(exact.value, remaining_goal):
                 return node.packing(exact)
-            action = node.undecided()
+            action = node.most_fractional_action()
             rounded_solution = [] if action is not None else node.rounded_solution()
-            limit = self._exceeded(rounded_solution)
+            limit = self._exceeded_limit(rounded_solution)
             if limit is None:
                 break
             self._limits.append(limit)
             widened = node.cuts
         if action is None:
-            breaking = [a for a in self._breaking(rounded_solution) if a not in used]
+            breaking = [a for a in self._breaking_actions(rounded_solution) if a not in used]
             if not breaking:
-                cheaper = goal is not None and self._order.compare(self._total(rounded_solution), goal) < 0
-                if cheaper and cutter.reached_by(rounded_solution) and not node.exceeds(rounded_solution):
+                cheaper = goal is not None and self._order.compare(self._cost_of(rounded_solution), goal) < 0
+                if (
+                    cheaper
+                    and cutter.reached_by(rounded_solution)
+                    and not node.exceeds_limit(rounded_solution)
+                ):
                     raise CheaperError(self._runnable_actions(rounded_solution))
                 raise _TimeUpError  # floats led nowhere
             action = breaking[0]
@@ -239,7 +243,7 @@ class Prover:
             self._prove(goal, used | {action}, forbidden, known_cuts, using),
         )
 
-    def rounded(self, bound: Vector) -> tuple[Vector, int | None]:
+    def round_up(self, bound: Vector) -> tuple[Vector, int | None]:
         """Round up a bound at its first coordinate that is no multiple of its number in ``multiples``.
 
         Returns the bound and the index of the rounded coordinate, ``None`` if no coordinate was rounded.
@@ -250,15 +254,15 @@ class Prover:
                 return (*bound[:i], math.ceil(coordinate / multiple) * multiple, *after), i
         return bound, None
 
-    def _bars(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
-        return {} if self._rules is None else self._rules.bars(used, without)
+    def _barred_actions(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
+        return {} if self._rules is None else self._rules.barred_actions(used, without)
 
-    def _breaking(self, derivation: Iterable[int]) -> Sequence[int]:
-        return () if self._rules is None else self._rules.breaking(frozenset(derivation))
+    def _breaking_actions(self, derivation: Iterable[int]) -> Sequence[int]:
+        return () if self._rules is None else self._rules.breaking_actions(frozenset(derivation))
 
-    def _exceeded(self, derivation: Iterable[int]) -> Limit | None:
+    def _exceeded_limit(self, derivation: Iterable[int]) -> Limit | None:
         chosen = frozenset(derivation)
-        return None if self._rules is None or not chosen else self._rules.exceeded(chosen)
+        return None if self._rules is None or not chosen else self._rules.exceeded_limit(chosen)
 
     def _runnable_actions(self, actions: Sequence[int]) -> list[int]:
         """Return the actions that can run in a derivation by the given actions alone."""
@@ -266,7 +270,7 @@ class Prover:
         reached = graph.reach(frozenset(range(len(graph.needs))).difference(actions))
         return [action for action in actions if all(reached[o] for o in graph.needs[action])]
 
-    def _packed(
+    def _prove_by_partition(
         self,
         cutter: Cutter,
         used: frozenset[int],
@@ -274,40 +278,40 @@ class Prover:
         known_cuts: Collection[frozenset[int]],
         others: Others,
         step: Fraction,
-        alone: bool,
+        without_lp: bool,
         at_root: bool,
     ) -> tuple[Proof | None, Sequence[Cut]]:
         """Return a proof of ``goal`` found without exact linear programming, else ``None``; and all cuts.
 
         Tries a greedy cost partition over ``known_cuts``, then reduced-cost fixing by it; ``others`` proves
         the goal for derivations without the fixed actions. Then both are tried with the rounded dual solution
-        of the LP, and at the root :func:`prove_by_branching` comes last. With ``alone`` or a ``step`` of 0, the LP is
+        of the LP, and at the root :func:`prove_by_branching` comes last. With ``without_lp`` or a ``step`` of 0, the LP is
         not used.
         """
         targets = set(cutter.targets)
         known_cuts = [cut for cut in known_cuts if not targets.isdisjoint(cut)]
-        cuts = [self._widened(cutter, cut) for cut in known_cuts[: tuning.PROOF.greedy_cuts]]
+        cuts = [self._widen(cutter, cut) for cut in known_cuts[: tuning.PROOF.greedy_cuts]]
         cuts = [cut for cut in cuts if used.isdisjoint(cut.members)]
-        packing, reduced_costs = self._share_out((cut, None) for cut in cuts)
-        if self._reaches(packing, goal):
+        packing, reduced_costs = self._partition_greedily((cut, None) for cut in cuts)
+        if self._reaches_goal(packing, goal):
             return packing, cuts
         proof = self._fix_by_cost(cutter, used, goal, packing, reduced_costs, others, known_cuts, step)
-        if proof is not None or alone or not step:
+        if proof is not None or without_lp or not step:
             return proof, cuts
 
-        def steps(action: int) -> int:
+        def cost_in_steps(action: int) -> int:
             return 0 if action in used else int(self._costs[action][0] / step)
 
         enough = math.ceil(goal[0] / step)
 
-        partition = self._optimal_partition(cutter, steps, known_cuts, enough)
+        partition = self._optimal_partition(cutter, cost_in_steps, known_cuts, enough)
         if partition is not None:
             weighted_cuts = [
-                (self._widened(cutter, cut), (weight * step / PARTS,)) for cut, weight in partition.cuts
+                (self._widen(cutter, cut), (weight * step / PARTS,)) for cut, weight in partition.cuts
             ]
             weighted_cuts = [(cut, weight) for cut, weight in weighted_cuts if used.isdisjoint(cut.members)]
-            packing, reduced_costs = self._share_out(weighted_cuts)
-            if self._reaches(packing, goal):
+            packing, reduced_costs = self._partition_greedily(weighted_cuts)
+            if self._reaches_goal(packing, goal):
                 return packing, cuts
             proof = self._fix_by_cost(
                 cutter, used, goal, packing, reduced_costs, others, partition.tight, step
@@ -315,7 +319,7 @@ class Prover:
             if proof is not None:
                 return proof, cuts
             cuts += [cut for cut, _ in weighted_cuts]
-        return self._searched(cutter, goal, cuts, step) if at_root else None, cuts
+        return self._prove_by_search(cutter, goal, cuts, step) if at_root else None, cuts
 
     def _optimal_partition(
         self, cutter: Cutter, cost: Callable[[int], int], known_cuts: Iterable[frozenset[int]], enough: int
@@ -336,7 +340,7 @@ class Prover:
             if above_cutoff > tuning.PROOF.fixed_share * len(cutter.actions):
                 return partition
 
-    def _step(self) -> Fraction:
+    def _cost_step(self) -> Fraction:
         """Return a number that all costs are multiples of; 0 for costs of several coordinates.
 
         Also 0 if there are limits or rules.
@@ -369,21 +373,21 @@ class Prover:
         if len(above_cutoff) <= tuning.PROOF.fixed_share * len(cutter.actions):
             return None
         proof = others(above_cutoff, known_cuts)
-        needed = above_cutoff.intersection(self._crossing(proof))
+        needed = above_cutoff.intersection(self._landmark_actions(proof))
         return CostFixing(tuple(sorted(needed)), packing._replace(rounded=0), proof) if needed else proof
 
-    def _crossing(self, proof: Proof) -> Iterator[int]:
+    def _landmark_actions(self, proof: Proof) -> Iterator[int]:
         """Yield the actions that cross cuts of a proof, including fixed actions."""
         for objects in {cut.objects for cut in cuts_of(proof)}:
-            yield from self._members(frozenset(objects))
+            yield from self._landmark_of(frozenset(objects))
 
-    def _widened(self, cutter: Cutter, objects: Iterable[int]) -> Cut:
+    def _widen(self, cutter: Cutter, objects: Iterable[int]) -> Cut:
         """Return a cut; objects are added if an action that cannot run crosses it."""
         inside = frozenset(o for o in objects if not self._graph.at_start[o])
-        members = cutter.without_forbidden(self._members(inside))
+        members = cutter.without_forbidden(self._landmark_of(inside))
         return cutter.widen(inside) if members is None else Cut(tuple(sorted(inside)), members)
 
-    def _searched(
+    def _prove_by_search(
         self, cutter: Cutter, goal: Vector, known_cuts: Sequence[Cut], step: Fraction
     ) -> Proof | None:
         """Return a proof by :func:`prove_by_branching`, its cuts valid for all actions; ``None`` without a proof."""
@@ -395,28 +399,30 @@ class Prover:
             *(math.ceil(goal[0] / step), self._expired),
         )
 
-        widened = cache(partial(self._widened, cutter))
+        widened = cache(partial(self._widen, cutter))
 
-        def packed(packing: Packing) -> Packing:
+        def widen_packing(packing: Packing) -> Packing:
             weights = [(widened(cut.objects), (weight[0] * step,)) for cut, weight in packing.weights]
-            _, rounded = self.rounded(self._order.total(weight for _, weight in weights))
+            _, rounded = self.round_up(self._order.total(weight for _, weight in weights))
             return Packing(tuple(weights), rounded=rounded)
 
-        def stated(proof: Proof) -> Proof:
+        def widen_proof(proof: Proof) -> Proof:
             if isinstance(proof, Branch):
-                return Branch(proof.action, stated(proof.without), stated(proof.using))
+                return Branch(proof.action, widen_proof(proof.without), widen_proof(proof.using))
             if isinstance(proof, Hopeless):
                 return Hopeless(widened(proof.cut.objects))
             if isinstance(proof, CostFixing):
                 return CostFixing(
-                    proof.actions, packed(proof.packing)._replace(rounded=0), stated(proof.others)
+                    proof.actions, widen_packing(proof.packing)._replace(rounded=0), widen_proof(proof.others)
                 )
             assert isinstance(proof, Packing)
-            return packed(proof)
+            return widen_packing(proof)
 
-        return None if result is None else stated(result)
+        return None if result is None else widen_proof(result)
 
-    def _share_out(self, cuts: Iterable[tuple[Cut, Vector | None]]) -> tuple[Packing, dict[int, Vector]]:
+    def _partition_greedily(
+        self, cuts: Iterable[tuple[Cut, Vector | None]]
+    ) -> tuple[Packing, dict[int, Vector]]:
         """Partition costs greedily: each cut in turn gets the least reduced cost of its landmark actions.
 
         Each cut comes with the maximum of its weight, ``None`` for no maximum. Returns the cost partition,
@@ -433,15 +439,15 @@ class Prover:
                 reduced_costs.update(
                     (a, subtract(reduced_cost, weight)) for a, reduced_cost in remaining.items()
                 )
-        _, rounded = self.rounded(self._order.total(weight for _, weight in weights))
+        _, rounded = self.round_up(self._order.total(weight for _, weight in weights))
         return Packing(tuple(weights), rounded=rounded), reduced_costs
 
-    def _reaches(self, packing: Packing, goal: Vector) -> bool:
+    def _reaches_goal(self, packing: Packing, goal: Vector) -> bool:
         """Return whether the sum of the weights of a cost partition, rounded up, is at least ``goal``."""
-        value, _ = self.rounded(self._order.total(weight for _, weight in packing.weights))
+        value, _ = self.round_up(self._order.total(weight for _, weight in packing.weights))
         return self._order.compare(value, goal) >= 0
 
-    def _total(self, actions: Iterable[int]) -> Vector:
+    def _cost_of(self, actions: Iterable[int]) -> Vector:
         return self._order.total(self._costs[a] for a in actions)
 
 
@@ -456,12 +462,14 @@ class _Node:
         self._actions = cutter.actions
         self._columns = {action: column for column, action in enumerate(self._actions)}
         self._costs = [prover._costs[action] for action in self._actions]
-        floats = {cost: prover.scaled(cost) for cost in set(self._costs)}
+        floats = {cost: prover.as_float(cost) for cost in set(self._costs)}
         self._floats = [floats[cost] for cost in self._costs]
-        self._limits = [self._limited(column, limit) for column, limit in enumerate(prover._limits)]
+        self._limits = [
+            self._limit_over_columns(column, limit) for column, limit in enumerate(prover._limits)
+        ]
         excess_cost = (Fraction(1),) * prover._order.width if goal is None else multiply(goal, Fraction(1000))
         self._costs += [excess_cost] * len(self._limits)
-        self._covering = Covering([*self._floats, *[prover.scaled(excess_cost)] * len(self._limits)])
+        self._covering = Covering([*self._floats, *[prover.as_float(excess_cost)] * len(self._limits)])
         for amounts, max_amount in self._limits:
             self._covering.add_limit(amounts, max_amount)
         constrained = self._limits or prover._rules is not None
@@ -472,7 +480,7 @@ class _Node:
         self._rows: list[list[int]] = []
         self.lp_values: Sequence[float]
 
-    def _limited(self, row: int, limit: Limit) -> Limit:
+    def _limit_over_columns(self, row: int, limit: Limit) -> Limit:
         """Return limit number ``row`` over columns, reduced by the amounts of the used actions.
 
         An additional column is the excess over the limit.
@@ -482,7 +490,7 @@ class _Node:
         remaining = max_amount - sum(amounts[a] for a in self._used if a in amounts)
         return {**columns, len(self._actions) + row: Fraction(-1)}, remaining
 
-    def exceeds(self, actions: Iterable[int]) -> bool:
+    def exceeds_limit(self, actions: Iterable[int]) -> bool:
         """Return whether actions exceed a limit."""
         chosen = set(actions)
         return any(
@@ -490,12 +498,12 @@ class _Node:
             for amounts, max_amount in self._prover._limits
         )
 
-    def suffices(self, value: Vector, enough: Vector | None) -> bool:
+    def is_sufficient(self, value: Vector, enough: Vector | None) -> bool:
         """Return whether a bound is at least ``enough`` or, if that is ``None``, whether it is above 0."""
         order = self._prover._order
         if enough is None:
             return order.sign(value) > 0
-        return order.compare(self._prover.rounded(value)[0], enough) >= 0
+        return order.compare(self._prover.round_up(value)[0], enough) >= 0
 
     def relax(self, enough: Vector | None) -> ExactOptimum | None:
         """Add cuts until the bound is ``enough``, or no cut is found that the LP solution violates.
@@ -503,29 +511,29 @@ class _Node:
         Returns the exact optimum of the rows; ``None`` where exact arithmetic fails.
         """
         order = self._prover._order
-        wanted = math.inf if enough is None else self._prover.scaled(enough)
+        wanted = math.inf if enough is None else self._prover.as_float(enough)
         if enough is not None and len(enough) == len(self._prover._multiples) == 1:  # more than one step less
-            wanted -= 0.99 * self._prover.scaled((self._prover._multiples[0],))
+            wanted -= 0.99 * self._prover.as_float((self._prover._multiples[0],))
         while True:
-            self._check()
+            self._check_time()
             relaxed = self._covering.solve(self._prover._expired)
-            self._check()
-            self._share(relaxed.x)
+            self._check_time()
+            self._record_solution(relaxed.x)
             if relaxed.value < wanted * 0.9999999 and self._separate():
                 continue
             exact = exact_optimum(self._rows, self._costs, order, relaxed.columns, relaxed.rows, self._limits)
             if exact is not None:
-                if enough is not None and self.suffices(exact.value, enough):
+                if enough is not None and self.is_sufficient(exact.value, enough):
                     return exact
-                self._share([float(exact.x.get(column, 0)) for column in range(len(self._actions))])
+                self._record_solution([float(exact.x.get(column, 0)) for column in range(len(self._actions))])
             if not self._separate():
                 return exact
 
-    def _check(self) -> None:
+    def _check_time(self) -> None:
         if self._prover._expired():
             raise _TimeUpError
 
-    def _share(self, x: Sequence[float]) -> None:
+    def _record_solution(self, x: Sequence[float]) -> None:
         """Record an LP solution; actions that cost 0 get the value 1 if there are no limits and rules."""
         self.lp_values = [*x]
         for column in self._free:
@@ -538,10 +546,10 @@ class _Node:
         return Packing(
             tuple((self.cuts[row - first], weight) for row, weight in weights if row >= first),
             tuple((row, weight) for row, weight in weights if row < first),
-            self._prover.rounded(exact.value)[1],
+            self._prover.round_up(exact.value)[1],
         )
 
-    def undecided(self) -> int | None:
+    def most_fractional_action(self) -> int | None:
         """Return the most fractional action, of equal ones the most expensive; ``None`` without one."""
         fractional = [
             (abs(x - 0.5), -self._floats[column], self._actions[column])
@@ -567,10 +575,10 @@ class _Node:
         random_number = self._prover._random.random
         cuts = disjoint_violated_cuts(self._cutter, self._used, lp_values, costs, random_number, TOLERANCE)
         violated = list(islice(cuts, tuning.RELAXATION.cuts))
-        self.admit(violated)
+        self.add_cuts(violated)
         return bool(violated)
 
-    def admit(self, cuts: Iterable[Cut]) -> None:
+    def add_cuts(self, cuts: Iterable[Cut]) -> None:
         """Add cuts as rows, except cuts with a landmark action that has no column."""
         for cut in cuts:
             if self._columns.keys() >= set(cut.members):

@@ -9,13 +9,13 @@ from typing import NamedTuple
 from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.exact_costs import ExactCosts
 from foon_asp.hypergraph.gap_bounded_subproblem import Subproblem
-from foon_asp.hypergraph.reduction import Reduced, at_costs
+from foon_asp.hypergraph.reduction import Reduced, reduce_at_costs
 from foon_asp.problem import LinearRow, Objective
 
 Units = frozenset[int]
 
 
-class Limited(NamedTuple):
+class WithinLimit(NamedTuple):
     """The result of a search for trees within a limit.
 
     ``tree`` is within the limit; ``None`` if there is no such tree. ``units`` are all units that better trees
@@ -26,13 +26,13 @@ class Limited(NamedTuple):
     units: Units | None = None
 
 
-def limited(
+def search_within_limit(
     subproblem: Subproblem,
     objectives: Sequence[Objective],
     tree: Units,
     row: LinearRow,
     expired: Callable[[], bool],
-) -> Limited | None:
+) -> WithinLimit | None:
     """Search for the best tree within an upper limit on a sum over units; ``tree`` exceeds the limit.
 
     ``row`` has the amounts of units and the bound on their sum. A first tree within the limit is found by
@@ -44,12 +44,12 @@ def limited(
     first = any_within_limit(subproblem, row, expired)
     if first is None or first.tree is None:
         return first
-    incumbent, over = first.tree, tree
+    incumbent, exceeding = first.tree, tree
     remaining: Units | None = None
     for _ in range(tuning.PRICES.prices):
         ratio = -(
-            -(subproblem.total(incumbent) - subproblem.total(over))
-            // (row.total(over) - row.total(incumbent))
+            -(subproblem.total(incumbent) - subproblem.total(exceeding))
+            // (row.total(exceeding) - row.total(incumbent))
         )
         if ratio <= 0:
             break
@@ -72,37 +72,40 @@ def limited(
         if remaining is None or len(reduced.units) < len(remaining):
             remaining = frozenset(reduced.units)
         if len(remaining) > tuning.PRICES.rising_units:
-            return _by_rising_prices(subproblem, objectives, incumbent, over, row, expired)
-        if row.total(reduced.tree) > row.bound and subproblem.total(reduced.tree) > subproblem.total(over):
-            over = reduced.tree
+            return _by_rising_prices(subproblem, objectives, incumbent, exceeding, row, expired)
+        if row.total(reduced.tree) > row.bound and subproblem.total(reduced.tree) > subproblem.total(
+            exceeding
+        ):
+            exceeding = reduced.tree
         elif not better:
             break
         if len(remaining) <= tuning.PRICES.easy_units:
             break
-    return Limited(incumbent, remaining)
+    return WithinLimit(incumbent, remaining)
 
 
 def _by_rising_prices(
     subproblem: Subproblem,
     objectives: Sequence[Objective],
     incumbent: Units,
-    over: Units,
+    exceeding: Units,
     row: LinearRow,
     expired: Callable[[], bool],
-) -> Limited:
-    """Search for trees within the limit that are better than ``incumbent``; ``over`` exceeds the limit.
+) -> WithinLimit:
+    """Search for trees within the limit that are better than ``incumbent``; ``exceeding`` exceeds the limit.
 
     A question at a low price is about as quick as one without a price. Prices rise from about the cost of a
-    unit to the price at which ``incumbent`` and ``over`` cost the same. The optimal tree at a price replaces
+    unit to the price at which ``incumbent`` and ``exceeding`` cost the same. The optimal tree at a price replaces
     one of the two. The price with the greatest bound determines the units of trees better than
     ``incumbent``.
     """
-    next_price = Fraction(subproblem.total(over), len(over))
+    next_price = Fraction(subproblem.total(exceeding), len(exceeding))
     greatest: tuple[Fraction, Fraction] | None = None  # bound, and its price
     subproblem = _restricted_to_cost(subproblem, incumbent, expired)
     for _ in range(tuning.PRICES.rising_prices):
         tie = Fraction(
-            subproblem.total(incumbent) - subproblem.total(over), row.total(over) - row.total(incumbent)
+            subproblem.total(incumbent) - subproblem.total(exceeding),
+            row.total(exceeding) - row.total(incumbent),
         )
         if tie <= 0:
             break
@@ -117,7 +120,7 @@ def _by_rising_prices(
             incumbent
         )
         if count > row.bound:
-            over = reduced.tree
+            exceeding = reduced.tree
         elif total < subproblem.total(incumbent):
             incumbent = reduced.tree
             subproblem = _restricted_to_cost(subproblem, incumbent, expired)
@@ -126,17 +129,17 @@ def _by_rising_prices(
         if tied or count == row.bound:
             break
     if greatest is None:
-        return Limited(incumbent)
+        return WithinLimit(incumbent)
     _, price = greatest
     allowed = subproblem.total(incumbent) * price.denominator + price.numerator * row.bound
     reduced = _reduced_at(
         subproblem, subproblem.costs.with_price(row.weight, price), objectives, expired, incumbent, allowed
     )
     if reduced.tree is None:
-        return Limited(incumbent)
+        return WithinLimit(incumbent)
     if row.total(reduced.tree) <= row.bound and subproblem.total(reduced.tree) < subproblem.total(incumbent):
         incumbent = reduced.tree
-    return Limited(incumbent, frozenset(reduced.units))
+    return WithinLimit(incumbent, frozenset(reduced.units))
 
 
 def _restricted_to_cost(subproblem: Subproblem, tree: Units, expired: Callable[[], bool]) -> Subproblem:
@@ -145,10 +148,12 @@ def _restricted_to_cost(subproblem: Subproblem, tree: Units, expired: Callable[[
     return replace(subproblem, remaining={*remaining, *subproblem.actions(tree)})
 
 
-def any_within_limit(subproblem: Subproblem, row: LinearRow, expired: Callable[[], bool]) -> Limited | None:
+def any_within_limit(
+    subproblem: Subproblem, row: LinearRow, expired: Callable[[], bool]
+) -> WithinLimit | None:
     """Search for any tree that keeps to an upper limit on a sum, by minimizing the sum.
 
-    Returns ``Limited(None)`` if a bound proves that no tree is within the limit, ``None`` if nothing is
+    Returns ``WithinLimit(None)`` if a bound proves that no tree is within the limit, ``None`` if nothing is
     known.
     """
     units_cost = ExactCosts(subproblem.problem, (Objective.UNITS,), subproblem.remaining)
@@ -160,10 +165,10 @@ def any_within_limit(subproblem: Subproblem, row: LinearRow, expired: Callable[[
         expired,
     )
     if reduced.bound >= limit:
-        return Limited(None)
+        return WithinLimit(None)
     if reduced.tree is None or row.total(reduced.tree) > row.bound:
         return None
-    return Limited(reduced.tree)
+    return WithinLimit(reduced.tree)
 
 
 def _reduced_at(
@@ -175,8 +180,8 @@ def _reduced_at(
     below: int = 0,
     max_actions: float = math.inf,
 ) -> Reduced:
-    """Reduce the subproblem by :func:`at_costs`; raise ``KeyboardInterrupt`` where that is interrupted."""
-    reduced = at_costs(subproblem, objectives, costs, expired, known_tree, below, max_actions)
+    """Reduce the subproblem by :func:`reduce_at_costs`; raise ``KeyboardInterrupt`` where that is interrupted."""
+    reduced = reduce_at_costs(subproblem, objectives, costs, expired, known_tree, below, max_actions)
     if reduced.interrupted:
         raise KeyboardInterrupt
     return reduced

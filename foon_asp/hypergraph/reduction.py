@@ -24,7 +24,7 @@ from foon_asp.hypergraph.landmark_cuts import Cuts
 from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
 from foon_asp.hypergraph.reductions import ALL, Reduction
 from foon_asp.hypergraph.restricted_subproblem import restricted_subproblem
-from foon_asp.hypergraph.solved_goals import SolvedGoals, is_open_to
+from foon_asp.hypergraph.solved_goals import SolvedGoals, can_use_solved_goals
 from foon_asp.hypergraph.task import Task
 from foon_asp.hypergraph.tuning import PresolveTuning
 from foon_asp.problem import Objective, Problem
@@ -117,11 +117,11 @@ def reduce(
     """
     with uncollected():
         with guard():
-            presolve = _Presolve(_task(problem, objectives, reductions, expired), listener, guard)
-        if solved is None or not is_open_to(presolve.task):
+            presolve = _Presolve(_task_of(problem, objectives, reductions, expired), listener, guard)
+        if solved is None or not can_use_solved_goals(presolve.task):
             presolve.extend_or_run()
         else:
-            presolve.run_beside(solved)
+            presolve.run_with_solved_goals(solved)
         return presolve.reduced()
 
 
@@ -144,7 +144,7 @@ def reduce_under_rules(
     presolve_tuning = tuning.PRESOLVE._replace(branching_budget=0, landmark_actions=math.inf)
     with uncollected():
         with guard():
-            task = _task(problem, objectives, reductions, expired, presolve_tuning)
+            task = _task_of(problem, objectives, reductions, expired, presolve_tuning)
             presolve = _Presolve(task, listener, guard, redundant)
         presolve.run(course or ROUNDS)
         return presolve.reduced(redundant)
@@ -162,7 +162,7 @@ def h_add_tree(problem: Problem, objectives: Sequence[Objective]) -> frozenset[i
     return reduced.tree
 
 
-def at_costs(
+def reduce_at_costs(
     subproblem: Subproblem,
     objectives: Sequence[Objective],
     costs: ExactCosts,
@@ -182,10 +182,10 @@ def at_costs(
         presolve_tuning = presolve_tuning._replace(relaxed_actions=presolve_tuning.easy_actions)
     reductions = {Reduction.DEAR, Reduction.BOUNDS} if below else ALL
     with uncollected():
-        task = _task(subproblem.problem, objectives, reductions, expired, presolve_tuning)
+        task = _task_of(subproblem.problem, objectives, reductions, expired, presolve_tuning)
         task = replace(task, costs=costs, coarse=costs, below=below, scope=subproblem.remaining)
 
-        def fixed_first(task: Task, gap: Gap, h_values: HValues) -> Stage:
+        def fix_before_rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
             """Fix candidates by the cutoff first, and run all rounds only if few enough remain."""
             if below and len(gap.candidates) > max_actions:
                 before = len(gap.candidates)
@@ -195,14 +195,14 @@ def at_costs(
                 if len(gap.candidates) > max(max_actions, task.tuning.worthwhile_share * before):
                     return gap
                 h_values = derive(task.graph, gap.candidates, costs, h_add=False).h_objects
-            return (yield from rounds(task, gap, h_values))
+            return (yield from run_rounds(task, gap, h_values))
 
         presolve = _Presolve(task, None, nullcontext)
-        presolve.run(Course(rounds_near_goals, fixed_first), subproblem.actions(known_tree))
+        presolve.run(Course(run_near_goals, fix_before_rounds), subproblem.actions(known_tree))
         return presolve.reduced(subproblem.redundant)
 
 
-def _task(
+def _task_of(
     problem: Problem,
     objectives: Sequence[Objective],
     reductions: Collection[Reduction],
@@ -233,7 +233,7 @@ def _with_costs(task: Task, actions: Collection[int]) -> Task:
     return task
 
 
-def rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
+def run_rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
     """Repeat landmark cuts, search for trees and pruning, until nothing changes or a tree is optimal."""
     costs, limits = task.costs, task.tuning
     if costs is not None and len(gap.candidates) > limits.easy_actions:
@@ -252,17 +252,17 @@ def rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
         if gap.proved or task.expired():
             return gap
         gap = greedy.prune_dominated(task, gap)
-        if not _differs(gap, before):
+        if not _has_changed(gap, before):
             gap = greedy.prune_beside_landmarks(task, gap)
         yield gap
         slow = len(gap.candidates) > max(
             limits.neighbourhood_actions, limits.worthwhile_share * len(before.candidates)
         )  # another turn would bring little
-        if (slow or not _differs(gap, before)) and costs is not None and not thorough:
-            gap = yield from _relaxed(task, gap)
+        if (slow or not _has_changed(gap, before)) and costs is not None and not thorough:
+            gap = yield from _tighten_by_relaxation(task, gap)
             if gap.proved:
                 return gap
-        changed = _differs(gap, before)
+        changed = _has_changed(gap, before)
         if not changed and (thorough or len(gap.candidates) <= limits.easy_actions):
             return gap
         thorough = not changed
@@ -270,12 +270,12 @@ def rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
     return gap
 
 
-def _differs(gap: Gap, before: Gap) -> bool:
+def _has_changed(gap: Gap, before: Gap) -> bool:
     """Return whether a gap has fewer candidates or another incumbent than before."""
     return (len(gap.candidates), gap.incumbent) != (len(before.candidates), before.incumbent)
 
 
-def _relaxed(task: Task, gap: Gap) -> Stage:
+def _tighten_by_relaxation(task: Task, gap: Gap) -> Stage:
     """Tighten the gap by optimal cost partitions and branch and bound, if there are many candidates."""
     if len(gap.candidates) <= task.tuning.relaxed_actions:
         return gap
@@ -288,7 +288,7 @@ def _relaxed(task: Task, gap: Gap) -> Stage:
     return gap if gap.proved else (yield from branch(task, gap))
 
 
-def rounds_near_goals(task: Task, gap: Gap, h_values: HValues) -> Stage:
+def run_near_goals(task: Task, gap: Gap, h_values: HValues) -> Stage:
     """Run the greedy stages near the goals of a large network, then rounds over the remaining candidates.
 
     No guide is used, since h-values of reduced costs take time linear in all actions.
@@ -307,7 +307,7 @@ def rounds_near_goals(task: Task, gap: Gap, h_values: HValues) -> Stage:
     yield gap
     if not task.expired():
         h_values = derive(task.graph, gap.candidates, task.costs or task.coarse, h_add=False).h_objects
-        gap = yield from rounds(task, gap, h_values)
+        gap = yield from run_rounds(task, gap, h_values)
     return gap
 
 
@@ -335,10 +335,10 @@ def _bound_lazily(task: Task, gap: Gap, h_values: HValues) -> Stage:
     return gap
 
 
-ROUNDS, BOUND = Course(rounds_near_goals, rounds), Course(_bound_lazily, _bound_once)
+ROUNDS, BOUND = Course(run_near_goals, run_rounds), Course(_bound_lazily, _bound_once)
 
 
-def _near_goals(task: Task) -> tuple[Gap, HValues] | None:
+def _first_tree_near_goals(task: Task) -> tuple[Gap, HValues] | None:
     """Find a first tree among the actions nearest to the goals, so that large networks are read lazily.
 
     Most of a large network is too far from the goals for a good tree, and is never looked at. Returns the gap
@@ -375,7 +375,7 @@ class _Presolve:
         """A listener for another task whose bounds hold here, too, but whose trees do not."""
         return Bounds(self._listener)
 
-    def guarded(self, step: Callable[[], None]) -> None:
+    def run_guarded(self, step: Callable[[], None]) -> None:
         """Run a step under the guard; ``KeyboardInterrupt`` is raised only if there is no tree yet."""
         self.ended = False
         try:
@@ -388,11 +388,11 @@ class _Presolve:
 
     def run(self, course: Course, known_tree: Collection[int] = ()) -> None:
         """Find a first tree, and run the stages of a course from it."""
-        self.guarded(lambda: self._run(course, known_tree))
+        self.run_guarded(lambda: self._run_course(course, known_tree))
 
-    def _run(self, course: Course, known_tree: Collection[int]) -> None:
+    def _run_course(self, course: Course, known_tree: Collection[int]) -> None:
         task, stages = self.task, course.near_goals
-        opening = _near_goals(task)
+        opening = _first_tree_near_goals(task)
         if opening is None:
             opening, stages = greedy.restrict_to_relevant(task, Gap(frozenset(), 0, ())), course.whole
         if opening is None:
@@ -402,37 +402,37 @@ class _Presolve:
             trees = [self.gap.incumbent, known_tree] if known_tree else [self.gap.incumbent]
             tree = min(trees, key=lambda tree: sum(map(task.coarse, tree)))
             self.report(self.gap.with_incumbent(irredundant_subset(task.graph, tree, task.coarse)))
-            self.take(stages, h_values)
+            self.run_stages(stages, h_values)
 
-    def run_beside(self, solved: SolvedGoals) -> None:
+    def run_with_solved_goals(self, solved: SolvedGoals) -> None:
         """Run all rounds, if possible from the gap that ``solved`` has, and add the answer to ``solved``."""
 
-        def begin() -> None:
+        def run_from_shared_gap() -> None:
             costs = solved.costs
             if costs is not None:
                 self.task = replace(self.task, costs=costs)
             gap = solved.gap(self.task)
             if gap is None or costs is None:
-                self._run(ROUNDS, ())
+                self._run_course(ROUNDS, ())
             else:
                 self.report(Gap(gap.incumbent, 0, gap.candidates))
                 self.report(gap)
                 if not gap.proved:
                     h_values = derive(self.task.graph, gap.candidates, costs, h_add=False).h_objects
-                    self.take(ROUNDS.whole, h_values)
-            solved.learn(self.task, self.gap)
+                    self.run_stages(ROUNDS.whole, h_values)
+            solved.record(self.task, self.gap)
 
-        self.guarded(begin)
+        self.run_guarded(run_from_shared_gap)
 
     def extend_or_run(self) -> None:
         """Run all rounds; if sets of units are required, first try to extend trees for the goals alone."""
         restriction = self.task.problem.restriction
         if restriction is not None and restriction.required and Reduction.DEAR in self.task.reductions:
-            _extend(self)
+            _presolve_by_extension(self)
         if self.gap is None:
             self.run(ROUNDS)
 
-    def take(self, stages: Stages, h_values: HValues) -> None:
+    def run_stages(self, stages: Stages, h_values: HValues) -> None:
         """Run stages from the current gap; report trees and bounds on the way."""
         assert self.gap is not None
         actions = range(len(self.task.graph.needs)) if self._redundant else self.gap.candidates
@@ -468,7 +468,7 @@ class _Presolve:
         )
 
 
-def _extend(presolve: _Presolve) -> None:
+def _presolve_by_extension(presolve: _Presolve) -> None:
     """Presolve a question with required sets by its relaxation: the same question without these sets.
 
     Every tree contains a tree for the goals alone, and its other units, the extension, cost the difference.
@@ -480,7 +480,7 @@ def _extend(presolve: _Presolve) -> None:
     graph, restriction = task.graph, task.problem.restriction
     assert restriction is not None
     alone = replace(task.problem, restriction=replace(restriction, required=()))
-    goals_task = _task(alone, task.objectives, task.reductions, task.expired)
+    goals_task = _task_of(alone, task.objectives, task.reductions, task.expired)
     goals_task = _with_costs(goals_task, range(len(goals_task.graph.needs)))
     goals_only = _Presolve(goals_task, presolve.bounds_listener, presolve.guard)
     goals_only.run(ROUNDS)
@@ -516,6 +516,6 @@ def _extend(presolve: _Presolve) -> None:
         h_values.update(derivations.h_objects)
         presolve.gap = first.with_candidates(graph.cone(derivations.h_actions)[0])
 
-    presolve.guarded(extend)
+    presolve.run_guarded(extend)
     if presolve.gap is not None and presolve.ended and not presolve.gap.proved:
-        presolve.guarded(lambda: presolve.take(rounds, h_values))
+        presolve.run_guarded(lambda: presolve.run_stages(run_rounds, h_values))

@@ -33,10 +33,10 @@ def parse_reductions(text: str) -> frozenset[Reduction]:
     named = {"all": ALL, "safe": SAFE, "none": NONE}
     if text in named:
         return named[text]
-    return frozenset(map(_parse, text.split(",")))
+    return frozenset(map(_parse_name, text.split(",")))
 
 
-def _parse(name: str) -> Reduction:
+def _parse_name(name: str) -> Reduction:
     try:
         return Reduction(name.strip())
     except ValueError:

@@ -38,14 +38,14 @@ def partition_costs(task: Task, gap: Gap) -> Stage:
         before, almost_closed, starting = len(gap.candidates), False, gap.evidence.starting
         partitioning = CostPartitioning(graph, graph.goals, gap.candidates, costs, task.expired, starting)
         while True:
-            partition = partitioning.advance(task.total(gap), tuning.RELAXATION.stalled_solutions)
+            partition = partitioning.advance(task.incumbent_cost(gap), tuning.RELAXATION.stalled_solutions)
             if partition is None:
                 return gap
             if partitioning.converged:
                 break
             gap = yield from follow_solution(task, gap, partition, limits.search_looks)
             almost_closed = (
-                may_branch(task, gap) and gap.lower_bound > task.total(gap) * limits.sufficient_bound
+                may_branch(task, gap) and gap.lower_bound > task.incumbent_cost(gap) * limits.sufficient_bound
             )
             if gap.proved or almost_closed or len(gap.candidates) < limits.worthwhile_share * before:
                 break
@@ -84,26 +84,26 @@ def follow_solution(task: Task, gap: Gap, partition: CostPartition, looks: int) 
             gap = gap.with_incumbent(tree)
             yield gap
     least, count = -(-partition.bound // PARTS), len(gap.candidates)
-    if least < task.total(gap) and len(used) <= task.tuning.sparse_share * count:
+    if least < task.incumbent_cost(gap) and len(used) <= task.tuning.sparse_share * count:
         cuts = [cut for cut, _ in partition.cuts]
         gap = yield from search_among(task, gap, used, cuts, 2 * looks * count)
-    elif least < task.total(gap):
+    elif least < task.incumbent_cost(gap):
         tree = perturbation_search(
             *(graph, gap.candidates, set(gap.incumbent), costs, least, task.expired),
-            *(partition.lp_values, task.chance.random, looks),
+            *(partition.lp_values, task.random_source.random, looks),
         )
         gap = gap.with_incumbent(tree) if task.is_better(tree, gap) else gap
-    gap = apply(task, gap, partition)
+    gap = apply_partition(task, gap, partition)
     yield gap
     return gap
 
 
-def apply(task: Task, gap: Gap, partition: CostPartition) -> Gap:
+def apply_partition(task: Task, gap: Gap, partition: CostPartition) -> Gap:
     """Raise the bound by a cost partition, fix candidates by reduced costs, and prune dominated ones.
 
     The bound is rounded up, since costs are whole numbers.
     """
-    costs, total, evidence = task.costs, task.total(gap), gap.evidence
+    costs, total, evidence = task.costs, task.incumbent_cost(gap), gap.evidence
     assert costs is not None
     bound = min(-(-partition.bound // PARTS), total)
     tight = tuple(dict.fromkeys((*evidence.tight, *partition.tight)))
@@ -132,7 +132,7 @@ def search_among(
     assert costs is not None
     runnable = derive(graph, actions, costs, h_add=False).h_actions
     search = Branching(
-        *(graph, graph.goals, runnable, costs, cuts, task.total(gap)),
+        *(graph, graph.goals, runnable, costs, cuts, task.incumbent_cost(gap)),
         lambda lp_values, without: trees_by_lp_values(graph, runnable, costs, lp_values, without),
     )
     for _ in search.search(effort, task.expired):
@@ -153,11 +153,11 @@ def branch(task: Task, gap: Gap) -> Stage:
     """Branch and bound over the candidates, within the budget, if the lower bound is close enough."""
     costs, graph, limits = task.costs, task.graph, task.tuning
     assert costs is not None
-    close = gap.lower_bound >= task.total(gap) * limits.branching_bound
+    close = gap.lower_bound >= task.incumbent_cost(gap) * limits.branching_bound
     if not may_branch(task, gap) or len(gap.candidates) <= limits.relaxed_actions or not close:
         return gap
     gap = yield from search_repeatedly(task, gap)
-    total, evidence, candidates = task.total(gap), gap.evidence, gap.candidates
+    total, evidence, candidates = task.incumbent_cost(gap), gap.evidence, gap.candidates
     cuts = [cut.objects for cut in evidence.cuts.cuts] if evidence.cuts else []
     cuts += [objects for objects, _ in evidence.partition.cuts] if evidence.partition else []
     search = Branching(
@@ -171,8 +171,8 @@ def branch(task: Task, gap: Gap) -> Stage:
     gap = replace(gap, budget=search.effort)
     if search.closed:
         proof = evidence._replace(cases=search.cases())
-        gap = gap.with_bound(task.total(gap), proof).as_proved()
-    elif evidence.partition is not None and task.total(gap) < total:
-        gap = apply(task, gap, evidence.partition)
+        gap = gap.with_bound(task.incumbent_cost(gap), proof).as_proved()
+    elif evidence.partition is not None and task.incumbent_cost(gap) < total:
+        gap = apply_partition(task, gap, evidence.partition)
     yield gap
     return gap

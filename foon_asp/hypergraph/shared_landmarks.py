@@ -16,7 +16,7 @@ from foon_asp.hypergraph.exact_costs import ExactCosts
 from foon_asp.hypergraph.incumbent_gap import Gap
 from foon_asp.hypergraph.incumbent_trees import trees_by_lp_values
 from foon_asp.hypergraph.landmark_relaxation import PARTS, LandmarkRelaxation
-from foon_asp.hypergraph.relaxation_stages import apply
+from foon_asp.hypergraph.relaxation_stages import apply_partition
 from foon_asp.hypergraph.task import Task
 
 
@@ -75,7 +75,7 @@ class SharedLandmarks:
         capacity = relaxation.costs_in_parts()
         capacity[[self._position[action] for action in excluded]] = capacity.sum()  # they limit no weight
         weights = relaxation.feasible_weights(zip(relaxed.rows, relaxed.duals, strict=False), capacity)
-        bound, total = sum(weights.values()), task.total(gap)
+        bound, total = sum(weights.values()), task.incumbent_cost(gap)
         if bound > (total - 1) * PARTS:
             return gap.with_bound(total, gap.evidence).as_proved()
         sums, targets = self._row_sums(relaxed.rows, self._np.array(relaxed.x)), self._targets(task)
@@ -91,7 +91,7 @@ class SharedLandmarks:
             dict(zip(relaxation.actions, relaxed.x, strict=True)),
             [*cuts.values()],
         )
-        return apply(task, gap, partition)
+        return apply_partition(task, gap, partition)
 
     def _targets(self, task: Task) -> list[int]:
         """Return the goals of a question by their numbers in the relaxation."""

@@ -52,7 +52,11 @@ class SolvedGoals:
             for action in self._derivations.h_actions
             if restriction is not None and action < units and restriction.removed(action)
         )
-        tree = self._tree_without(task, removed) if removed or len(task.graph.goals) > 1 else self._tree(task)
+        tree = (
+            self._tree_without(task, removed)
+            if removed or len(task.graph.goals) > 1
+            else self._tree_from_solved(task)
+        )
         return None if tree is None else self._landmarks.tighten(task, removed, tree)
 
     @property
@@ -60,7 +64,7 @@ class SolvedGoals:
         """The costs of shared gaps, for all actions that can run; ``None`` before landmarks are shared."""
         return None if self._landmarks is None else self._landmarks.costs
 
-    def _tree(self, task: Task) -> frozenset[int]:
+    def _tree_from_solved(self, task: Task) -> frozenset[int]:
         """Return the best union of an achiever of the goal and trees of its preconditions.
 
         These trees are known from solved questions, or follow h_add.
@@ -96,7 +100,7 @@ class SolvedGoals:
         trees = (irredundant_subset(graph, actions, costs) for actions in (union, tree))
         return frozenset(min(trees, key=lambda tree: sum(map(costs, tree))))
 
-    def learn(self, task: Task, gap: Gap | None) -> None:
+    def record(self, task: Task, gap: Gap | None) -> None:
         """Store the tree of a proved gap; share landmarks from then on if greedy cuts did not prove it."""
         if gap is None or not gap.proved:
             return
@@ -118,7 +122,7 @@ class SolvedGoals:
                 self._landmarks = SharedLandmarks(task, costs, derivations.h_actions, objects)
 
 
-def is_open_to(task: Task) -> bool:
+def can_use_solved_goals(task: Task) -> bool:
     """Return whether solved goals can help with a question: it has goals, and no required sets.
 
     Its network must not be so large that only a part of it is looked at.

@@ -261,7 +261,7 @@ def test_a_bound_is_rounded_up_where_it_is_no_multiple() -> None:
     prover = Prover(KITCHEN, [4], [order.zero] * 4, order, multiples=multiples)
 
     def rounded(*bound: Fraction | int) -> tuple[list[object], int | None]:
-        found, place = prover.rounded(tuple(map(Fraction, bound)))
+        found, place = prover.round_up(tuple(map(Fraction, bound)))
         return [*found], place
 
     third = Fraction(1, 3)
@@ -269,7 +269,7 @@ def test_a_bound_is_rounded_up_where_it_is_no_multiple() -> None:
     assert rounded(7 * third, 5, 1) == ([4, 0, 0], 0)  # what comes after counts for nothing then
     assert rounded(-3, 5, 1) == ([-2, 0, 0], 0)
     assert rounded(6, 5, 2) == ([6, 5, 3], 2)
-    assert Prover(KITCHEN, [4], [order.zero] * 4, order).rounded(order.zero) == (order.zero, None)
+    assert Prover(KITCHEN, [4], [order.zero] * 4, order).round_up(order.zero) == (order.zero, None)
 
 
 @pytest.mark.parametrize("step", [1, 3])

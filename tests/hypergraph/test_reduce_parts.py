@@ -17,7 +17,7 @@ from foon_asp.hypergraph.dominance import undominated
 from foon_asp.hypergraph.exact_costs import CoarseCosts
 from foon_asp.hypergraph.goal_graph import GoalGraph, graph_of
 from foon_asp.hypergraph.h_values import Derivations, derive
-from foon_asp.hypergraph.lazy_h_max import within_reach
+from foon_asp.hypergraph.lazy_h_max import lazy_h_max_test
 from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
 from foon_asp.hypergraph.restricted_subproblem import restricted_subproblem
 from foon_asp.network import NetworkBuilder, ObjectNode, Source, UnitPrices
@@ -216,7 +216,7 @@ def test_what_is_within_reach_is_what_is_derived_at_once(
         rest = {a: rng.randint(seed % 2, 4) for a in allowed}
         exact = (deep, looks, seed % 2) == (100, 1000, 1)
         made = derive(graph, allowed, rest, h_add=False)
-        reach = within_reach(graph, allowed, rest.__getitem__)
+        reach = lazy_h_max_test(graph, allowed, rest.__getitem__)
         asked = [(o, limit) for o in range(graph.size) for limit in range(9)]
         rng.shuffle(asked)
         for o, limit in asked:
@@ -226,7 +226,7 @@ def test_what_is_within_reach_is_what_is_derived_at_once(
             told += said
         for limit in (0, 2, 5):
             close = neighbourhood(graph, allowed, rest.__getitem__, limit, made.h_actions)
-            reach = within_reach(graph, allowed, rest.__getitem__)
+            reach = lazy_h_max_test(graph, allowed, rest.__getitem__)
             found = neighbourhood(graph, allowed, rest.__getitem__, limit, reachable=reach)
             assert found == close if exact else found >= close, (seed, limit)
     assert told > 500
@@ -244,7 +244,7 @@ def test_circles_are_not_gone_round_for_ever(monkeypatch: pytest.MonkeyPatch) ->
         return rests[action]
 
     monkeypatch.setattr(tuning, "CUTS", tuning.CutTuning(lazy_looks=500))
-    reach = within_reach(plain(actions, [1]), range(len(actions)), rest)
+    reach = lazy_h_max_test(plain(actions, [1]), range(len(actions)), rest)
     assert reach(1, 10**7)
     assert reach(2, 10**7)
     assert next(looked) < 700
@@ -252,7 +252,7 @@ def test_circles_are_not_gone_round_for_ever(monkeypatch: pytest.MonkeyPatch) ->
 
 def test_costs_may_be_larger_than_any_float() -> None:
     """Of an object that nothing makes, nothing is said, however much the action costs that needs it."""
-    reach = within_reach(plain([([], [2]), ([2, 3], [1])], [1]), range(2), lambda _: 10**400)
+    reach = lazy_h_max_test(plain([([], [2]), ([2, 3], [1])], [1]), range(2), lambda _: 10**400)
     asked = (1, 10**500), (1, 2 * 10**400), (2, 10**400), (2, 10**399)
     assert [reach(o, limit) for o, limit in asked] == [False, False, True, False]
 

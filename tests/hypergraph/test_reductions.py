@@ -190,7 +190,7 @@ def test_what_a_reduction_leaves_has_the_optimum_without_the_tree_in_hand(
             names = list(map(str, objectives))
             worst = dearest(problem, found, names)
             monkeypatch.setattr(reduction, "irredundant_subset", lambda *_, tree=worst: set(tree))
-            task = reduction._task(problem, objectives, reductions, lambda: False)
+            task = reduction._task_of(problem, objectives, reductions, lambda: False)
             presolve = reduction._Presolve(task, None, nullcontext)
             presolve.extend_or_run()
             reduced, gap = presolve.reduced(), presolve.gap

@@ -175,7 +175,11 @@ def test_a_price_is_on_units_that_count_and_a_limit_is_met_by_a_bound_or_a_tree(
     limited = costs.with_price(lambda action: action != 1, 1000, 1032)
     for each in (priced, limited):
         assert [each.proves_optimal(Cuts(bound, {}, []), {0, 1}) for bound in (1031, 1032)] == [False, True]
-    assert [limited.proves_optimal(Cuts(0, {}, []), tree) for tree in ({0}, {2}, {0, 1})] == [True, True, False]
+    assert [limited.proves_optimal(Cuts(0, {}, []), tree) for tree in ({0}, {2}, {0, 1})] == [
+        True,
+        True,
+        False,
+    ]
     # at a fraction, all are whole
     third = costs.with_price(lambda action: action != 1, Fraction(1, 3))
     assert list(map(third, range(4))) == [3 * 11 + 1, 3 * 21, 3 * 31 + 1, 15]
