@@ -3,8 +3,10 @@
 At each node of the search tree, some actions are used and some are forbidden. The preconditions of used
 actions are targets, too, and used actions cost nothing more. Cuts that an LP solution violates are added as
 in :mod:`foon_asp.hypergraph.cost_partition`. A cut is valid at every node at which it contains a target, so
-all nodes share their cuts. Integers alone close a node: a cost partition, rounded so that the weights on each
-action add up to at most its cost, or a cut with an empty landmark. The floats of HiGHS only guide the search.
+all nodes share their cuts.
+
+Integers alone close a node. It is closed by a cost partition, rounded so that the weights on each action add
+up to at most its cost, or by a cut with an empty landmark. The floats of HiGHS only guide the search.
 """
 
 import math
@@ -26,17 +28,21 @@ Guess = Callable[[Mapping[int, float], Collection[int]], Iterable[Collection[int
 
 
 class TooLongError(Exception):
-    """A proof takes too much time or lists too many objects and actions."""
+    """A proof takes too much time, or lists too many objects and actions."""
 
 
 @dataclass(slots=True, eq=False)
 class _Node:
     """A node of the search tree: the derivations with all ``used`` and no ``forbidden`` actions.
 
-    Actions are columns of the relaxation. ``bound`` is a lower bound on the cost of the derivations, in
-    :data:`PARTS` of 1; ``weights`` are the pairs of row and weight that prove it. ``hopeless`` is a cut with
-    an empty landmark, if the node has no derivation. Derivations with an action of ``above_cutoff`` are no
-    better than the incumbent. After branching on ``action``, the children are ``without`` and ``using``.
+    Actions are given as columns of the relaxation.
+
+    ``bound``: a lower bound on the cost of these derivations, as an integer: :data:`PARTS` is a cost of 1.
+    ``weights``: pairs of row and weight that prove the bound.
+    ``hopeless``: a cut with an empty landmark if the node has no derivation, else ``None``.
+    ``above_cutoff``: actions whose derivations are no better than the incumbent.
+    ``action``: the action branched on; ``None`` before branching.
+    ``without``, ``using``: the children that forbid and use this action.
     """
 
     used: frozenset[int]
@@ -59,7 +65,7 @@ class Branching:
     actions.
     ``incumbent``: the best derivation found, ``None`` before the first.
     ``bound``: a lower bound on the cost of derivations that are better than the incumbent.
-    ``closed``: whether all nodes are closed. Then the incumbent is optimal or, without an incumbent, all
+    ``closed``: whether all nodes are closed. Then the incumbent is optimal. Without an incumbent, all
     derivations cost at least ``total``.
     ``effort``: the remaining budget of a search, in actions looked at.
     """
@@ -98,7 +104,7 @@ class Branching:
         """Branch, best bound first, until no node is open or ``effort`` actions were looked at.
 
         Yields after each new incumbent or bound, and once all nodes are closed. ``expired`` returns whether
-        time is up.
+        time is up. The search also ends where time is up and where HiGHS fails; then ``closed`` stays false.
         """
         self.effort = effort
         waiting = [(0, 0, 0, self._root)]
@@ -128,22 +134,27 @@ class Branching:
     def proof(self, max_length: float = math.inf, expired: Callable[[], bool] = lambda: False) -> Proof:
         """Return the proof of a search that closed all nodes.
 
-        Raises :class:`TooLongError` if ``expired`` says that time is up, or if the proof would list more than
+        Raises :class:`TooLongError` if ``expired`` returns true, or if the proof would list more than
         ``max_length`` objects and landmark actions.
         """
         self._length_budget, self._expired = max_length, expired
         return self._proof_of(self._root)[0]
 
     def cases(self) -> Cases:
-        """Return the case split: the tree of actions branched on, without actions fixed by reduced cost."""
+        """Return the case split of the whole search: the actions branched on, as nested cases.
+
+        Actions fixed by reduced cost are not listed.
+        """
         return self._cases_below(self._root)
 
     def _cases_below(self, node: _Node) -> Cases:
+        """Return the case split at a node; ``None`` where it was closed without branching."""
         if node.hopeless or node.without is None or node.using is None or node.action is None:
             return None
         return self._actions[node.action], self._cases_below(node.without), self._cases_below(node.using)
 
     def _must_stop(self, expired: Callable[[], bool]) -> bool:
+        """Return whether the effort is used up or time is up."""
         return self.effort <= 0 or expired()
 
     def _is_above_cutoff(self, bound: int) -> bool:
@@ -151,11 +162,17 @@ class Branching:
         return bound > self._cutoff() * PARTS
 
     def _cutoff(self) -> int:
-        """Return the cutoff: the greatest cost that a derivation better than the incumbent can have."""
+        """Return the greatest cost that a derivation better than the incumbent can have.
+
+        All costs are multiples of their common divisor, and so is the cutoff.
+        """
         return (self._total - 1) // self._common_divisor * self._common_divisor
 
     def _set_bounds(self, node: _Node, targets: set[int]) -> None:
-        """Set the bounds of columns and rows of the relaxation for a node with these targets."""
+        """Set the bounds of columns and rows of the relaxation for a node with these targets.
+
+        Used actions are fixed at 1 and forbidden ones at 0. Rows of cuts without a target are made redundant.
+        """
         used, forbidden = self._relaxed_at
         for action in (used ^ node.used) | (forbidden ^ node.forbidden):
             upper = 0.0 if action in node.forbidden else 1.0 if action in node.used else math.inf
@@ -168,7 +185,11 @@ class Branching:
                 self._covering.set_row_minimum(row, float(active))
 
     def _close_or_branch(self, node: _Node, number: int, expired: Callable[[], bool]) -> bool:
-        """Close a node or branch on it; return ``False`` if time or effort ran out before that."""
+        """Solve the relaxation at a node, and close the node or give it two children.
+
+        ``number`` is 0 for the root, which gets more rounds of cuts. Returns ``False`` if time or effort ran
+        out before that.
+        """
         targets = set(self._targets).union(*(self._graph.needs[a] for a in node.used))
         self.effort -= len(self._actions)
         cutter = Cutter(self._graph, targets, node.forbidden)
@@ -228,7 +249,7 @@ class Branching:
         return True
 
     def _rounded_derivation(self, cutter: Cutter, lp_values: Any, node: _Node) -> set[int]:
-        """Record the rounded LP solution as a derivation and return its columns.
+        """Record the rounded LP solution as a derivation, and return its columns.
 
         If it does not reach all targets, add a cut that it violates, and return the empty set.
         """
@@ -242,13 +263,13 @@ class Branching:
         return set(chosen)
 
     def _record_derivation(self, actions: set[int]) -> None:
-        """Make a derivation the incumbent if it is better."""
+        """Make a derivation, a set of actions, the incumbent if it is better."""
         total = sum(self._costs[i] for i, a in enumerate(self._actions) if a in actions)
         if total < self._total:
             self._total, self.incumbent = total, frozenset(actions)
 
     def _try_guesses(self, lp_values: Any, node: _Node) -> None:
-        """Replace the incumbent by better derivations that the heuristic proposes."""
+        """Replace the incumbent by better derivations that the primal heuristic proposes."""
         self.effort -= 2 * len(self._actions)
         solution = dict(zip(self._actions, lp_values.tolist(), strict=True))
         for derivation in self._guess(solution, {self._actions[a] for a in node.forbidden}):
@@ -263,7 +284,10 @@ class Branching:
         return added > 0
 
     def _raise_bound(self, node: _Node) -> None:
-        """Round the LP dual to weights of rows; the node takes them if they raise its bound."""
+        """Round the LP duals to weights of rows, and store them in the node if they raise its bound.
+
+        The first weights are stored in any case.
+        """
         reduced_costs = self._costs_in_parts.copy()
         paid = sum(self._costs[a] for a in node.used) * PARTS
         reduced_costs[list(node.used)] = 0
@@ -278,9 +302,10 @@ class Branching:
             node.weights = [(row, weight) for row, weight in weights.items() if weight]
 
     def _reduced_costs(self, node: _Node) -> Any:
-        """Return each action's cost (in parts) minus the weights of the node's open cuts with the action.
+        """Return an array of the reduced cost of each action at a node, in parts.
 
-        A cut is open if its landmark has no used action.
+        It is the cost minus the weights of the node's open cuts with the action. A cut is open if its
+        landmark has no used action.
         """
         reduced_costs = self._costs_in_parts.copy()
         for row, weight in self._open_cuts(node):
@@ -288,7 +313,7 @@ class Branching:
         return reduced_costs
 
     def _open_cuts(self, node: _Node) -> Iterator[tuple[int, int]]:
-        """Yield the rows of open cuts and their weights, without rows that a used action satisfies."""
+        """Yield row and weight of each weighted cut of a node that no used action satisfies."""
         for row, weight in node.weights:
             if node.used.isdisjoint(self._relaxation.rows[row].tolist()):
                 yield row, weight
@@ -314,7 +339,11 @@ class Branching:
         return proof, (barred - node.above_cutoff) | overloaded
 
     def _packing_of(self, node: _Node) -> tuple[Packing, set[int]]:
-        """Return the cost partition of a node, and the columns of forbidden actions that it overloads."""
+        """Return the cost partition of a node, and the columns of forbidden actions that it overloads.
+
+        An overloaded action carries more weight than it costs. Raises :class:`TooLongError` where the whole
+        proof becomes too long, or time is up.
+        """
         weights: list[tuple[Cut, tuple[Fraction]]] = []
         self._length_budget -= 5000  # which limits the depth of the branching, too
         for row, weight in self._open_cuts(node):
@@ -343,9 +372,9 @@ def prove_by_branching(
 ) -> Proof | None:
     """Return a proof that no derivation costs less than ``total``; ``None`` where that takes too long.
 
-    Arguments are those of :class:`Branching`. Bounds of the proof exceed ``total - 1``, which suffices since
-    costs are whole numbers. The proof is also ``None`` where a derivation costs less, where an action costs
-    nothing, and where all costs have a common divisor above 1.
+    Arguments are those of :class:`Branching`. Costs are whole numbers, so it suffices that bounds of the
+    proof exceed ``total - 1``. The proof is also ``None`` where a derivation costs less, where an action
+    costs nothing, and where all costs have a common divisor above 1.
     """
     costs = [cost(action) for action in actions]
     if math.gcd(*costs) != 1 or 0 in costs:

@@ -1,9 +1,11 @@
 """Optimal cost partitioning over landmark cuts: the dual of the hitting set relaxation.
 
 Greedy weights of cuts depend on the order of the cuts. Here all cuts are weighed at once, and cuts that the
-LP solution violates are added until none is found (Bonet and Helmert 2010; Katz and Domshlak 2010 for cost
-partitioning). The floats of HiGHS are rounded to integers such that the weights on each action add up to at
-most its cost. So the bound is valid whatever the floats were.
+LP solution violates are added until none is found. See Bonet and Helmert (2010), and Katz and Domshlak (2010)
+for cost partitioning.
+
+The floats of HiGHS are rounded to integers such that the weights on each action add up to at most its cost.
+So the bound is valid whatever the floats were.
 """
 
 import math
@@ -20,13 +22,13 @@ from foon_asp.hypergraph.landmark_relaxation import PARTS, LandmarkRelaxation
 
 
 class CostPartition(NamedTuple):
-    """A cost partition over cuts, in :data:`PARTS` of 1.
+    """A cost partition over cuts. Its costs are integers: :data:`PARTS` is a cost of 1.
 
     ``bound``: a lower bound on the cost of derivations by the actions of the relaxation.
     ``reduced_costs``: the reduced cost of each action.
-    ``cuts``: the objects of each cut, and its weight.
+    ``cuts``: pairs of a cut, given by its objects, and its weight.
     ``lp_values``: the LP value of each action.
-    ``tight``: the cuts that the LP solution satisfies with equality; the next relaxation begins with them.
+    ``tight``: the cuts that the LP solution satisfies with equality. The next relaxation begins with them.
     """
 
     bound: int
@@ -37,7 +39,7 @@ class CostPartition(NamedTuple):
 
 
 def float_quotient(a: int, b: int) -> float:
-    """Return ``a / b``, or infinity where no float is so large."""
+    """Return ``a / b`` as a float; infinity where no float is so large."""
     try:
         return a / b
     except OverflowError:
@@ -45,7 +47,11 @@ def float_quotient(a: int, b: int) -> float:
 
 
 def has_stalled(values: Sequence[float], remaining_gap: float) -> bool:
-    """Return whether the last few of the LP ``values`` closed hardly any of the remaining gap ``remaining_gap``."""
+    """Return whether the last few of the LP ``values`` closed hardly any of the remaining gap.
+
+    Compares the last value with the one ``tuning.RELAXATION.stalled_solutions`` before; ``False`` if there is
+    none.
+    """
     return (
         len(values) > tuning.RELAXATION.stalled_solutions
         and values[-1] - values[-1 - tuning.RELAXATION.stalled_solutions]
@@ -84,10 +90,11 @@ class CostPartitioning:
             relaxation.add_whole_cuts(known_cuts)
 
     def advance(self, sufficient_bound: int, max_solutions: float = math.inf) -> CostPartition | None:
-        """Solve the LP and add violated cuts, until the bound is ``sufficient_bound``, ``max_solutions`` times at most.
+        """Solve the LP and add violated cuts in turn; return the cost partition of the last solution.
 
-        Returns the cost partition of the last solution; ``None`` where the targets cannot be reached or are
-        all initial, and where HiGHS fails.
+        Ends when the bound is ``sufficient_bound``, after ``max_solutions`` solutions, or when
+        :attr:`converged` becomes true. ``None`` where the targets cannot be reached or are all initial, and
+        where HiGHS fails.
         """
         if self._cutter.hopeless or not self._cutter.targets:
             self.converged = True
@@ -121,7 +128,10 @@ class CostPartitioning:
         return None if self._last is None else self._rounded_partition(self._last)
 
     def _solve_lp(self) -> LpSolution | None:
-        """Return an LP solution; ``None`` where HiGHS finds none before time is up."""
+        """Return an LP solution; ``None`` where HiGHS finds none before time is up.
+
+        It is an interior point. After the first failure, it is a basic solution.
+        """
         if self._interior_point:
             relaxed = self._relaxation.covering.interior_point(self._expired)
             if relaxed is not None:
@@ -167,7 +177,7 @@ class CostPartitioning:
         return alone, together
 
     def _rounded_partition(self, solved: LpSolution) -> CostPartition:
-        """Return the cost partition by the rounded dual values of an LP solution."""
+        """Return the cost partition by the duals of an LP solution, rounded to integers."""
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
         relaxation, lp_values = self._relaxation, np.array(solved.x)

@@ -36,10 +36,10 @@ class UnsolvedError(BugError):
 
 
 class BasicSolution(NamedTuple):
-    """A basic optimal solution: its value, the values ``x`` of the columns, and its basis.
+    """A basic optimal solution: its cost ``value``, the values ``x`` of the columns, and its basis.
 
-    ``columns`` are the basic columns, and ``rows`` are as many rows that are tight by the basis. The square
-    matrix of the rows and columns determines the solution and the dual values.
+    ``columns`` are the numbers of the basic columns, and ``rows`` those of as many tight rows. The square
+    matrix of these rows and columns determines the solution and the duals.
     """
 
     value: float
@@ -49,7 +49,10 @@ class BasicSolution(NamedTuple):
 
 
 class LpSolution(NamedTuple):
-    """An optimal solution, basic or not: its value, the values ``x`` of columns, the duals of rows."""
+    """An optimal solution, basic or not.
+
+    ``value`` is its cost, ``x`` are the values of the columns, and ``duals`` those of the rows.
+    """
 
     value: float
     x: list[float]
@@ -59,8 +62,9 @@ class LpSolution(NamedTuple):
 class Covering:
     """A linear program: minimize the sum of ``costs[c] * x[c]`` where each row adds up to at least 1.
 
-    No ``x[c]`` is below 0. A limit is another kind of row: the sum of ``amounts[c] * x[c]`` is at most
-    ``max_amount``. Rows can be added between solutions; HiGHS then continues from the last solution.
+    No ``x[c]`` is below 0. A row adds up the values of some columns. A limit is another kind of row: the sum
+    of ``amounts[c] * x[c]`` is at most ``max_amount``. Rows can be added between solutions. HiGHS then
+    continues from the last solution.
     """
 
     def __init__(self, costs: Sequence[float]) -> None:
@@ -74,13 +78,13 @@ class Covering:
         self._highs.changeColsCost(count, np.arange(count, dtype=np.int32), np.array(costs, dtype=float))
 
     def add_row(self, row: Sequence[int]) -> None:
-        """Add a row: the values of the columns add up to at least 1."""
+        """Add a row, given by its columns: their values add up to at least 1."""
         np_row = self._array(row, dtype="int32")
         ones = self._array([1.0] * len(row))
         self._highs.addRow(1.0, self._library.kHighsInf, len(row), np_row, ones)
 
     def add_limit(self, amounts: Mapping[int, Fraction], max_amount: Fraction) -> None:
-        """Add a limit: the sum of amounts times values is at most ``max_amount``; amounts may be negative."""
+        """Add a limit: the sum of amounts times values is at most ``max_amount``. Amounts may be negative."""
         columns = self._array(list(amounts), dtype="int32")
         takes = self._array([-float(amount) for amount in amounts.values()])
         self._highs.addRow(-float(max_amount), self._library.kHighsInf, len(amounts), columns, takes)
@@ -90,18 +94,19 @@ class Covering:
         self._highs.changeColBounds(column, lower, upper)
 
     def set_row_minimum(self, row: int, lower: float) -> None:
-        """Set the least sum of the values in a row; 0 makes the row redundant."""
+        """Set the least sum of the values in a row, at first 1. With 0, the row is redundant."""
         self._highs.changeRowBounds(row, lower, self._library.kHighsInf)
 
     def _set_options(self, options: dict[str, bool | str | float]) -> None:
+        """Set options of HiGHS."""
         for option, value in options.items():
             self._highs.setOptionValue(option, value)
 
     def interior_point(self, expired: Callable[[], bool] = lambda: False) -> LpSolution | None:
         """Return an interior-point solution: less exact than a basic one, but faster with many rows.
 
-        ``None`` where HiGHS does not converge in time: within ``tuning.RELAXATION.run_seconds`` and before
-        ``expired``.
+        ``None`` where HiGHS does not converge within ``tuning.RELAXATION.run_seconds``, or before ``expired``
+        returns true.
         """
         self._at_vertex = False
         self._run(_INTERIOR_POINT, expired)
@@ -112,6 +117,7 @@ class Covering:
         return LpSolution(value, list(solution.col_value), list(solution.row_dual))
 
     def _run(self, options: dict[str, bool | str | float], expired: Callable[[], bool]) -> None:
+        """Run HiGHS with these options, for at most ``tuning.RELAXATION.run_seconds``."""
         self._set_options(options | {"time_limit": self._highs.getRunTime() + tuning.RELAXATION.run_seconds})
         run(self._highs, expired)
 
@@ -140,5 +146,5 @@ class Covering:
         )
 
     def duals(self) -> list[float]:
-        """Return the dual value of each row in the last solution."""
+        """Return the dual of each row in the last solution."""
         return list(self._highs.getSolution().row_dual)

@@ -1,9 +1,10 @@
 """Disjunctive action landmarks from cuts: every derivation of the targets uses one of their actions.
 
 Take a set of objects that contains a target and no initial object. In any derivation, the first action that
-achieves an object of the set needs no object of the set. So every derivation has an action that achieves an
-object of the set and needs none: these actions are a *landmark*, and the set is its *cut*. Bonet and Helmert
-(2010) bound delete-free plans by hitting sets of landmarks of this kind.
+achieves an object of the set needs no object of the set. Actions that achieve an object of the set and need
+none *cross* the set. So every derivation has a crossing action. The crossing actions are a *landmark*, and
+the set is its *cut*. Bonet and Helmert (2010) bound delete-free plans by hitting sets of landmarks of this
+kind.
 """
 
 import math
@@ -15,7 +16,11 @@ from foon_asp.hypergraph.hypergraph import Hypergraph
 
 
 class Cut(NamedTuple):
-    """A cut (``objects``) and its landmark (``members``): numbers of objects and of actions, ascending."""
+    """A cut and its landmark.
+
+    ``objects``: the numbers of its objects, ascending.
+    ``members``: the numbers of the landmark actions, ascending.
+    """
 
     objects: tuple[int, ...]
     members: tuple[int, ...]
@@ -29,7 +34,8 @@ class Cutter:
     ``hopeless``: a cut with an empty landmark if a target cannot be reached, else ``None``.
 
     Landmarks contain every crossing action that is not forbidden. Construction takes time linear in the size
-    of the hypergraph or, if the ``reachable`` objects are given, in the size of the relevant part.
+    of the hypergraph. If the ``reachable`` objects are given, as flags, the time is linear in the size of the
+    relevant part.
     """
 
     def __init__(
@@ -85,12 +91,12 @@ class Cutter:
         )
 
     def cut(self, keep: Iterable[int], order: Iterable[int]) -> Cut | None:
-        """Return a cut with a small landmark: no action of ``keep``, and rather actions late in ``order``.
+        """Return a cut with a small landmark, which has no action of ``keep``.
 
         Grows a set of actions that does not reach the targets, first by ``keep`` and then along ``order``. An
-        action with which it would reach the targets is refused; the landmark consists of refused actions.
-        ``None`` where ``keep`` alone reaches the targets. ``order`` should contain all :attr:`actions`, since
-        no other action can be in the landmark.
+        action with which the targets would be reached is refused. The landmark consists of refused actions,
+        so actions late in ``order`` are preferred. ``order`` should contain all :attr:`actions`, since no
+        other action can be in the landmark. ``None`` where ``keep`` alone reaches the targets.
         """
         growth = _Growth(self, self._missing)
         positions = self._positions
@@ -111,8 +117,9 @@ class Cutter:
     def widen(self, objects: Iterable[int]) -> Cut:
         """Return the cut of some objects, with unreachable objects added to keep its landmark small.
 
-        An action that cannot run needs an unreachable object. Once this object is in the cut, the action does
-        not cross the cut. So a cut found among the actions that can run keeps its landmark.
+        Initial objects are left out. An action that cannot run needs an unreachable object. Once this object
+        is in the cut, the action does not cross the cut. So a cut found among actions that can run keeps its
+        landmark.
         """
         graph, reachable = self._graph, self._reachable
         inside = {o for o in objects if not graph.at_start[o]}
@@ -123,15 +130,16 @@ class Cutter:
     def _grow_small_cut(
         self, target: int, members: set[int], reached: bytearray, consumer_counts: Mapping[int, float]
     ) -> Cut:
-        """Return a small cut, grown backwards from the unreached ``target``.
+        """Return a small cut of an unreached target, grown backwards; its landmark is within ``members``.
 
-        If an action outside ``members`` achieves an object of the cut, one of its unreached preconditions is
-        added to the cut, so that the action does not cross the cut. The precondition with the most consumers
-        is added, since it helps against other actions, too; objects without an entry in ``consumer_counts``
-        come first.
+        If another action crosses the cut, one of its unreached preconditions is added to the cut. Then the
+        action no longer crosses it. The precondition with the most consumers is chosen, since it helps
+        against other actions, too. ``consumer_counts`` are the numbers of consumers; objects that it lacks
+        are chosen first.
         """
 
         def most_consumed(action: int) -> int | None:
+            """Return the precondition to add against a crossing action; ``None`` if it is in ``members``."""
             if action in members:
                 return None
             lacking = (o for o in self._graph.needs[action] if not reached[o])
@@ -140,10 +148,10 @@ class Cutter:
         return self._extend_to_cut({target}, most_consumed)
 
     def _extend_to_cut(self, inside: set[int], needed: Callable[[int], int | None]) -> Cut:
-        """Return the cut of the objects ``inside``, extended until crossing actions need nothing more.
+        """Extend the set ``inside`` in place, and return it as a cut with its landmark.
 
-        For each crossing action, ``needed`` returns a precondition to add to the cut; ``None`` leaves the
-        action in the landmark.
+        For each crossing action, ``needed`` returns a precondition to add. If it returns ``None``, the action
+        stays in the landmark.
         """
         graph, forbidden = self._graph, self._forbidden
         stack = list(inside)
@@ -162,7 +170,10 @@ class Cutter:
 
 
 class _Growth:
-    """A set of actions, grown one by one, that never reaches all targets."""
+    """A set of actions, grown one by one, that never reaches all targets.
+
+    ``reached``: a flag for each object that the admitted actions reach, by its number in the cutter.
+    """
 
     def __init__(self, cutter: Cutter, missing: list[int]) -> None:
         self._gives, self._consumers = cutter._gives, cutter._consumers
@@ -176,14 +187,18 @@ class _Growth:
         self._targets = len(cutter.targets)
 
     def reaches_targets_with(self, actions: Iterable[int]) -> bool:
-        """Admit actions; return ``True`` if they reach all targets: then the growth must not go on."""
+        """Admit actions until all targets would be reached; return whether that happened.
+
+        After ``True``, the growth must not be used.
+        """
         return not self._unreached or bool(self.admit(actions, max_refused=1))
 
     def admit(self, actions: Iterable[int], max_refused: int = sys.maxsize) -> list[int]:
-        """Admit actions one by one; refuse and return those with which all targets would be reached.
+        """Admit actions one by one, and return the refused ones.
 
-        Ends after ``max_refused`` refusals. If an object alone suffices to reach all targets, that is found
-        out once; afterwards, actions that achieve the object are refused at once.
+        An action is refused if all targets would be reached with it. Ends after ``max_refused`` refusals.
+        Decisive objects are recorded: each of them alone suffices to reach all targets. So later actions that
+        achieve a decisive object are refused at once.
         """
         waiting, missing, gives = self._waiting, self._missing, self._gives
         reached, decisive, reach_from = self.reached, self._decisive, self._reach_from
@@ -219,7 +234,7 @@ class _Growth:
             self._unreached = unreached
 
     def _reach_from(self, objects: list[int]) -> list[int] | None:
-        """Mark objects, and all that admitted actions make of them, as reached; return the new ones.
+        """Mark objects as reached, and all objects that admitted actions make of them; return the new ones.
 
         If all targets would be reached, nothing changes, and ``None`` is returned.
         """
@@ -246,7 +261,7 @@ class _Growth:
         return new
 
     def _unreach(self, new: list[int]) -> None:
-        """Mark objects as not reached again."""
+        """Mark objects as unreached again, and correct the counts of missing preconditions."""
         missing, reached = self._missing, self.reached
         for o in new:
             reached[o] = False

@@ -25,11 +25,14 @@ class TooFineError(Exception):
 class ExactCosts:
     """The cost of each action as one integer; sums of costs compare lexicographically.
 
-    An additive objective is scaled to integers and multiplied by more than the greatest sum of the objectives
-    after it. Where rates multiply, logarithms are added: each factor of a coprime base of the rates has a
-    logarithm rounded to forty digits, so equal products have equal sums. ``doubt`` is greater than all
-    rounding errors: sums that differ by more compare exactly. It is 0 where nothing is rounded. Raises
-    :class:`TooFineError` for rates that are 0 or have large denominators.
+    Call the object with an action for its cost. An additive objective is scaled to integers, and multiplied
+    by more than the greatest sum of the objectives after it.
+
+    Where rates multiply, logarithms are added. Each factor of a coprime base of the rates has a logarithm
+    rounded to forty digits, so equal products have equal sums. ``doubt`` is greater than all rounding errors:
+    sums that differ by more compare exactly. It is 0 where nothing is rounded.
+
+    Raises :class:`TooFineError` for rates that are 0 or have large denominators.
     """
 
     def __init__(self, problem: Problem, objectives: Sequence[Objective], actions: Collection[int]) -> None:
@@ -58,7 +61,7 @@ class ExactCosts:
         """Return these costs with ``price * counts(unit)`` added to the cost of each unit.
 
         If the price is a fraction, all costs are multiplied by its denominator. With a ``limit``, a search
-        ends as soon as a bound reaches the limit or a tree costs less.
+        ends as soon as a bound reaches the limit, or a tree costs less than it.
         """
         units, costs = self._units, copy(self)
         whole, costs._multiplier = Fraction(price).as_integer_ratio()
@@ -68,7 +71,7 @@ class ExactCosts:
 
     @property
     def has_limit(self) -> bool:
-        """Whether there is a limit, so that a search ends at the first tree below it."""
+        """Whether there is a limit, so that a search ends at the first tree that costs less."""
         return self._limit is not None
 
     @property
@@ -78,7 +81,10 @@ class ExactCosts:
         return self._factors[first] * (1 + self._upper_bound(first, self._actions))
 
     def _common_denominator(self, objective: Objective, actions: Collection[int]) -> int:
-        """Return the common denominator of the costs of actions by an objective."""
+        """Return the common denominator of the costs of actions by an objective.
+
+        It is 1 for an objective in whole numbers, and where rates multiply.
+        """
         if objective.row.whole or objective in self._multiplied:
             return 1
         return math.lcm(*{cost.denominator for cost in self._unit_costs(objective, actions)})
@@ -97,6 +103,7 @@ class ExactCosts:
         )
 
     def _unit_costs(self, objective: Objective, actions: Collection[int]) -> Iterable[int | Fraction]:
+        """Return the costs by an objective of those actions that are units."""
         return self._problem.figures(objective, (a for a in actions if a < self._units))
 
     def __call__(self, action: int) -> int:
@@ -111,9 +118,9 @@ class ExactCosts:
         return cost
 
     def first_objective_bound(self, total: int) -> int | Fraction:
-        """Turn a lower bound on total costs into a bound on the first objective.
+        """Return a bound on the first objective, from a lower bound on total costs.
 
-        The result is an upper bound for success.
+        It is a lower bound in the unit of the objective; for success, an upper bound of at most 1.
         """
         figure = total // self._factors[self._objectives[0]]
         if self._objectives[0] not in self._multiplied:
@@ -124,9 +131,9 @@ class ExactCosts:
     def proves_optimal(self, cuts: Cuts, tree: Collection[int]) -> bool:
         """Return whether a cost partition proves this tree optimal, exactly.
 
-        With a limit, return whether the bound reaches the limit or the tree costs less. The weight of each
-        cut is the reduced cost of its cheapest action. Where rates multiply, weights and reduced costs are
-        recomputed exactly, as vectors of exponents of rates.
+        With a limit, return instead whether the bound reaches the limit or the tree costs less. The weight of
+        each cut is the reduced cost of its cheapest action. Where rates multiply, weights and reduced costs
+        are recomputed exactly, as vectors of exponents of rates. ``False`` where these become too large.
         """
         total = sum(map(self, tree))
         if self._limit is not None:
@@ -161,7 +168,10 @@ class ExactCosts:
         return not _is_too_large(proved) and order.sign(proved) >= 0
 
     def combined_cost(self, costs: Costs) -> int:
-        """Return the cost of a tree from its costs by objective; rounding may make it too great."""
+        """Return the cost of a tree as one integer, from its costs by objective.
+
+        Rounding may make it too great, but never too small.
+        """
         total = 0
         for objective, factor in self._factors.items():
             measure = Fraction(costs.measure(objective))
@@ -173,11 +183,14 @@ class ExactCosts:
         return total * self._multiplier
 
     def figures(self, action: int) -> list[tuple[Objective, int]]:
-        """Return the scaled cost of an action by each objective; for ``success`` a rounded logarithm."""
+        """Return each objective with the scaled cost of an action by it.
+
+        For ``success``, this is a rounded logarithm.
+        """
         return [(objective, self._figure(objective, action)) for objective in self._objectives]
 
     def unscale(self, objective: Objective, figure: int) -> int | Fraction:
-        """Return the cost by an additive objective for ``figure``, a sum of scaled costs."""
+        """Return a cost by an additive objective in its own unit; ``figure`` is a sum of scaled costs."""
         return figure if objective.row.whole else Fraction(figure, self._denominators[objective])
 
     def is_logarithm(self, figure: int, product: Fraction) -> bool:
@@ -191,7 +204,7 @@ class ExactCosts:
         return self._problem.rate(action)
 
     def _figure(self, objective: Objective, action: int) -> int:
-        """Return the cost of an action by one objective: of a unit, or of a kitchen item."""
+        """Return the scaled cost by one objective of an action, which is a unit or takes a kitchen item."""
         if action >= self._units:
             return objective.row.item
         if objective in self._multiplied:
@@ -225,7 +238,10 @@ class _Vectors:
 
 
 class CoarseCosts:
-    """Costs by the first objective only, rounded down to small whole numbers, for estimates."""
+    """Costs by the first objective only, rounded down to small whole numbers, for estimates.
+
+    Call the object with an action for its cost.
+    """
 
     def __init__(self, problem: Problem, objective: Objective) -> None:
         self._problem, self._objective = problem, objective
@@ -233,7 +249,10 @@ class CoarseCosts:
         self._of_rates: dict[int | str, int] = {}  # by motion, or by unit with a rate of its own
 
     def __call__(self, action: int) -> int:
-        """Return the approximate cost of an action."""
+        """Return the approximate cost of an action.
+
+        A fraction is in thousandths; so is ``-ln`` of a rate.
+        """
         problem = self._problem
         if action >= len(problem.network):
             return self._objective.row.item
@@ -255,7 +274,7 @@ def _coarse_logarithm(rate: Fraction) -> int:
 
 
 def _scaled_logarithms(rates: set[Fraction]) -> dict[Fraction, int]:
-    """Return ``-log(rate)`` of each rate, scaled, as a sum of rounded logarithms of its coprime factors.
+    """Return for each rate ``-log(rate)``, scaled: a sum of rounded logarithms of its coprime factors.
 
     Raises :class:`TooFineError` for rates that are 0 or have large denominators.
     """
@@ -265,11 +284,13 @@ def _scaled_logarithms(rates: set[Fraction]) -> dict[Fraction, int]:
     base = coprime_base(n for rate in rates for n in rate.as_integer_ratio())
     logarithms = {factor: _logarithm(factor) for factor in base}
 
-    def weight(number: int) -> int:
+    def logarithm_of(number: int) -> int:
+        """Return the logarithm of a number, as the sum over its factors."""
         return sum(power * logarithms[f] for f, power in factor_exponents(number, base).items())
 
-    return {rate: weight(rate.denominator) - weight(rate.numerator) for rate in rates}
+    return {rate: logarithm_of(rate.denominator) - logarithm_of(rate.numerator) for rate in rates}
 
 
 def _logarithm(number: int) -> int:
+    """Return the natural logarithm of a number, multiplied by ``10**40``, as an integer."""
     return int(_FINE.multiply(_FINE.ln(Decimal(number)), Decimal(_SCALE)))

@@ -4,8 +4,8 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
-from foon_asp.hypergraph.action_landmarks import relevant_beside_landmarks
-from foon_asp.hypergraph.dominance import undominated
+from foon_asp.hypergraph.action_landmarks import relevant_given_landmarks
+from foon_asp.hypergraph.dominance import undominated_actions
 from foon_asp.hypergraph.gap_bounded_subproblem import reduced_cost_fixing, reduced_costs_of
 from foon_asp.hypergraph.h_values import derive
 from foon_asp.hypergraph.incumbent_gap import FirstCuts, Gap, Stage
@@ -131,10 +131,10 @@ def prune_dominated(task: Task, gap: Gap) -> Gap:
     """Exclude the candidates that others dominate, if the task asks for that and has exact costs."""
     if task.costs is None or Reduction.DOMINATED not in task.reductions:
         return gap
-    return gap.with_candidates(undominated(task.graph, gap.candidates, task.costs))
+    return gap.with_candidates(undominated_actions(task.graph, gap.candidates, task.costs))
 
 
-def prune_beside_landmarks(task: Task, gap: Gap) -> Gap:
+def prune_by_landmarks(task: Task, gap: Gap) -> Gap:
     """Exclude the candidates that action landmarks make irrelevant, if the task asks for that.
 
     Does nothing if there are many candidates.
@@ -142,7 +142,7 @@ def prune_beside_landmarks(task: Task, gap: Gap) -> Gap:
     large = len(gap.candidates) > task.tuning.neighbourhood_actions
     if large or Reduction.FORCED not in task.reductions:
         return gap
-    return gap.with_candidates(relevant_beside_landmarks(task.graph, gap.candidates))
+    return gap.with_candidates(relevant_given_landmarks(task.graph, gap.candidates))
 
 
 def restrict_to_relevant(task: Task, gap: Gap) -> tuple[Gap, dict[int, int]] | None:

@@ -253,7 +253,7 @@ def run_rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
             return gap
         gap = greedy.prune_dominated(task, gap)
         if not _has_changed(gap, before):
-            gap = greedy.prune_beside_landmarks(task, gap)
+            gap = greedy.prune_by_landmarks(task, gap)
         yield gap
         slow = len(gap.candidates) > max(
             limits.neighbourhood_actions, limits.worthwhile_share * len(before.candidates)

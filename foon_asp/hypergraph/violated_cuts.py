@@ -17,12 +17,15 @@ def disjoint_violated_cuts(
 ) -> Iterator[Cut]:
     """Yield cuts that an LP solution violates, with disjoint landmarks and no action of ``used``.
 
-    ``lp_values``: an array of the LP value of each action. Values of the landmark of a yielded cut become 1.
-    ``costs``, ``random_number``: landmarks avoid actions of great value first, then actions of low cost,
-    where each cost is multiplied by a random factor from 0.5 to 1.5.
-    ``tolerance``: a landmark whose values add up to at least 1 minus this is satisfied.
+    ``lp_values``: an array of the LP value of each action, changed in place: after a cut is yielded, the
+    values of its landmark are 1.
+    ``costs``: an array of the cost of each action.
+    ``random_number``: returns numbers from 0 to 1. Landmarks avoid actions of great LP value first. Among
+    equal values they avoid actions of low cost, after each cost is multiplied by a random factor from 0.5 to
+    1.5.
+    ``tolerance``: a landmark is satisfied if its values add up to at least 1 minus this.
 
-    Ends when the next cut is satisfied or none is left.
+    Ends when the next cut is satisfied, or when there is no other cut.
     """
     import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 

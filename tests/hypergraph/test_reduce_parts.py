@@ -12,8 +12,8 @@ import pytest
 
 from foon_asp.errors import UserError
 from foon_asp.hypergraph import ALL, NONE, SAFE, Reduction, parse_reductions, tuning
-from foon_asp.hypergraph.action_landmarks import relevant_beside_landmarks
-from foon_asp.hypergraph.dominance import undominated
+from foon_asp.hypergraph.action_landmarks import relevant_given_landmarks
+from foon_asp.hypergraph.dominance import undominated_actions
 from foon_asp.hypergraph.exact_costs import CoarseCosts
 from foon_asp.hypergraph.goal_graph import GoalGraph, graph_of
 from foon_asp.hypergraph.h_values import Derivations, derive
@@ -306,7 +306,7 @@ def test_those_that_dominate_are_found_as_by_looking_at_all() -> None:
                 for other in left - {action}
             ):
                 left.discard(action)
-        assert undominated(graph, actions, prices.__getitem__) == left
+        assert undominated_actions(graph, actions, prices.__getitem__) == left
         gone += len(actions) - len(left)
     assert gone > 400
 
@@ -314,7 +314,7 @@ def test_those_that_dominate_are_found_as_by_looking_at_all() -> None:
 def test_what_others_dominate_costs_no_tree() -> None:
     for price, graph, slim in with_trees():
         cone, _ = graph.cone()
-        left = undominated(graph, cone, price.__getitem__)
+        left = undominated_actions(graph, cone, price.__getitem__)
         totals = {tree: sum(map(price.__getitem__, tree)) for tree in slim}
         assert min(totals[tree] for tree in slim if tree <= left) == min(totals.values())
 
@@ -322,9 +322,9 @@ def test_what_others_dominate_costs_no_tree() -> None:
 def test_all_trees_without_a_spare_unit_are_beside_what_is_forced() -> None:
     for _, graph, slim in with_trees():
         cone, _ = graph.cone()
-        assert frozenset().union(*slim) <= relevant_beside_landmarks(graph, set(cone))
+        assert frozenset().union(*slim) <= relevant_given_landmarks(graph, set(cone))
         for tree in slim:  # allowed is heard: nothing comes from units that are not
-            assert relevant_beside_landmarks(graph, tree) == tree
+            assert relevant_given_landmarks(graph, tree) == tree
 
 
 @pytest.mark.parametrize(
@@ -349,7 +349,7 @@ def test_all_trees_without_a_spare_unit_are_beside_what_is_forced() -> None:
 def test_beside_what_is_forced_nothing_else_stays(
     actions: list[Action], goals: list[int], expected: set[int]
 ) -> None:
-    assert relevant_beside_landmarks(plain(actions, goals, [0]), range(len(actions))) == expected
+    assert relevant_given_landmarks(plain(actions, goals, [0]), range(len(actions))) == expected
 
 
 # --- A question as plain arrays.
