@@ -1,4 +1,7 @@
-"""Extensions: units added to a tree for the goals, so that it has a unit of each required set."""
+"""Extensions: units added to a tree for the goals, so that it has a unit of each required set.
+
+The actions that these units need are a part of the extension.
+"""
 
 from collections.abc import Callable, Collection
 from dataclasses import replace
@@ -15,19 +18,19 @@ _FIRST = 500  # actions nearest to the required sets, among which an extension i
 def extend_tree(
     graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int], max_actions: int
 ) -> set[int] | None:
-    """Return a tree with a unit of each required set added, and the actions that derive the units by h_add.
+    """Return a tree with a unit of each required set added, and the actions that derive these units.
 
-    ``None`` where no extension is found among ``max_actions`` actions.
+    They are derived by h_add. ``None`` where no extension is found among ``max_actions`` actions.
     """
-    towards = _towards_required(graph)
-    price = _cost_without(tree, cost)
+    goal_graph = _towards_required(graph)
+    remaining_cost = _cost_without(tree, cost)
     candidates = {
         *tree,
-        *neighbourhood(towards, range(len(graph.needs)), price, sum(map(cost, tree)), enough=_FIRST),
+        *neighbourhood(goal_graph, range(len(graph.needs)), remaining_cost, sum(map(cost, tree)), enough=_FIRST),
     }
-    extension = derive(towards, candidates, price, h_add=True).tree(towards, towards.goals)
+    extension = derive(goal_graph, candidates, remaining_cost, h_add=True).tree(goal_graph, goal_graph.goals)
     if extension is None:
-        narrowed = restricted_subproblem(towards, candidates, price, max_actions)
+        narrowed = restricted_subproblem(goal_graph, candidates, remaining_cost, max_actions)
         extension = None if narrowed is None else narrowed[1]
     return None if extension is None else {*tree, *extension}
 
@@ -42,21 +45,22 @@ def actions_of_extensions(
     """Return a superset of the actions of extensions up to a cost of ``limit``; ``free`` ones cost nothing.
 
     An action is excluded if its derivation and its path to a required set cost more. All actions on the path
-    belong to the extension, so they count in full, while free actions of the derivation count as 0.
+    belong to the extension, so they count in full. Free actions of the derivation count as 0. Where time is
+    up, the superset is larger.
     """
-    towards, price = _towards_required(graph), _cost_without(free, cost)
+    goal_graph, remaining_cost = _towards_required(graph), _cost_without(free, cost)
     all_actions = range(len(graph.needs))
     remaining = neighbourhood(
-        towards,
+        goal_graph,
         all_actions,
         cost,
         limit,
         min_reduced_cost=1,
-        reachable=lazy_h_max_test(graph, all_actions, price),
+        reachable=lazy_h_max_test(graph, all_actions, remaining_cost),
     )
     while not expired():
-        derivations = derive(graph, remaining.union(free), price, h_add=False)
-        nearer = neighbourhood(towards, remaining, cost, limit, derivations.h_actions, min_reduced_cost=1)
+        derivations = derive(graph, remaining.union(free), remaining_cost, h_add=False)
+        nearer = neighbourhood(goal_graph, remaining, cost, limit, derivations.h_actions, min_reduced_cost=1)
         if len(nearer) == len(remaining):
             break
         remaining = nearer
@@ -69,4 +73,5 @@ def _towards_required(graph: GoalGraph) -> GoalGraph:
 
 
 def _cost_without(free: Collection[int], cost: Callable[[int], int]) -> Callable[[int], int]:
+    """Return a cost function by which the ``free`` actions cost nothing."""
     return lambda action: 0 if action in free else cost(action)

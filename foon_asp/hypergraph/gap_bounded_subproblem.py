@@ -1,4 +1,4 @@
-"""Gap-bounded subproblems: the units of trees up to a cost, for questions with rules on trees."""
+"""Gap-bounded subproblems: all units of trees up to a cost, for questions with rules on trees."""
 
 import math
 from collections.abc import Callable, Collection, Container, Iterable
@@ -19,7 +19,7 @@ class Subproblem:
     """A question with landmark cuts from before any reduction, so that they hold for every tree.
 
     ``remaining`` are the actions over which the cuts were found. With ``redundant``, trees may have units
-    that lead to no goal, since rules can require such units; ``costs`` then cover all actions.
+    that lead to no goal, since rules can require such units. Then ``costs`` cover all actions.
     """
 
     problem: Problem
@@ -30,7 +30,10 @@ class Subproblem:
     redundant: bool
 
     def landmarks(self) -> list[frozenset[int]]:
-        """Return disjunctive landmarks, as sets of units: those of the cuts, and the required sets."""
+        """Return disjunctive landmarks, as sets of units: those of the cuts, and the required sets.
+
+        Landmarks with an action that takes a kitchen item are left out.
+        """
         graph, restriction = self.graph, self.problem.restriction
         landmarks = [frozenset(cut.members) for cut in self.cuts.cuts if max(cut.members) < graph.units]
         if restriction is not None:
@@ -51,13 +54,19 @@ class Subproblem:
         return {achiever for o in made for achiever in graph.makers[o]}
 
     def units_of_numbers(self, numbers: Iterable[int]) -> set[int]:
-        """Return the ids of units by public number, without removed units and units of other networks."""
+        """Return the ids of units, given by public numbers.
+
+        Units that are removed or of other networks are left out.
+        """
         network, restriction = self.problem.network, self.problem.restriction
         units = {unit for number in numbers if (unit := network.unit_of_number(number)) is not None}
         return {unit for unit in units if restriction is None or not restriction.removed(unit)}
 
     def with_only_achievers(self, units: Iterable[int], max_units: int) -> set[int]:
-        """Add the only achievers of preconditions to units, transitively; stop at about ``max_units``."""
+        """Return units with the only achievers of their preconditions added, transitively.
+
+        Stops at about ``max_units`` units.
+        """
         graph, kitchen = self.graph, self.problem.kitchen
         closed, waiting = set(units), list(units)
         while waiting and len(closed) < max_units:
@@ -74,7 +83,7 @@ class Subproblem:
         return sum(map(self.costs, self.actions(units)))
 
     def actions(self, units: Iterable[int]) -> set[int]:
-        """Return the actions of a tree: its units and, if an objective counts items, those that it takes."""
+        """Return the actions of a tree: its units and, if an objective counts items, those that take them."""
         tree = set(units)
         if self.graph.start:
             return tree
@@ -108,10 +117,12 @@ class Subproblem:
     def actions_within(self, limit: int, expired: Callable[[], bool]) -> Collection[int]:
         """Return a superset of the actions of trees that cost up to ``limit``; a larger one where time is up.
 
-        The reduced cost of a tree is at most ``limit`` minus the bound of the cuts. It includes the
-        derivation of each action and, in an irredundant tree, the path from the action to a goal; an action
-        for which these cost more is excluded. New cuts are then found among the remaining actions, as long as
-        that excludes many. Raises ``KeyboardInterrupt`` where the search for cuts is interrupted.
+        Let the gap be ``limit`` minus the bound of the cuts. The reduced costs of a tree add up to at most
+        the gap. So an action is excluded if its derivation costs more than the gap. In an irredundant tree,
+        the path from the action to a goal counts, too. New cuts are then found among the remaining actions,
+        as long as that excludes many.
+
+        Raises ``KeyboardInterrupt`` where the search for cuts is interrupted.
         """
         graph, costs, cuts = self.graph, self.costs, self.cuts
         remaining: Collection[int] = self._all_actions() if self.redundant else self.remaining
@@ -147,7 +158,7 @@ class Subproblem:
         return remaining
 
     def _all_actions(self) -> list[int]:
-        """Return all actions that a tree may have."""
+        """Return all actions that a tree may have: units that are not removed, and the taking of items."""
         units, restriction = self.graph.units, self.problem.restriction
         actions = (
             range(units) if restriction is None else [u for u in range(units) if not restriction.removed(u)]
@@ -156,10 +167,14 @@ class Subproblem:
         return [*actions, *(units + o for o in self.problem.kitchen if counted)]
 
     def _runnable_actions(self, actions: Collection[int]) -> Collection[int]:
-        """Return the actions that can run; all costs count as 0, since not every action has a known cost."""
+        """Return the given actions that can run, if only these are allowed.
+
+        All costs count as 0, since not every action has a known cost.
+        """
         return derive(self.graph, actions, lambda _: 0, h_add=False).h_actions
 
     def _units(self, actions: Iterable[int]) -> frozenset[int]:
+        """Return the units among actions."""
         return frozenset(a for a in actions if a < self.graph.units)
 
 
@@ -178,8 +193,8 @@ def reduced_cost_fixing(
 ) -> set[int]:
     """Return a superset of the allowed actions that irredundant trees of reduced cost up to ``limit`` have.
 
-    Alternates h_max from the initial objects with distances to the goals, until nothing changes or time is
-    up.
+    Alternates h_max from the initial objects with distances to the goals, until no more actions are excluded.
+    Where time is up, the superset is larger.
     """
     remaining = neighbourhood(
         graph, allowed, reduced_cost, limit, reachable=lazy_h_max_test(graph, allowed, reduced_cost)

@@ -29,7 +29,8 @@ class Bounded(NamedTuple):
 def raise_bound(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide | None) -> Bounded:
     """Raise the lower bound by landmark cuts over the candidates, which have to contain a tree.
 
-    ``guide`` is as for :func:`landmark_cuts`.
+    ``h_values`` and ``guide`` are as for :func:`landmark_cuts`. The cuts become evidence if they are the
+    first ones, or if no earlier bound is as great.
     """
     costs = task.costs
     assert costs is not None
@@ -53,7 +54,11 @@ def raise_bound(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide 
 
 
 def tighten(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide | None, thorough: bool) -> Stage:
-    """Raise the lower bound by cuts, look for better trees, and fix candidates by reduced costs."""
+    """Raise the lower bound by cuts, look for better trees, and fix candidates by reduced costs.
+
+    Where the cuts prove the incumbent optimal, no candidates are fixed, and the gap is marked as proved.
+    Raises ``KeyboardInterrupt`` where the search for cuts was interrupted.
+    """
     gap, cuts = raise_bound(task, gap, h_values, guide)
     yield gap
     if cuts.interrupted:
@@ -84,7 +89,10 @@ def is_proved_by(task: Task, gap: Gap, cuts: Cuts) -> bool:
 
 
 def search_neighbourhood(task: Task, gap: Gap, cuts: Cuts, thorough: bool) -> Gap:
-    """Look for better trees in the reduced-cost neighbourhood."""
+    """Look for a better tree in the reduced-cost neighbourhood; return the gap with it.
+
+    Returns the same gap if there is none. ``thorough`` is as for :func:`improve_locally`.
+    """
     costs = task.costs
     assert costs is not None
     reduced_cost = reduced_costs_of(costs, cuts)
@@ -97,7 +105,7 @@ def search_neighbourhood(task: Task, gap: Gap, cuts: Cuts, thorough: bool) -> Ga
 
 
 def search_repeatedly(task: Task, gap: Gap) -> Stage:
-    """Look thoroughly for better trees from each new incumbent, within the budget of branching."""
+    """Search the neighbourhood thoroughly from each new incumbent, within the budget of branching."""
     budget, previous = task.tuning.branching_budget, frozenset[int]()
     while gap.incumbent != previous and not task.expired():
         previous = gap.incumbent
@@ -119,7 +127,7 @@ def follow_h_add(task: Task, gap: Gap) -> Gap:
 
 
 def fix_candidates(task: Task, gap: Gap, cuts: Cuts) -> Gap:
-    """Exclude the candidates above the cutoff by reduced-cost fixing."""
+    """Exclude the candidates above the cutoff by reduced-cost fixing, with the reduced costs of cuts."""
     assert task.costs is not None
     reduced_cost, distance = reduced_costs_of(task.costs, cuts), task.cutoff(gap) - cuts.bound
     return gap.with_candidates(
@@ -146,9 +154,10 @@ def prune_by_landmarks(task: Task, gap: Gap) -> Gap:
 
 
 def restrict_to_relevant(task: Task, gap: Gap) -> tuple[Gap, dict[int, int]] | None:
-    """Return the gap over the relevant actions that can run, and the h-value of each object.
+    """Return the gap over the relevant actions that can run, and the h_max of each object.
 
-    A gap without an incumbent gets the tree that follows h_max. ``None`` if there is no tree.
+    A gap without an incumbent gets the tree that follows h_max. ``None`` if there is no tree. Costs are the
+    rough ones of the task.
     """
     graph = task.graph
     cone, _ = graph.cone(task.scope)

@@ -12,7 +12,7 @@ if TYPE_CHECKING:  # few questions need it
 
 
 class FirstCuts(NamedTuple):
-    """Landmark cuts found before any action was excluded, and the actions that they hold for."""
+    """Landmark cuts found before any action was excluded, and the actions over which they were found."""
 
     cuts: Cuts
     actions: Collection[int]
@@ -25,8 +25,8 @@ class Evidence(NamedTuple):
     ``cuts``: the greedy cost partition with the greatest bound.
     ``partition``: the last optimal cost partition that raised the bound.
     ``tight``: the tight cuts of all LP solutions so far, in order.
-    ``starting``: the tight cuts of the last LP solution; the next relaxation begins with them.
-    ``cases``: the actions branched on.
+    ``starting``: the tight cuts of the last LP solution. The next relaxation begins with them.
+    ``cases``: the actions branched on; ``None`` if branching proved nothing.
     """
 
     first: FirstCuts | None = None
@@ -46,9 +46,11 @@ class Gap:
 
     ``incumbent``: the actions of the best tree so far.
     ``lower_bound``: a lower bound on the cost of every tree, in the units of :class:`ExactCosts`.
-    ``candidates``: the actions that better trees can have, and equally good trees if these are wanted.
+    ``candidates``: the actions that better trees can have. If equally good trees are wanted, their actions
+    are candidates, too.
     ``budget``: the number of actions that branch and bound may still look at.
     ``proved``: whether the incumbent is proved optimal.
+    ``evidence``: the cuts that prove the lower bound.
     """
 
     incumbent: frozenset[int]

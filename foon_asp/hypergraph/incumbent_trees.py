@@ -15,8 +15,8 @@ if TYPE_CHECKING:  # few questions need it
 def irredundant_subset(graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int]) -> set[int]:
     """Return an irredundant subset of a tree, by removing redundant actions, expensive ones first.
 
-    All actions of the tree have to be able to run. Actions that the cheapest derivations by h_add do not use
-    are removed before any others.
+    All actions of the tree have to be able to run. Some actions are removed before any others: those that the
+    cheapest derivations by h_add do not use.
     """
     support = Support(graph, tree, cost)
     waiting = [(-cost(action), action) for action in support.actions]
@@ -40,10 +40,15 @@ def trees_by_lp_values(
     lp_values: Mapping[int, float],
     without: Collection[int],
 ) -> Iterator[set[int]]:
-    """Yield irredundant trees that follow the LP values ``lp_values`` and have no action of ``without``."""
+    """Yield irredundant trees that follow LP values and have no action of ``without``.
+
+    The greater the LP value of an action, the less it costs. One tree follows h_add, one h_max, if they
+    exist.
+    """
     allowed = [a for a in actions if a not in without]
 
     def price_by_lp_value(action: int) -> int:
+        """Return about 1000 times the cost of an action times 1 minus its LP value."""
         return 1 + _scaled_cost(cost(action), 1 - min(1.0, lp_values[action]))
 
     for h_add in (True, False):
@@ -53,7 +58,10 @@ def trees_by_lp_values(
 
 
 def _scaled_cost(cost: int, share: float) -> int:
-    """Return ``1000 * cost * share``, rounded down; computed in integers, since costs may exceed floats."""
+    """Return ``1000 * cost * share``, rounded down.
+
+    It is computed in integers, since costs may exceed floats.
+    """
     return cost * int(share * 1_000_000) // 1000
 
 
@@ -63,9 +71,11 @@ def trees_by_partition(
     """Yield irredundant trees that follow an LP solution, by its values and by its reduced costs."""
 
     def price_by_lp_value(action: int) -> int:
+        """Return about 1000 times the cost of an action times 1 minus its LP value."""
         return 1 + _scaled_cost(cost(action), 1 - min(1.0, partition.lp_values[action]))
 
     def price_by_reduced_cost(action: int) -> int:
+        """Return the reduced cost of an action, in parts, plus its cost, which decides among equal ones."""
         return cost(action) + partition.reduced_costs[action]
 
     for price in (price_by_lp_value, price_by_reduced_cost):
@@ -80,25 +90,27 @@ def perturbation_search(
     actions: Collection[int],
     tree: set[int],
     cost: Callable[[int], int],
-    enough: int,
+    sufficient_cost: int,
     expired: Callable[[], bool],
     lp_values: Mapping[int, float],
     random_number: Callable[[], float],
     tries: int,
 ) -> set[int]:
-    """Return a cheaper tree found by perturbation search, else ``tree``; ends at a cost of ``enough``.
+    """Return a cheaper tree found by perturbation search, else ``tree``.
 
-    Each round derives a tree at perturbed costs: each cost is multiplied by a random factor from 0.5 to 1.5.
-    In half of the rounds, a random part of the current tree also costs nothing, and sometimes only a random
-    part of the other actions is allowed. In the other rounds, costs are also multiplied by 1 minus the LP
-    values ``lp_values``. A tree of equal cost becomes the current tree. Ends when each action was looked at
+    Each round derives a tree by h_add or h_max at perturbed costs: each cost is multiplied by a random factor
+    from 0.5 to 1.5. In half of the rounds, costs are also multiplied by 1 minus the LP values. In the other
+    half, a random part of the current tree costs nothing; sometimes only a random part of the other actions
+    is allowed. A tree that costs no more than the current tree replaces it.
+
+    Ends at a cost of ``sufficient_cost`` or where time is up. Also ends when each action was looked at
     ``tries`` times since the last improvement.
     """
     best = last = tree
     total = sum(map(cost, tree))
     ordered = sorted(actions)
     effort = tries * len(ordered)
-    while effort > 0 and total > enough and not expired():
+    while effort > 0 and total > sufficient_cost and not expired():
         if random_number() < 0.5:
             candidates = ordered
             unused = ((a, (1 - min(1.0, lp_values[a])) * (0.5 + random_number())) for a in candidates)
@@ -131,14 +143,14 @@ def improve_locally(
     """Return a cheaper tree among the actions by local search, else ``tree``.
 
     First tries the trees that follow h_add and h_max, by costs and by reduced costs. If ``thorough``, then
-    tries to do without each action of the best tree: derives a tree without this action, while the other
-    actions of the best tree cost nothing.
+    tries to do without each action of the best tree. For that, it derives a tree without this action, while
+    the other actions of the best tree cost nothing.
     """
     best = tree
     total = sum(map(cost, best))
 
     def try_derived_tree(actions: Collection[int], price: Callable[[int], int], h_add: bool) -> None:
-        """Keep the tree that follows h_add or h_max at some prices, if it is the best so far."""
+        """Derive a tree by h_add or h_max at some prices, and keep it if it is the best so far."""
         nonlocal best, total
         derived = derive(graph, actions, price, h_add).tree(graph, graph.goals)
         if derived is not None:

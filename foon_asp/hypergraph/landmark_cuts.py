@@ -1,7 +1,7 @@
 """Lower bounds by LM-cut (Helmert and Domshlak 2009), looking only at actions that its cuts touch.
 
 Landmarks are as in :mod:`foon_asp.hypergraph.cut`. The weight of each landmark is the least reduced cost of
-its actions; it is subtracted from the reduced costs of all of them.
+its actions. It is subtracted from the reduced costs of all of them.
 """
 
 import math
@@ -14,10 +14,10 @@ from foon_asp.hypergraph.hypergraph import Hypergraph
 
 
 class WeightedCut(NamedTuple):
-    """A cut with its landmark ``members``, its weight, and the cheapest landmark action.
+    """A cut with its landmark ``members``, its ``weight``, and the ``cheapest`` landmark action.
 
-    ``weight`` was the reduced cost of the ``cheapest`` action when the cut was found. Cuts form chains, to
-    save memory: the objects of this cut are ``own`` and all objects of the earlier cut ``earlier_cut``.
+    The weight is the reduced cost of the cheapest action when the cut was found. Cuts form chains, to save
+    memory: this cut has its ``added_objects`` and all objects of ``earlier_cut``.
     """
 
     added_objects: frozenset[int]
@@ -28,7 +28,10 @@ class WeightedCut(NamedTuple):
 
     @property
     def objects(self) -> frozenset[int]:
-        """All objects of the cut, among them a target; computed on demand, since the chain may be long."""
+        """All objects of the cut, among them a target.
+
+        They are computed at each access, since the chain may be long.
+        """
         objects, cut = [self.added_objects], self.earlier_cut
         while cut is not None:
             objects.append(cut.added_objects)
@@ -39,9 +42,10 @@ class WeightedCut(NamedTuple):
 class Cuts(NamedTuple):
     """A cost partition over cuts: the sum ``bound`` of its weights is a lower bound on every derivation.
 
-    ``reduced_costs[a]`` is the reduced cost of action ``a``; actions that are missing have their full cost.
-    ``hopeless`` says that the allowed actions have no derivation. ``interrupted`` says that ctrl-C ended the
-    search for cuts: the bound holds, but ``reduced_costs`` must not be used.
+    ``reduced_costs``: the reduced cost of actions; an action that is missing has its full cost.
+    ``hopeless``: whether the allowed actions have no derivation.
+    ``interrupted``: whether ctrl-C ended the search for cuts. Then the bound holds, but ``reduced_costs``
+    must not be used.
     """
 
     bound: int
@@ -54,9 +58,10 @@ class Cuts(NamedTuple):
 class _Level:
     """Objects that every derivation makes, and the goal zone of the last of them.
 
-    ``zone``: the goal zone, a set of objects that grows from the last object; cuts are made of it.
-    ``edge``: the actions of reduced cost above 0 that achieve an object of the zone.
-    ``cut``: the latest cut of this zone; before the first, the latest cut ``earlier_cut`` of the level below.
+    ``zone``: the goal zone, a set of objects that grows backwards from the last object. It becomes a cut.
+    ``frontier``: the actions of reduced cost above 0 that achieve an object of the zone, as keys.
+    ``cut``: the latest cut of this zone. Before the first, it is ``earlier_cut``, the latest cut of the level
+    below.
     """
 
     def __init__(self, objects: Sequence[int], earlier_cut: WeightedCut | None) -> None:
@@ -67,7 +72,7 @@ class _Level:
     def clear_zone(self) -> None:
         """Start an empty zone."""
         self.zone: set[int] = set()
-        self.edge: dict[int, None] = {}
+        self.frontier: dict[int, None] = {}
         self.cut = self.earlier_cut
 
 
@@ -84,7 +89,8 @@ class _Target:
     def top_level(self, free: Container[int]) -> _Level | None:
         """Return the topmost level whose last object is not free; ``None`` if the target itself is free.
 
-        Removes the free objects above it. An object is free if it can be made at reduced cost 0.
+        An object is free if it can be made at reduced cost 0. Free objects and empty levels above are
+        removed.
         """
         while self.levels:
             level = self.levels[-1]
@@ -100,7 +106,10 @@ class _Target:
         return None
 
     def add_level(self, needed: Sequence[int]) -> None:
-        """Add a level of ``needed``, the common preconditions of the latest landmark; the last is first."""
+        """Add a level of ``needed``, the common preconditions of the latest landmark, if there are any.
+
+        The search continues from the last of them.
+        """
         if needed:
             self.outer_zones |= self.levels[-1].zone
             self.levels.append(_Level(needed, self.levels[-1].cut))
@@ -121,7 +130,8 @@ def landmark_cuts(
     ``allowed``: the only actions that count. All of them cost more than 0.
     ``h_values``: h-values of objects, infinite where missing. As in LM-cut, a cut passes through the
     precondition of the greatest h-value.
-    ``guide``: computes new h-values from reduced costs, and is called now and then.
+    ``guide``: a function that computes new h-values from reduced costs. It is called each time that a certain
+    number of cuts was found; ``None`` keeps the first h-values.
     ``max_landmark_actions``: ends the search when the landmarks have about this many actions together.
 
     Ends early where time is up, too. Targets take turns, the greatest h-value first, so that the cuts of one
@@ -160,7 +170,7 @@ def landmark_cuts(
 
 
 class _Search:
-    """The state of LM-cut: cuts so far, reduced costs, and objects of reduced cost 0."""
+    """The state of LM-cut: cuts so far, reduced costs, and free objects (of reduced cost 0)."""
 
     def __init__(
         self,
@@ -185,16 +195,19 @@ class _Search:
         return self.h_values.get(o, math.inf), o
 
     def add_cut(self, level: _Level, outer_zones: set[int]) -> WeightedCut | None:
-        """Add and return the next cut of a level; ``None`` where no action crosses it."""
+        """Find the next cut of a level, and subtract its weight from reduced costs; return the cut.
+
+        ``None`` where no action crosses the zone.
+        """
         new = self._grow_zone(level, outer_zones)
         while new is None:
             level.clear_zone()
             new = self._grow_zone(level, outer_zones)
         needs = self._graph.needs
-        members = tuple(action for action in level.edge if level.zone.isdisjoint(needs[action]))
+        members = tuple(action for action in level.frontier if level.zone.isdisjoint(needs[action]))
         if not members:
             return None
-        level.edge = dict.fromkeys(members)
+        level.frontier = dict.fromkeys(members)
         reduced_costs = {action: self.reduced_cost(action) for action in members}
         cheapest = min(reduced_costs, key=reduced_costs.__getitem__)
         weight = reduced_costs[cheapest]
@@ -216,17 +229,17 @@ class _Search:
         return sorted(common, key=self.guide_key)
 
     def _grow_zone(self, level: _Level, outer_zones: set[int]) -> list[int] | None:
-        """Grow a zone through actions of reduced cost 0, and return its new objects.
+        """Grow a zone backwards through actions of reduced cost 0, and return its new objects.
 
-        ``None`` if all preconditions of such an action are free: then the zone has to start anew.
+        ``None`` if all preconditions of such an action are free. Then the zone has to start anew.
         """
         needs, achievers, reduced_costs = self._graph.needs, self._graph.makers, self.reduced_costs
-        zone, edge = level.zone, level.edge
+        zone, frontier = level.zone, level.frontier
         new = [] if zone else [level.objects[-1]]
         zone.update(new)
-        passed = [action for action in edge if not reduced_costs.get(action, True)]
+        passed = [action for action in frontier if not reduced_costs.get(action, True)]
         for action in passed:
-            del edge[action]
+            del frontier[action]
         i = 0
         while True:
             for action in passed:
@@ -244,14 +257,14 @@ class _Search:
             for action in achievers[new[i]]:
                 if action in self._allowed and outer_zones.isdisjoint(needs[action]):
                     if reduced_costs.get(action, True):
-                        edge[action] = None
+                        frontier[action] = None
                     else:
                         passed.append(action)
             i += 1
 
 
 class _FreeObjects:
-    """The free objects: those reachable by actions of reduced cost 0, updated incrementally."""
+    """The objects reachable by actions of reduced cost 0, updated as such actions are added."""
 
     def __init__(self, graph: Hypergraph) -> None:
         self._graph = graph
@@ -265,7 +278,10 @@ class _FreeObjects:
         return [o for o in self._graph.needs[action] if o not in free and o not in start]
 
     def add_action(self, action: int) -> None:
-        """Add an action of reduced cost 0: once its preconditions are free, its add effects become free."""
+        """Add an action of reduced cost 0.
+
+        Once its preconditions are free, its add effects become free.
+        """
         lacking = self.missing_preconditions(action)
         self._missing[action] = len(lacking)
         for o in lacking:

@@ -1,7 +1,7 @@
 """The linear relaxation of the hitting set problem over landmark cuts, which grows by the cuts it violates.
 
 Each action is a column, each cut a row: its landmark actions add up to at least 1. Cuts are looked for in the
-graph of first achievers, where fewer actions cross them, and returned as cuts of the whole graph.
+graph of first achievers, where fewer actions cross them. They are returned as cuts of the whole graph.
 """
 
 import math
@@ -27,7 +27,8 @@ class LandmarkRelaxation:
     ``costs``, ``greatest_cost``: the cost of each action, and the greatest cost.
     ``relative_costs``: costs divided by the greatest one, since costs may be too great for floats.
     ``covering``: the linear program, with ``relative_costs`` as the costs of columns.
-    ``cuts``, ``rows``: the objects of each cut, and its landmark.
+    ``cuts``: the cut of each row, given by its objects in the subgraph.
+    ``rows``: the landmark of each row, as an array of actions.
     """
 
     def __init__(
@@ -55,7 +56,7 @@ class LandmarkRelaxation:
         self._whole_cuts: dict[frozenset[int], frozenset[int]] = {}
 
     def add_cut(self, cut: frozenset[int]) -> None:
-        """Add a row for a cut, given by objects: its columns are the landmark actions."""
+        """Add a row for a cut, given by objects of the subgraph: its columns are the landmark actions."""
         self.rows.append(self._np.array(self.landmark_of(cut), dtype=self._np.int32))
         self.cuts.append(cut)
         self.covering.add_row(self.rows[-1])
@@ -67,13 +68,13 @@ class LandmarkRelaxation:
             self.add_cut(frozenset(position[o] for o in objects if o in position))
 
     def landmark_of(self, cut: frozenset[int]) -> list[int]:
-        """Return the landmark of a cut."""
+        """Return the landmark of a cut of the subgraph, ascending."""
         return self._achievers.landmark_of(cut)
 
     def whole_cut(self, cut: frozenset[int]) -> frozenset[int]:
         """Return the cut of the whole graph with the same landmark as a cut of this subgraph.
 
-        The result has object numbers of the whole graph.
+        The result has object numbers of the whole graph. It is cached.
         """
         if cut not in self._whole_cuts:
             self._whole_cuts[cut] = frozenset(self._objects[o] for o in self._achievers.widen(cut))
@@ -89,8 +90,9 @@ class LandmarkRelaxation:
     ) -> tuple[int, int]:
         """Add disjoint cuts that an LP solution violates, until ``budget`` actions were looked at.
 
-        ``lp_values`` is the array of the LP value of each action, which is changed in place. No landmark has an
-        action of ``used``. Returns the number of cuts added and the number of actions looked at.
+        ``lp_values`` is an array of the LP value of each action. It is changed in place. No landmark has an
+        action of ``used``. Ends early where ``stopped`` returns true. Returns the number of cuts added and
+        the number of actions looked at.
         """
         added = looks = 0
         for cutter in cutters:
@@ -105,16 +107,16 @@ class LandmarkRelaxation:
         return added, looks
 
     def costs_in_parts(self) -> Any:
-        """Return an array of costs in parts: 64-bit integers where their sum fits, else Python integers."""
+        """Return an array of costs in parts: integers of 64 bits where their sum fits, else of Python."""
         fits = sum(self.costs) * PARTS < 2**62
         return self._np.array(self.costs, dtype=self._np.int64 if fits else object) * PARTS
 
     def feasible_weights(self, dual_values: Iterable[tuple[int, float]], capacity: Any) -> dict[int, int]:
-        """Return a feasible weight in parts for each row: its dual value rounded, limited by ``capacity``.
+        """Return a feasible weight, in parts, of each row: its dual rounded and limited by ``capacity``.
 
-        ``dual_values`` are pairs of row and dual value. ``capacity`` is an array of the cost of each action
-        in parts; weights are subtracted from it, so that reduced costs remain. Afterwards, weights are raised
-        greedily while capacity is left. They add up to a lower bound, whatever the dual values are.
+        ``dual_values`` are pairs of row and dual. ``capacity`` is an array of the cost of each action, in
+        parts. Weights are subtracted from it in place, so that reduced costs remain. Afterwards, weights are
+        raised greedily while capacity is left. The weights add up to a lower bound, whatever the duals are.
         """
         of_1 = self.greatest_cost * PARTS
         wanted = {row: round(Fraction(w) * of_1) if 0 < w < math.inf else 0 for row, w in dual_values}
@@ -133,7 +135,10 @@ class LandmarkRelaxation:
 def _subgraph(
     graph: Hypergraph, targets: Iterable[int], actions: Sequence[int]
 ) -> tuple[Hypergraph, list[int], list[int]]:
-    """Return the graph of the given actions, the old numbers of its objects, and its targets."""
+    """Return the graph of the given actions, the old numbers of its objects, and its targets.
+
+    It has the targets and the non-initial preconditions of the actions as objects.
+    """
     targets, start = tuple(targets), graph.start
     objects = sorted({o for a in actions for o in graph.needs[a] if o not in start}.union(targets))
     number = {o: i for i, o in enumerate(objects)}

@@ -10,11 +10,11 @@ from foon_asp.hypergraph.goal_graph import GoalGraph
 def lazy_h_max_test(
     graph: GoalGraph, allowed: Container[int], reduced_cost: Callable[[int], int]
 ) -> Callable[[int, float], bool]:
-    """Return a function of an object and a limit: whether allowed actions make the object at such an h_max.
+    """Return a function of an object and a limit: whether the h_max of the object is at most the limit.
 
-    ``derive`` computes h_max of all objects at once. This function goes backwards from one object, and prunes
-    by the limit; with a low limit, it looks at a small part of a large network. It returns ``True`` where it
-    would go too deep or take too long.
+    Only ``allowed`` actions count, at reduced cost. While ``derive`` computes h_max of all objects at once,
+    this function goes backwards from one object and prunes by the limit. With a low limit, it looks at a
+    small part of a large network. It also returns ``True`` where it would go too deep or take too long.
     """
     needs, achievers, start = graph.needs, graph.makers, graph.start
     lower_bounds: dict[int, float] = {}  # on the h_max of objects
@@ -22,6 +22,7 @@ def lazy_h_max_test(
     budget = tuning.CUTS.lazy_looks
 
     def is_within(o: int, limit: float, depth: int = tuning.CUTS.lazy_depth) -> bool:
+        """Return whether the h_max of an object is at most a limit; updates the bounds known so far."""
         nonlocal budget
         if lower_bounds.get(o, 0) > limit:
             return False

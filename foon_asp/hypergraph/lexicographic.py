@@ -1,10 +1,11 @@
 """Lexicographic costs that are compared exactly: counts, and products of rates.
 
-A cost is a vector of rational numbers. A level that counts has one coordinate. A level that multiplies rates
-has a coordinate for each rate ``r``: the exponent ``e`` in the product of all ``r ** e``. The cost is
-``-log`` of the product. Costs add up coordinate by coordinate, can be multiplied by rational numbers, and are
-ordered: the first level at which they differ decides. So linear programming works on them as on numbers, and
-nothing is rounded.
+A cost is a vector of rational numbers. Its coordinates belong to levels, the most important first. A level
+that counts has one coordinate. A level that multiplies rates has a coordinate for each rate ``r``: the
+exponent ``e`` in the product of all ``r ** e``. Its cost is ``-log`` of the product.
+
+Costs add up coordinate by coordinate, can be multiplied by rational numbers, and are ordered: the first level
+at which they differ decides. So linear programming works on them as on numbers, and nothing is rounded.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -20,9 +21,11 @@ _DIGITS = 60  # of a logarithm, at first
 
 
 class Lexicographic:
-    """An order on cost vectors; ``levels`` has for each level its rates, or ``None`` if the level counts.
+    """An order on cost vectors.
 
-    Rates lie strictly between 0 and 1. ``width`` is the number of coordinates of a vector.
+    ``levels``: for each level the tuple of its rates, or ``None`` if the level counts. Rates lie strictly
+    between 0 and 1.
+    ``width``: the number of coordinates of a vector.
     """
 
     def __init__(self, levels: Sequence[Sequence[Fraction] | None]) -> None:
@@ -36,17 +39,18 @@ class Lexicographic:
 
     @property
     def zero(self) -> Vector:
-        """The cost of nothing."""
+        """The cost of nothing: a vector of zeros."""
         return (Fraction(0),) * self.width
 
     def total(self, vectors: Iterable[Vector]) -> Vector:
-        """Add up costs."""
+        """Return the sum of costs."""
         return tuple(sum(coordinates, Fraction(0)) for coordinates in zip(self.zero, *vectors, strict=True))
 
     def sign(self, vector: Sequence[Fraction | int]) -> int:
-        """Return -1, 0 or 1 for a cost below, equal to or above the cost of nothing, exactly.
+        """Return -1, 0 or 1 for a cost below, equal to or above the cost of nothing.
 
-        A vector with coordinates other than 0 can cost nothing: 7/10 * 7/10 divided by 49/100 is 1.
+        The sign is exact. A vector with coordinates other than 0 can cost nothing: 7/10 * 7/10 divided by
+        49/100 is 1.
         """
         for level, coordinates in self._split_by_level(vector):
             rates = self.levels[level]
@@ -58,11 +62,11 @@ class Lexicographic:
         return 0
 
     def compare(self, one: Vector, other: Vector) -> int:
-        """Return -1, 0 or 1 for a cost below, equal to or above another, exactly."""
+        """Return -1, 0 or 1 for a cost below, equal to or above another. The comparison is exact."""
         return self.sign(subtract(one, other))
 
     def approximate(self, vector: Sequence[Fraction | int]) -> list[float]:
-        """Return each level as a float, for heuristics.
+        """Return the cost at each level as a float, for heuristics.
 
         Coordinates are capped at 10^12, since HiGHS fails far above.
         """
@@ -75,7 +79,7 @@ class Lexicographic:
     def _split_by_level(
         self, vector: Sequence[Fraction | int]
     ) -> Iterator[tuple[int, Sequence[Fraction | int]]]:
-        """Yield each level, by index, and its coordinates."""
+        """Yield the index of each level and its coordinates."""
         begin = 0
         for level, measures in enumerate(self._float_factors):
             end = begin + len(measures)
@@ -88,7 +92,10 @@ class Lexicographic:
     def _sign_of_product(
         self, level: int, rates: Sequence[Fraction], exponents: Sequence[Fraction | int]
     ) -> int:
-        """Return the sign of ``-log`` of a product of powers of a level's rates: -1 for a product above 1."""
+        """Return the sign of ``-log`` of a product of powers of rates: -1 for a product above 1.
+
+        Floats decide where they are exact enough. Otherwise logarithms of more and more digits do.
+        """
         if not any(exponents):
             return 0
         large = 10**15  # with larger exponents, lost digits could matter
@@ -113,7 +120,11 @@ class Lexicographic:
 
     @cached_property
     def _coprime_factors(self) -> list[dict[int, dict[int, int]]]:
-        """For each level, a coprime base of its rates; each factor has its exponents by index of the rate."""
+        """The factors of each level: a coprime base of its rates.
+
+        Each factor has its exponents in the rates, by index of the rate. A factor of a denominator has a
+        negative exponent.
+        """
         factors_by_level: list[dict[int, dict[int, int]]] = []
         for rates in self.levels:
             base = coprime_base(n for rate in rates or () for n in rate.as_integer_ratio())
@@ -140,13 +151,16 @@ def subtract(one: Vector, other: Vector) -> Vector:
 
 
 def multiply(vector: Vector, factor: Fraction) -> Vector:
-    """Multiply a cost by a rational number."""
+    """Return a cost multiplied by a rational number."""
     return vector if factor == 1 else tuple(coordinate * factor for coordinate in vector)
 
 
 @lru_cache(maxsize=4096)
 def minus_log(rate: Fraction, digits: int) -> tuple[Fraction, Fraction]:
-    """Return ``-log(rate)`` to ``digits`` digits, and a bound on its error; the rate is below 1."""
+    """Return ``-log(rate)`` to ``digits`` digits, and a bound on its error; the rate is below 1.
+
+    Results are cached.
+    """
     # close to 1, the logarithms of denominator and numerator share their first digits
     shared = (rate.denominator.bit_length() - (rate.denominator - rate.numerator).bit_length()) // 3
     precise = Context(prec=digits + shared + 10)
@@ -156,4 +170,5 @@ def minus_log(rate: Fraction, digits: int) -> tuple[Fraction, Fraction]:
 
 
 def _sign(number: Fraction | float) -> int:
+    """Return -1, 0 or 1 as a number is negative, 0 or positive."""
     return (number > 0) - (number < 0)

@@ -541,7 +541,7 @@ class _Node:
 
     def packing(self, exact: ExactOptimum) -> Packing:
         """Return the cost partition of an exact optimum."""
-        weights = sorted(exact.weights.items())
+        weights = sorted(exact.duals.items())
         first = len(self._limits)
         return Packing(
             tuple((self.cuts[row - first], weight) for row, weight in weights if row >= first),

@@ -52,11 +52,11 @@ def check(
     """Hold shares against weights: both are feasible, none is 0, and they come to the same."""
     assert all(share > 0 for share in found.x.values())
     assert all(sum(found.x.get(column, 0) for column in row) >= 1 for row in rows)
-    assert all(order.sign(weight) > 0 for weight in found.weights.values())
+    assert all(order.sign(weight) > 0 for weight in found.duals.values())
     for column, cost in enumerate(costs):
-        load = order.total(weight for row, weight in found.weights.items() if column in rows[row])
+        load = order.total(weight for row, weight in found.duals.items() if column in rows[row])
         assert order.compare(load, cost) <= 0
-    assert order.total(found.weights.values()) == found.value
+    assert order.total(found.duals.values()) == found.value
     paid = order.total(tuple(part * share for part in costs[column]) for column, share in found.x.items())
     assert order.compare(paid, found.value) == 0
 
