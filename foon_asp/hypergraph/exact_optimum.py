@@ -96,7 +96,8 @@ class _Basis:
             for column, value in entries.items():
                 transposed[column][row] = value
         self.x = {
-            c: share for c, (share,) in solve_exactly(self._matrix, {r: (row_minimums[r],) for r in tight}).items()
+            c: share
+            for c, (share,) in solve_exactly(self._matrix, {r: (row_minimums[r],) for r in tight}).items()
         }
         self.duals = solve_exactly(transposed, {column: costs[column] for column in columns})
         self.slack = [
@@ -135,7 +136,9 @@ class _Basis:
         decreases = {column: value for column, (value,) in solve_exactly(self._matrix, right_sides).items()}
         ratios = [(self.x[c] / f, False, c) for c, f in decreases.items() if f > 0]
         for row, slack in enumerate(self.slack):
-            decrease = sum((value * decreases[c] for c, value in self._rows[row].items() if c in decreases), _ZERO)
+            decrease = sum(
+                (value * decreases[c] for c, value in self._rows[row].items() if c in decreases), _ZERO
+            )
             decrease -= entering_coefficients[row]
             if decrease > 0:  # never in a tight row
                 ratios.append((slack / decrease, True, row))

@@ -26,7 +26,9 @@ def extend_tree(
     remaining_cost = _cost_without(tree, cost)
     candidates = {
         *tree,
-        *neighbourhood(goal_graph, range(len(graph.needs)), remaining_cost, sum(map(cost, tree)), enough=_FIRST),
+        *neighbourhood(
+            goal_graph, range(len(graph.needs)), remaining_cost, sum(map(cost, tree)), enough=_FIRST
+        ),
     }
     extension = derive(goal_graph, candidates, remaining_cost, h_add=True).tree(goal_graph, goal_graph.goals)
     if extension is None:

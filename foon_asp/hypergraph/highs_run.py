@@ -47,6 +47,7 @@ def silent_highs() -> Any:
 
     class Silent(highspy.Highs):
         """HiGHS without output."""
+
         def enableCallbacks(self) -> None:  # noqa: N802
             """Turn off the output, then enable callbacks."""
             self.setOptionValue("output_flag", False)

@@ -87,6 +87,7 @@ class Lexicographic:
             begin = end
 
     def _log_terms(self, level: int, exponents: Sequence[Fraction | int]) -> list[float]:
+        """Return each exponent times ``-log`` of its rate, as floats; a count stays as it is."""
         return [float(e) * measure for e, measure in zip(exponents, self._float_factors[level], strict=True)]
 
     def _sign_of_product(

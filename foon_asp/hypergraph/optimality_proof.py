@@ -1,12 +1,12 @@
 """Proofs that no derivation costs less than the incumbent: cost partitions over landmarks, and branching.
 
-A cost partition gives each landmark a weight such that, for each action, the weights of its landmarks add up
-to at most its cost. Then the sum of all weights is a lower bound on the cost of every derivation. The best
-weights solve the dual of the hitting set relaxation; landmarks are added as long as the LP solution violates
-one (Bonet and Helmert 2010; Haslum, Slaney and Thiébaux 2012 for the hitting sets).
+A cost partition gives each landmark a weight. For each action, the weights of its landmarks add up to at most
+its cost. Then the sum of all weights is a lower bound on the cost of every derivation. The best weights solve
+the dual of the hitting set relaxation. Landmarks are added as long as the LP solution violates one (Bonet and
+Helmert 2010; Haslum, Slaney and Thiébaux 2012 for the hitting sets).
 
-A limit on a resource is one more row of the relaxation: an action that consumes the resource may carry more
-weight, and the weight of the limit times its amount is subtracted from the bound.
+A limit on a resource is one more row of the relaxation. An action that consumes the resource may then carry
+more weight, and the weight of the limit times its amount is subtracted from the bound.
 """
 
 import math
@@ -49,8 +49,8 @@ class Rules(Protocol):
     def barred_actions(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
         """Return for each rule, by number, the actions that it bars.
 
-        A derivation with the used actions and no action of ``without`` breaks the rule if it also has a
-        barred action.
+        Take a derivation with all ``used`` actions and no action of ``without``. It breaks the rule if it
+        also has a barred action.
         """
 
     def breaking_actions(self, derivation: frozenset[int]) -> Sequence[int]:
@@ -61,7 +61,7 @@ class Rules(Protocol):
 
 
 class CheaperError(Exception):
-    """A derivation was found that costs less than the incumbent."""
+    """A derivation was found that costs less than the incumbent; ``actions`` are its actions."""
 
     def __init__(self, actions: Sequence[int]) -> None:
         super().__init__("a cheaper derivation was found")
@@ -69,20 +69,20 @@ class CheaperError(Exception):
 
 
 class _TimeUpError(Exception):
-    pass
+    """A proof was given up."""
 
 
 class Prover:
     """Searches for optimality proofs over one hypergraph, its targets and the cost of each action.
 
     ``costs``, ``order``: the cost of each action as a vector, and the order of the vectors.
-    ``forbidden``: actions; derivations with one of them do not count.
+    ``forbidden``: actions. Derivations with one of them do not count.
     ``expired``: returns whether to give up. It is called between steps that take milliseconds on thousands of
     actions.
     ``known_cuts``: cuts to begin with, each by its objects.
     ``limits``, ``rules``: derivations that exceed a limit or break a rule do not count.
-    ``multiples``: a number per coordinate; all costs are multiples of it, so bounds are rounded up to one. 0
-    or a missing number means no rounding.
+    ``multiples``: a number for each coordinate, of which all costs are multiples. So bounds are rounded up to
+    a multiple. 0 or a missing number means no rounding.
     """
 
     def __init__(
@@ -120,7 +120,7 @@ class Prover:
     def prove(self, derivation: Iterable[int], cases: Cases = None) -> Proof | None:
         """Return a proof that no derivation costs less than this one; ``None`` where that takes too long.
 
-        Known cuts are tried first; if they do not suffice, the proof branches on ``cases``. Raises
+        Known cuts are tried first. If they do not suffice, the proof branches on ``cases``. Raises
         :class:`CheaperError` if a cheaper derivation is found.
         """
         try:
@@ -139,7 +139,7 @@ class Prover:
     def relax(self, derivation: Iterable[int]) -> tuple[Packing, Vector] | None:
         """Return the optimal cost partition of the relaxation at the root and its sum, a lower bound.
 
-        The relaxation may exceed limits, at a cost far above that of ``derivation``. ``None`` where time was
+        The relaxation may exceed limits, at a cost far above that of ``derivation``. ``None`` where time is
         up, and where the targets cannot be reached.
         """
         nothing: frozenset[int] = frozenset()
@@ -166,7 +166,9 @@ class Prover:
         """Return a proof that derivations with all used and no forbidden actions cost at least ``goal``.
 
         If the goal is ``None``, it proves that there is no such derivation. ``known_cuts`` are tried first.
-        ``at_root`` is true before any branching; there may have been reduced-cost fixing.
+        ``at_root`` is true before any branching, also after reduced-cost fixing. Raises :class:`CheaperError`
+        as :meth:`prove` does, and :class:`_TimeUpError` where it gives up. Limits that a rounded solution
+        exceeds are added to the limits of the prover.
         """
         targets = [*self._targets, *(o for action in sorted(used) for o in self._graph.needs[action])]
         bars = self._barred_actions(used, forbidden)
@@ -184,6 +186,7 @@ class Prover:
         if remaining_goal is not None:
 
             def others(above_cutoff: frozenset[int], known_cuts: Collection[frozenset[int]]) -> Proof:
+                """Continue the proof for derivations without the actions above the cutoff."""
                 return self._prove(goal, used, forbidden | above_cutoff, known_cuts, cases, at_root)
 
             many = len(cutter.actions) > tuning.PROOF.rounded_actions or (
@@ -235,7 +238,10 @@ class Prover:
         action: int,
         cases: Sequence[Cases],
     ) -> Branch:
-        """Return a proof by branching: for the derivations without an action, and for those with it."""
+        """Return a proof by branching: for the derivations without an action, and for those with it.
+
+        ``cases`` are the known cases without it and with it.
+        """
         without, using = cases
         return Branch(
             action,
@@ -246,7 +252,8 @@ class Prover:
     def round_up(self, bound: Vector) -> tuple[Vector, int | None]:
         """Round up a bound at its first coordinate that is no multiple of its number in ``multiples``.
 
-        Returns the bound and the index of the rounded coordinate, ``None`` if no coordinate was rounded.
+        Coordinates after it become 0. Returns the bound and the index of the rounded coordinate, ``None`` if
+        no coordinate was rounded.
         """
         for i, (coordinate, multiple) in enumerate(zip(bound, self._multiples, strict=False)):
             if multiple and coordinate % multiple:
@@ -255,12 +262,15 @@ class Prover:
         return bound, None
 
     def _barred_actions(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
+        """Return the barred actions of each rule, as :meth:`Rules.barred_actions` does."""
         return {} if self._rules is None else self._rules.barred_actions(used, without)
 
     def _breaking_actions(self, derivation: Iterable[int]) -> Sequence[int]:
+        """Return actions that together break a rule, as :meth:`Rules.breaking_actions` does."""
         return () if self._rules is None else self._rules.breaking_actions(frozenset(derivation))
 
     def _exceeded_limit(self, derivation: Iterable[int]) -> Limit | None:
+        """Return a new limit that a derivation exceeds; ``None`` without one, or without rules."""
         chosen = frozenset(derivation)
         return None if self._rules is None or not chosen else self._rules.exceeded_limit(chosen)
 
@@ -281,12 +291,12 @@ class Prover:
         without_lp: bool,
         at_root: bool,
     ) -> tuple[Proof | None, Sequence[Cut]]:
-        """Return a proof of ``goal`` found without exact linear programming, else ``None``; and all cuts.
+        """Return a proof of ``goal`` without exact linear programming, else ``None``; and the cuts looked at.
 
-        Tries a greedy cost partition over ``known_cuts``, then reduced-cost fixing by it; ``others`` proves
-        the goal for derivations without the fixed actions. Then both are tried with the rounded dual solution
-        of the LP, and at the root :func:`prove_by_branching` comes last. With ``without_lp`` or a ``step`` of 0, the LP is
-        not used.
+        First tries a greedy cost partition over ``known_cuts``, then reduced-cost fixing by it. For the
+        derivations without the fixed actions, ``others`` proves the goal. Then both are tried with the
+        rounded duals of the LP. At the root, :func:`prove_by_branching` comes last. If ``without_lp`` is true
+        or ``step`` is 0, the LP is not used.
         """
         targets = set(cutter.targets)
         known_cuts = [cut for cut in known_cuts if not targets.isdisjoint(cut)]
@@ -300,6 +310,7 @@ class Prover:
             return proof, cuts
 
         def cost_in_steps(action: int) -> int:
+            """Return the remaining cost of an action as a multiple of ``step``."""
             return 0 if action in used else int(self._costs[action][0] / step)
 
         enough = math.ceil(goal[0] / step)
@@ -343,7 +354,7 @@ class Prover:
     def _cost_step(self) -> Fraction:
         """Return a number that all costs are multiples of; 0 for costs of several coordinates.
 
-        Also 0 if there are limits or rules.
+        It is also 0 if there are limits or rules.
         """
         constrained = self._limits or self._rules is not None
         one_number = len(self._multiples) == 1 == len(self._order.zero)
@@ -363,7 +374,7 @@ class Prover:
         """Return a proof by reduced-cost fixing; ``None`` if too few actions are above the cutoff.
 
         A derivation with an action costs at least the sum of the weights plus the reduced cost of the action.
-        Also ``None`` if ``step`` is 0.
+        ``None`` also if ``step`` is 0.
         """
         if not step:
             return None
@@ -382,7 +393,7 @@ class Prover:
             yield from self._landmark_of(frozenset(objects))
 
     def _widen(self, cutter: Cutter, objects: Iterable[int]) -> Cut:
-        """Return a cut; objects are added if an action that cannot run crosses it."""
+        """Return the cut of some objects, and add objects to it if an action that cannot run crosses it."""
         inside = frozenset(o for o in objects if not self._graph.at_start[o])
         members = cutter.without_forbidden(self._landmark_of(inside))
         return cutter.widen(inside) if members is None else Cut(tuple(sorted(inside)), members)
@@ -390,7 +401,10 @@ class Prover:
     def _prove_by_search(
         self, cutter: Cutter, goal: Vector, known_cuts: Sequence[Cut], step: Fraction
     ) -> Proof | None:
-        """Return a proof by :func:`prove_by_branching`, its cuts valid for all actions; ``None`` without a proof."""
+        """Return a proof by :func:`prove_by_branching`; ``None`` without a proof, and if ``step`` is 0.
+
+        Its cuts are widened, so that they are valid for all actions.
+        """
         if not step:
             return None
         result = prove_by_branching(
@@ -402,11 +416,13 @@ class Prover:
         widened = cache(partial(self._widen, cutter))
 
         def widen_packing(packing: Packing) -> Packing:
+            """Return a cost partition with widened cuts, and with its costs as vectors."""
             weights = [(widened(cut.objects), (weight[0] * step,)) for cut, weight in packing.weights]
             _, rounded = self.round_up(self._order.total(weight for _, weight in weights))
             return Packing(tuple(weights), rounded=rounded)
 
         def widen_proof(proof: Proof) -> Proof:
+            """Return a proof with widened cuts."""
             if isinstance(proof, Branch):
                 return Branch(proof.action, widen_proof(proof.without), widen_proof(proof.using))
             if isinstance(proof, Hopeless):
@@ -448,13 +464,15 @@ class Prover:
         return self._order.compare(value, goal) >= 0
 
     def _cost_of(self, actions: Iterable[int]) -> Vector:
+        """Return the sum of the costs of actions."""
         return self._order.total(self._costs[a] for a in actions)
 
 
 class _Node:
     """The relaxation at one node of the branching: a column for each action, a row for each limit and cut.
 
-    ``lp_values`` are the LP values of the columns in the last solution, ``cuts`` the cuts in order of rows.
+    ``lp_values`` are the LP values of the columns in the last solution. ``cuts`` are the cuts in order of
+    rows.
     """
 
     def __init__(self, prover: Prover, cutter: Cutter, used: frozenset[int], goal: Vector | None) -> None:
@@ -499,7 +517,7 @@ class _Node:
         )
 
     def is_sufficient(self, value: Vector, enough: Vector | None) -> bool:
-        """Return whether a bound is at least ``enough`` or, if that is ``None``, whether it is above 0."""
+        """Return whether a bound, rounded up, is at least ``enough``; for ``None``, whether it is above 0."""
         order = self._prover._order
         if enough is None:
             return order.sign(value) > 0
@@ -508,7 +526,8 @@ class _Node:
     def relax(self, enough: Vector | None) -> ExactOptimum | None:
         """Add cuts until the bound is ``enough``, or no cut is found that the LP solution violates.
 
-        Returns the exact optimum of the rows; ``None`` where exact arithmetic fails.
+        Returns the exact optimum of the rows; ``None`` where exact arithmetic fails. Raises
+        :class:`_TimeUpError` where time is up.
         """
         order = self._prover._order
         wanted = math.inf if enough is None else self._prover.as_float(enough)
@@ -530,6 +549,7 @@ class _Node:
                 return exact
 
     def _check_time(self) -> None:
+        """Raise :class:`_TimeUpError` if time is up."""
         if self._prover._expired():
             raise _TimeUpError
 
@@ -540,7 +560,7 @@ class _Node:
             self.lp_values[column] = 1.0
 
     def packing(self, exact: ExactOptimum) -> Packing:
-        """Return the cost partition of an exact optimum."""
+        """Return the cost partition of an exact optimum: its duals as weights of cuts and limits."""
         weights = sorted(exact.duals.items())
         first = len(self._limits)
         return Packing(
@@ -550,7 +570,10 @@ class _Node:
         )
 
     def most_fractional_action(self) -> int | None:
-        """Return the most fractional action, of equal ones the most expensive; ``None`` without one."""
+        """Return the action whose LP value is nearest to 1/2; ``None`` if all are integers.
+
+        Of equal ones, the most expensive is returned.
+        """
         fractional = [
             (abs(x - 0.5), -self._floats[column], self._actions[column])
             for column, x in enumerate(self.lp_values[: len(self._actions)])
@@ -559,7 +582,7 @@ class _Node:
         return min(fractional)[2] if fractional else None
 
     def rounded_solution(self) -> list[int]:
-        """Return the actions of the rounded LP solution, with the used ones."""
+        """Return the actions of the rounded LP solution and the used ones, ascending."""
         lp_values = zip(
             self._actions, self.lp_values, strict=False
         )  # after those of actions come those of limits

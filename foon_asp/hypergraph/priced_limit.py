@@ -18,8 +18,8 @@ Units = frozenset[int]
 class WithinLimit(NamedTuple):
     """The result of a search for trees within a limit.
 
-    ``tree`` is within the limit; ``None`` if there is no such tree. ``units`` are all units that better trees
-    within the limit can have; ``None`` if no price excludes a unit.
+    ``tree``: a tree within the limit; ``None`` if there is no such tree.
+    ``units``: all units that better trees within the limit can have; ``None`` if no price excludes a unit.
     """
 
     tree: Units | None
@@ -35,11 +35,13 @@ def search_within_limit(
 ) -> WithinLimit | None:
     """Search for the best tree within an upper limit on a sum over units; ``tree`` exceeds the limit.
 
-    ``row`` has the amounts of units and the bound on their sum. A first tree within the limit is found by
-    :func:`any_within_limit`. Then the price of an amount of 1 is the Lagrange multiplier at which this tree
-    and ``tree`` cost the same. It raises the cost of a tree within the limit by at most the price times the
-    bound, so lower bounds carry over. If many units remain at this price, lower prices that rise up to it are
-    tried. Returns ``None`` if neither a tree is found nor its absence proved.
+    ``row`` has the amounts of units and the limit on their sum. A first tree within the limit is found by
+    :func:`any_within_limit`. The price of an amount of 1 is the Lagrange multiplier at which this tree and
+    ``tree`` cost the same. It raises the cost of a tree within the limit by at most the price times the
+    limit, so lower bounds carry over. If many units remain at this price, lower prices that rise up to it are
+    tried.
+
+    Returns ``None`` if neither a tree is found nor its absence proved.
     """
     first = any_within_limit(subproblem, row, expired)
     if first is None or first.tree is None:
@@ -92,12 +94,11 @@ def _by_rising_prices(
     row: LinearRow,
     expired: Callable[[], bool],
 ) -> WithinLimit:
-    """Search for trees within the limit that are better than ``incumbent``; ``exceeding`` exceeds the limit.
+    """Search for trees within the limit that are better than ``incumbent``; ``exceeding`` is beyond it.
 
     A question at a low price is about as quick as one without a price. Prices rise from about the cost of a
-    unit to the price at which ``incumbent`` and ``exceeding`` cost the same. The optimal tree at a price replaces
-    one of the two. The price with the greatest bound determines the units of trees better than
-    ``incumbent``.
+    unit to the price at which ``incumbent`` and ``exceeding`` cost the same. The optimal tree at a price
+    replaces one of the two. The price with the greatest bound determines the units of better trees.
     """
     next_price = Fraction(subproblem.total(exceeding), len(exceeding))
     greatest: tuple[Fraction, Fraction] | None = None  # bound, and its price
@@ -153,8 +154,8 @@ def any_within_limit(
 ) -> WithinLimit | None:
     """Search for any tree that keeps to an upper limit on a sum, by minimizing the sum.
 
-    Returns ``WithinLimit(None)`` if a bound proves that no tree is within the limit, ``None`` if nothing is
-    known.
+    Returns ``WithinLimit(None)`` if a bound proves that no tree is within the limit. Returns ``None`` if
+    nothing is known.
     """
     units_cost = ExactCosts(subproblem.problem, (Objective.UNITS,), subproblem.remaining)
     limit = units_cost.strict_upper_bound * (row.bound + 1)
@@ -180,7 +181,10 @@ def _reduced_at(
     below: int = 0,
     max_actions: float = math.inf,
 ) -> Reduced:
-    """Reduce the subproblem by :func:`reduce_at_costs`; raise ``KeyboardInterrupt`` where that is interrupted."""
+    """Reduce the subproblem by :func:`reduce_at_costs`.
+
+    Raises ``KeyboardInterrupt`` where that is interrupted.
+    """
     reduced = reduce_at_costs(subproblem, objectives, costs, expired, known_tree, below, max_actions)
     if reduced.interrupted:
         raise KeyboardInterrupt

@@ -40,7 +40,11 @@ Stages = Callable[[Task, Gap, HValues], Stage]
 
 
 class Course(NamedTuple):
-    """The stages after a first tree: ``near_goals`` in a large network, otherwise ``whole``."""
+    """Stages to run after a first tree.
+
+    ``near_goals``: those for a large network, of which only a part near the goals was looked at.
+    ``whole``: those for any other network.
+    """
 
     near_goals: Stages
     whole: Stages
@@ -80,10 +84,10 @@ class Listener:
     """Observer of incumbents and bounds; its methods do nothing unless overridden."""
 
     def tree(self, units: frozenset[int]) -> None:
-        """Receive a tree that is better than the one before."""
+        """Receive the units of a tree that is better than the one before."""
 
     def bound(self, costs: ExactCosts, bound: int) -> None:
-        """Receive a lower bound on all trees."""
+        """Receive a lower bound on all trees, in the units of ``costs``."""
 
 
 class Bounds(Listener):
@@ -93,7 +97,7 @@ class Bounds(Listener):
         self._listener = listener
 
     def bound(self, costs: ExactCosts, bound: int) -> None:
-        """Receive a lower bound on all trees."""
+        """Pass on a lower bound on all trees."""
         self._listener.bound(costs, bound)
 
 
@@ -113,7 +117,7 @@ def reduce(
     ``expired``: returns whether time is up.
     ``listener``: receives trees and bounds.
     ``guard``: returns a context in which time being up interrupts computations, as ctrl-C does.
-    ``solved``: solved goals of the same question, which speed up this one; its answer is added to them.
+    ``solved``: solved goals of the same question. They speed up this one, and its answer is added to them.
     """
     with uncollected():
         with guard():
@@ -173,9 +177,9 @@ def reduce_at_costs(
 ) -> Reduced:
     """Reduce a gap-bounded subproblem under other costs, with ``known_tree`` as a first incumbent, if any.
 
-    With ``below``, all units of trees that cost less than ``below`` remain, and those of trees better than
-    the incumbent. Then the reduction also ends early if the first cuts exclude hardly any action and more
-    than ``max_actions`` remain.
+    With ``below``, two kinds of units remain: those of trees that cost less than ``below``, and those of
+    trees better than the incumbent. Then the reduction also ends early if the first cuts exclude hardly any
+    action and more than ``max_actions`` remain.
     """
     presolve_tuning = tuning.PRESOLVE._replace(branching_budget=0, landmark_actions=math.inf)
     if below:  # clingo gets the remaining actions with an incumbent
@@ -234,7 +238,11 @@ def _with_costs(task: Task, actions: Collection[int]) -> Task:
 
 
 def run_rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
-    """Repeat landmark cuts, search for trees and pruning, until nothing changes or a tree is optimal."""
+    """Repeat landmark cuts, search for trees and pruning, until nothing changes or a tree is optimal.
+
+    Where the cuts exclude few candidates, the linear relaxation and branching follow. Then better trees are
+    looked for thoroughly. Ends early where time is up.
+    """
     costs, limits = task.costs, task.tuning
     if costs is not None and len(gap.candidates) > limits.easy_actions:
         gap = greedy.follow_h_add(task, gap)
@@ -271,7 +279,7 @@ def run_rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
 
 
 def _has_changed(gap: Gap, before: Gap) -> bool:
-    """Return whether a gap has fewer candidates or another incumbent than before."""
+    """Return whether a gap has fewer candidates or another incumbent than the gap ``before``."""
     return (len(gap.candidates), gap.incumbent) != (len(before.candidates), before.incumbent)
 
 
@@ -291,7 +299,8 @@ def _tighten_by_relaxation(task: Task, gap: Gap) -> Stage:
 def run_near_goals(task: Task, gap: Gap, h_values: HValues) -> Stage:
     """Run the greedy stages near the goals of a large network, then rounds over the remaining candidates.
 
-    No guide is used, since h-values of reduced costs take time linear in all actions.
+    No guide is used, since h-values of reduced costs take time linear in all actions. Raises
+    ``KeyboardInterrupt`` where time is up before any reduction.
     """
     if task.costs is not None:
         gap = yield from greedy.tighten(task, gap, h_values, None, thorough=False)
@@ -312,7 +321,7 @@ def run_near_goals(task: Task, gap: Gap, h_values: HValues) -> Stage:
 
 
 def _follow_h_add(task: Task, gap: Gap, h_values: HValues) -> Stage:
-    """Look for a better tree by h_add."""
+    """Replace the incumbent by the tree that follows h_add, if that is better."""
     if task.costs is not None:
         gap = greedy.follow_h_add(task, gap)
         yield gap
@@ -342,7 +351,7 @@ def _first_tree_near_goals(task: Task) -> tuple[Gap, HValues] | None:
     """Find a first tree among the actions nearest to the goals, so that large networks are read lazily.
 
     Most of a large network is too far from the goals for a good tree, and is never looked at. Returns the gap
-    over all actions, and the h-value of each object; ``None`` if the network is small or no tree is found.
+    over all actions, and the h-value of each object. ``None`` if the network is small or no tree is found.
     """
     size, limits = len(task.graph.needs), task.tuning
     if not task.reductions & {Reduction.BOUNDS, Reduction.DEAR} or size <= limits.lazy_actions:
@@ -359,10 +368,11 @@ def _first_tree_near_goals(task: Task) -> tuple[Gap, HValues] | None:
 
 
 class _Presolve:
-    """A run of the stages of a task; ``gap`` is its last gap, ``None`` before there is a tree.
+    """A run of the stages of a task.
 
-    ``ended`` is true if nothing interrupted the run. If trees may be ``redundant``, they may have any action,
-    so the costs of all actions are needed.
+    ``gap``: the last gap; ``None`` before there is a tree.
+    ``ended``: whether nothing interrupted the run.
+    ``redundant``: whether trees may have redundant actions. Then the costs of all actions are needed.
     """
 
     def __init__(self, task: Task, listener: Listener | None, guard: Guard, redundant: bool = False) -> None:
@@ -391,6 +401,10 @@ class _Presolve:
         self.run_guarded(lambda: self._run_course(course, known_tree))
 
     def _run_course(self, course: Course, known_tree: Collection[int]) -> None:
+        """Find a first tree, and run the stages of a course from it; the guard is up to the caller.
+
+        Does nothing more if there is no tree. Without reductions, the stages are not run.
+        """
         task, stages = self.task, course.near_goals
         opening = _first_tree_near_goals(task)
         if opening is None:
@@ -408,6 +422,7 @@ class _Presolve:
         """Run all rounds, if possible from the gap that ``solved`` has, and add the answer to ``solved``."""
 
         def run_from_shared_gap() -> None:
+            """Run the rounds from the gap that ``solved`` has, or from the beginning if it has none."""
             costs = solved.costs
             if costs is not None:
                 self.task = replace(self.task, costs=costs)
@@ -449,6 +464,7 @@ class _Presolve:
             self._listener.bound(self.task.costs, gap.lower_bound)
 
     def _units(self, actions: Collection[int]) -> frozenset[int]:
+        """Return the units among actions."""
         return frozenset(a for a in actions if a < self.task.graph.units)
 
     def reduced(self, redundant: bool = False) -> Reduced:
@@ -471,10 +487,11 @@ class _Presolve:
 def _presolve_by_extension(presolve: _Presolve) -> None:
     """Presolve a question with required sets by its relaxation: the same question without these sets.
 
-    Every tree contains a tree for the goals alone, and its other units, the extension, cost the difference.
-    So the candidates are the units of cheap trees for the goals and of cheap extensions. If a tree costs no
-    more than the best tree for the goals alone, it is optimal. ``presolve.gap`` stays ``None`` if the
-    relaxation does not help.
+    Every tree contains a tree for the goals alone. Its other units, the extension, cost the difference. So
+    the candidates are the units of cheap trees for the goals and of cheap extensions. If a tree costs no more
+    than the best tree for the goals alone, it is optimal.
+
+    ``presolve.gap`` stays ``None`` if the relaxation does not help.
     """
     task = presolve.task
     graph, restriction = task.graph, task.problem.restriction

@@ -37,6 +37,7 @@ def parse_reductions(text: str) -> frozenset[Reduction]:
 
 
 def _parse_name(name: str) -> Reduction:
+    """Return the reduction of this name; raises :class:`UserError` for another name."""
     try:
         return Reduction(name.strip())
     except ValueError:

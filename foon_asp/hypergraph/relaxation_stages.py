@@ -27,7 +27,8 @@ from foon_asp.hypergraph.task import Task
 def partition_costs(task: Task, gap: Gap) -> Stage:
     """Raise the bound by optimal cost partitions, derive trees from LP solutions, and fix candidates.
 
-    The relaxation begins anew over the remaining candidates, as long as many are excluded.
+    Where many candidates were excluded, the relaxation begins anew over the remaining ones. Ends where few
+    are excluded, where time is up, and where branching is faster.
     """
     costs, graph, limits = task.costs, task.graph, task.tuning
     assert costs is not None
@@ -57,7 +58,7 @@ def partition_costs(task: Task, gap: Gap) -> Stage:
 
 
 def _starting_cuts(gap: Gap) -> tuple[frozenset[int], ...]:
-    """Return the greedy cuts to begin the relaxation with.
+    """Return the greedy cuts to begin the relaxation with, each by its objects.
 
     Large landmarks are weak and make the LP slow: of many, only the smallest are returned.
     """
@@ -71,7 +72,8 @@ def _starting_cuts(gap: Gap) -> tuple[frozenset[int], ...]:
 def follow_solution(task: Task, gap: Gap, partition: CostPartition, looks: int) -> Stage:
     """Look for better trees that follow an LP solution, then apply its cost partition.
 
-    ``looks`` is the budget: how often each candidate may be looked at.
+    Trees are also looked for by branch and bound, if the solution uses few actions, else by perturbation
+    search. ``looks`` is the budget: how often each candidate may be looked at.
     """
     costs, graph = task.costs, task.graph
     assert costs is not None
@@ -101,7 +103,8 @@ def follow_solution(task: Task, gap: Gap, partition: CostPartition, looks: int) 
 def apply_partition(task: Task, gap: Gap, partition: CostPartition) -> Gap:
     """Raise the bound by a cost partition, fix candidates by reduced costs, and prune dominated ones.
 
-    The bound is rounded up, since costs are whole numbers.
+    The bound is rounded up, since costs are whole numbers. If it meets the incumbent, the gap is marked as
+    proved.
     """
     costs, total, evidence = task.costs, task.incumbent_cost(gap), gap.evidence
     assert costs is not None
@@ -126,7 +129,7 @@ def search_among(
 ) -> Stage:
     """Look for a better tree among a few actions by branch and bound (sub-MIP heuristic).
 
-    ``effort`` is the budget, in actions looked at.
+    ``cuts`` are cuts to begin with. ``effort`` is the budget, in actions looked at.
     """
     graph, costs = task.graph, task.costs
     assert costs is not None
@@ -144,13 +147,20 @@ def search_among(
 
 
 def may_branch(task: Task, gap: Gap) -> bool:
-    """Return whether branching may prove a tree optimal; ``False`` if rounding could decide."""
+    """Return whether branching may prove a tree optimal; ``False`` if rounding could decide.
+
+    Also ``False`` if the budget is used up, if costs have a limit, or if equally good trees are wanted.
+    """
     assert task.costs is not None
     return task.only_better(gap) and not (task.costs.doubt or task.costs.has_limit) and gap.budget > 0
 
 
 def branch(task: Task, gap: Gap) -> Stage:
-    """Branch and bound over the candidates, within the budget, if the lower bound is close enough."""
+    """Branch and bound over the candidates, within the budget, if the lower bound is close enough.
+
+    Better trees are first looked for in the neighbourhood. If the search closes all nodes, the gap is marked
+    as proved, and the case split becomes evidence.
+    """
     costs, graph, limits = task.costs, task.graph, task.tuning
     assert costs is not None
     close = gap.lower_bound >= task.incumbent_cost(gap) * limits.branching_bound

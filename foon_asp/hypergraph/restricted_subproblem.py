@@ -9,9 +9,9 @@ from foon_asp.hypergraph.h_values import Derivations, derive
 def restricted_subproblem(
     graph: GoalGraph, actions: set[int], cost: Callable[[int], int], max_actions: int
 ) -> tuple[Derivations, set[int]] | None:
-    """Add actions until they contain a tree; return their derivations, and the tree.
+    """Add actions until they contain a tree; return the h-values of their objects, and the tree.
 
-    Each round adds an achiever of each relevant object that is not reached; achievers with the fewest
+    Each round adds an achiever of each relevant object that is not reached. Achievers with the fewest
     non-initial preconditions come first. ``None`` if more than ``max_actions`` actions would be needed, or if
     there is no tree.
     """

@@ -37,7 +37,12 @@ _LP = _LpTolerance()
 
 
 class _Relaxation(NamedTuple):
-    """A tree, and the last LP solution: its rows, the values ``x`` of actions, and the weights of rows."""
+    """The result of a relaxation: a tree, and the last LP solution.
+
+    ``rows``: the rows of the LP, which are numbers of landmarks.
+    ``x``: the LP value of each action.
+    ``duals``: the dual of each of the rows.
+    """
 
     tree: frozenset[int]
     rows: Sequence[int]
@@ -65,7 +70,8 @@ class SharedLandmarks:
     def tighten(self, task: Task, excluded: frozenset[int], tree: frozenset[int]) -> Gap:
         """Return the gap of a question: a tree as good as ``tree`` or better, a bound, and the candidates.
 
-        Cuts are kept as evidence only if the gap stays open, since they are many and large.
+        Cuts are kept as evidence only if the gap stays open, since they are many and large. Where HiGHS
+        fails, the gap has ``tree`` and the bound 0.
         """
         relaxed = self._relax(task, excluded, tree)
         candidates = self._actions - excluded
@@ -100,6 +106,7 @@ class SharedLandmarks:
     def _relax(self, task: Task, excluded: frozenset[int], tree: frozenset[int]) -> _Relaxation | None:
         """Solve the relaxation for a question, until its value reaches the cost of the best tree found.
 
+        Adds known landmarks that the LP solution violates; if there are none, new ones, which are recorded.
         Also ends when no violated cut is found or time is up. ``None`` where HiGHS fails.
         """
         np, relaxation, targets = self._np, self._relaxation, self._targets(task)
@@ -153,7 +160,7 @@ class SharedLandmarks:
         return _Relaxation(tree, rows, solved.x, covering.duals())
 
     def _value_array(self, value_of_action: dict[int, float]) -> Any:
-        """Return an array of values by position; other actions have 0."""
+        """Return an array of the value of each action, by position; actions without a value have 0."""
         values = self._np.zeros(len(self._relaxation.actions))
         for action, value in value_of_action.items():
             values[self._position[action]] = value
@@ -170,7 +177,7 @@ class SharedLandmarks:
     def _record_reached(self, rows: Iterable[int]) -> None:
         """Record for new landmarks which objects can be reached without their actions.
 
-        A landmark of one object is a landmark of all objects that cannot be reached so.
+        A landmark of one object is a landmark of every object that cannot be reached so.
         """
         for row in rows:
             landmark = frozenset(self._relaxation.rows[row].tolist())

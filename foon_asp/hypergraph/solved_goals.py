@@ -1,4 +1,4 @@
-"""Answered questions about a network, by which others are answered faster."""
+"""Solved questions about a network, by which other questions are answered faster."""
 
 from contextlib import suppress
 from typing import TYPE_CHECKING
@@ -18,7 +18,7 @@ if TYPE_CHECKING:  # few questions need it
 class SolvedGoals:
     """Trees of solved questions that differ only in goals and removed units, and landmarks that they share.
 
-    Questions share landmarks from the first one on that greedy cuts do not solve: easier questions are solved
+    Landmarks are shared from the first question on that greedy cuts do not solve. Easier questions are solved
     faster one by one.
     """
 
@@ -65,7 +65,7 @@ class SolvedGoals:
         return None if self._landmarks is None else self._landmarks.costs
 
     def _tree_from_solved(self, task: Task) -> frozenset[int]:
-        """Return the best union of an achiever of the goal and trees of its preconditions.
+        """Return the best tree that is a union of an achiever of the goal and trees of its preconditions.
 
         These trees are known from solved questions, or follow h_add.
         """
@@ -85,9 +85,9 @@ class SolvedGoals:
         return frozenset(min(smallest, key=lambda tree: sum(map(costs, tree))))
 
     def _tree_without(self, task: Task, removed: frozenset[int]) -> frozenset[int] | None:
-        """Return a tree without the removed actions, from h_add and from the solved tree of the same goals.
+        """Return a tree without the removed actions; ``None`` if there is none.
 
-        ``None`` if there is no tree.
+        It is the better of two: one by h_add, and one from it and the solved tree of the same goals.
         """
         graph, costs, derivations = task.graph, task.costs, self._derivations
         assert costs is not None
@@ -101,7 +101,11 @@ class SolvedGoals:
         return frozenset(min(trees, key=lambda tree: sum(map(costs, tree))))
 
     def record(self, task: Task, gap: Gap | None) -> None:
-        """Store the tree of a proved gap; share landmarks from then on if greedy cuts did not prove it."""
+        """Store the tree of a proved gap; other gaps are ignored.
+
+        If greedy cuts did not prove it, landmarks are shared from then on. Nothing is shared where costs are
+        rounded, or where the question is not reduced by both ``bounds`` and ``dear``.
+        """
         if gap is None or not gap.proved:
             return
         self._trees[task.graph.goals] = gap.incumbent

@@ -10,10 +10,12 @@ from foon_asp.hypergraph.h_values import derive
 class Support:
     """A tree with the h_add values and best achievers of its objects, updated incrementally.
 
-    ``actions`` are the actions of the tree that are found by following best achievers from the goals; others
-    are removed at once. ``h_objects[o]`` is the h_add value of an object in use. When an action is removed, only
-    objects derived by it are derived anew, from the others, so that actions of a cycle do not support each
-    other.
+    ``actions``: the actions of the tree that are found by following best achievers from the goals. Others are
+    removed at once.
+    ``h_objects``: the h_add value of each object in use, by object.
+
+    When an action is removed, only objects derived by it are derived anew. They are derived from the other
+    objects, so that actions of a cycle do not support each other.
     """
 
     def __init__(self, graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int]) -> None:
@@ -36,13 +38,14 @@ class Support:
             self._supported[self._best_achiever[o]] += 1
 
     def _is_in_use(self, o: int) -> bool:
+        """Return whether an object is a goal or a precondition of an action."""
         return bool(o in self._goals or self._consumers.get(o))
 
     def is_replaceable(self, action: int) -> bool:
         """Return whether every add effect in use of an action has another achiever.
 
-        A tree with redundant actions has at least one replaceable action: the last, in an executable order,
-        of the actions that can be removed together.
+        If a tree has redundant actions, at least one is replaceable: of the actions that can be removed
+        together, the last in an executable order.
         """
         return all(len(self._achievers[o]) > 1 for o in self._graph.gives[action] if self._is_in_use(o))
 
@@ -76,10 +79,10 @@ class Support:
     def _rederive(
         self, lost: Collection[int], missing: dict[int, int]
     ) -> tuple[dict[int, tuple[int, int]], dict[int, int]]:
-        """Derive lost objects anew.
+        """Derive lost objects anew; return the new h_add values.
 
-        Returns the h_add value and achiever of each object, and the h_add values of actions. ``missing``
-        counts the lost preconditions of each action, and is changed in place.
+        Returns a pair of h_add value and best achiever for each object that is reached, and the h_add values
+        of actions. ``missing`` counts the lost preconditions of each action. It is changed in place.
         """
         rederived: dict[int, tuple[int, int]] = {}
         h_actions: dict[int, int] = {}

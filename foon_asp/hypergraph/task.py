@@ -21,7 +21,8 @@ class Task:
     ``coarse``: rough costs, for estimates.
     ``scope``: the actions that trees may have.
     ``costs``: exact costs; ``None`` if rates are too fine, and before the first tree.
-    ``below``: trees that cost less are wanted, even if they are no better than the incumbent.
+    ``below``: trees that cost less are wanted, even if they are no better than the incumbent. 0 for none.
+    ``random_source``: the random numbers of perturbation search, always from the same seed.
     """
 
     problem: Problem
