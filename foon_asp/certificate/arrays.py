@@ -17,10 +17,12 @@ from foon_asp.proof import ruled, verifier
 class Arrays:
     """A question about trees in numbers: units are actions, and taking a kitchen item may be an action.
 
-    With the objective ``kitchen``, no node is initial. Each item ``k`` then has an additional achiever
-    without preconditions and of cost 1: the action ``items[k]``. Otherwise, ``items`` is empty. The nodes and
-    steps of covered constraints come last; a step is an action of cost 0. ``forbidden`` are the units that
-    constraints remove, and ``limits`` are the limits of constraints. Without objectives, all costs are 0.
+    With the objective ``kitchen``, no node is initial. Each kitchen item ``k`` then has an additional
+    achiever without preconditions and of cost 1: the action ``items[k]``. Otherwise, ``items`` is empty.
+
+    Covered constraints may add nodes and steps. They come last; a step is an action of cost 0. ``forbidden``
+    are the units that constraints remove, and ``limits`` are the limits of constraints. Without objectives,
+    all costs are 0.
     """
 
     def __init__(self, problem: Problem, objectives: Sequence[Objective], covered: Coverage) -> None:
@@ -63,7 +65,7 @@ class Arrays:
 
     @property
     def limits(self) -> list[Limit]:
-        """The limits of constraints: the amount of each action, and the greatest sum."""
+        """The limits of constraints: pairs of the amount of each action and the greatest sum."""
         return [
             ({self._steps.get(member, member): amount for member, amount in amounts.items()}, max_amount)
             for amounts, max_amount in self.ruled.limits.values()
@@ -71,7 +73,7 @@ class Arrays:
 
     @cached_property
     def multiples(self) -> list[Fraction]:
-        """For each coordinate the greatest common divisor of all costs; 0 for rates and for measures."""
+        """The greatest common divisor of all costs at each coordinate; 0 for rates and for measures."""
         multiples: list[Fraction] = []
         all_costs = set(self.costs)
         for objective in self.objectives:
@@ -83,14 +85,14 @@ class Arrays:
         return multiples
 
     def multiple_json(self, coordinate: int) -> dict[str, str]:
-        """Return the JSON of the common divisor of all costs at a coordinate."""
+        """Return the JSON of the common divisor of all costs at a coordinate: ``{"units": "1"}``."""
         coordinates = [
             str(objective) for objective in self.objectives for _ in range(self.coordinate_count(objective))
         ]
         return {coordinates[coordinate]: fraction_text(self.multiples[coordinate])}
 
     def _add_own_limit(self, limit: Limit) -> None:
-        """Add a limit by user rules."""
+        """Add a limit by user rules, under the next number."""
         self.ruled.limits[self._first_own_limit + len(self.own_limits)] = ruled.Limit(*limit)
 
     def exceeded_limit(self, derivation: frozenset[int]) -> Limit | None:
@@ -102,12 +104,12 @@ class Arrays:
 
     @property
     def has_own_limits(self) -> bool:
-        """Whether the proof has to check its derivations against limits by user rules."""
+        """Whether limits by user rules may be found, so that the proof has to check its derivations."""
         return self._own_limits is not None
 
     @property
     def own_limits(self) -> dict[int, Limit]:
-        """The limits by user rules found so far, by their numbers."""
+        """The limits by user rules found so far, by number."""
         return {
             n: (limit.amounts, limit.max_sum)
             for n, limit in self.ruled.limits.items()
@@ -117,14 +119,14 @@ class Arrays:
     def barred_actions(self, used: frozenset[int], without: frozenset[int]) -> dict[int, frozenset[int]]:
         """Return the barred units of each constraint, by its number.
 
-        No tree with all used actions and none of ``without`` has a barred unit.
+        A tree with all used actions and none of ``without`` breaks the constraint if it has a barred unit.
         """
         return self.ruled.bars(self._units_among(used), without)
 
     def breaking_actions(self, derivation: frozenset[int]) -> list[int]:
-        """Return units of a derivation that together break a constraint, barred units first; else none.
+        """Return units of a derivation that together break a constraint; none if it breaks none.
 
-        The set is irreducible: the constraint bars no unit of a smaller set.
+        Barred units come first. The set is irreducible: the constraint bars no unit of a smaller set.
         """
         chosen = self._units_among(derivation)
         for barred in self.ruled.barred.values():
@@ -137,6 +139,7 @@ class Arrays:
         return []
 
     def _units_among(self, actions: frozenset[int]) -> frozenset[int]:
+        """Return the units among actions."""
         return frozenset(action for action in actions if action < len(self.problem.network))
 
     def coordinate_count(self, objective: Objective) -> int:
@@ -152,7 +155,7 @@ class Arrays:
         return [*units, *taking, *map(self._steps.__getitem__, sorted(steps))]
 
     def renumber_cases(self, cases: Cases) -> Cases:
-        """Return the branching cases of an answer, renumbered as actions; ``None`` for unknown cases.
+        """Return the case split of an answer with the actions of these arrays; ``None`` for unknown actions.
 
         In an answer, the action that takes an item has the number of units plus the item's id.
         """
@@ -168,7 +171,11 @@ class Arrays:
         )
 
     def vector_json(self, vector: Sequence[Fraction]) -> list[object]:
-        """Return the JSON of a cost or weight, one part an objective; raises like :func:`fraction_text`."""
+        """Return the JSON of a cost or weight, one part for each objective.
+
+        A part is a fraction as text or, for ``success``, the exponents by rate. Raises :class:`LimitError` as
+        :func:`fraction_text` does.
+        """
         if not self.objectives:
             return [fraction_text(vector[0])]
         parts: list[object] = []
@@ -183,7 +190,10 @@ class Arrays:
         return parts
 
     def action_json(self, action: int) -> dict[str, int]:
-        """Return the JSON of an action, by ids in the whole network."""
+        """Return the JSON of an action, by ids in the whole network: ``{"unit": 7}``.
+
+        The key is ``unit``, ``item`` or ``step``.
+        """
         network = self.problem.network
         if action < len(network):
             return {"unit": network.unit_number(action)}
@@ -193,17 +203,18 @@ class Arrays:
         return {"item": network.object_number(sorted(self.items)[action - len(network)])}
 
     def _rates(self) -> Iterable[Fraction]:
+        """Return the rates of all units."""
         return map(self.problem.rate, range(len(self.problem.network)))
 
     def _rate_and_costs(self, unit: int) -> Iterator[Fraction | int | None]:
-        """Yield the rate of a unit, ``None`` where rates do not count, and its additive costs."""
+        """Yield the rate of a unit and its additive costs; the rate is ``None`` where rates do not count."""
         yield self.problem.rate(unit) if self.rates else None
         for objective in self.objectives:
             if not multiplies(objective):
                 yield self.problem.figure(objective, unit)
 
     def _cost_vector(self, rate: Fraction | None, *counts: int | Fraction) -> Vector:
-        """Return a cost as a vector, from the rate and the other costs of an action."""
+        """Return a cost as a vector, from the rate and the additive costs of an action."""
         cost: list[Fraction] = []
         remaining = iter(counts)
         for objective in self.objectives:
@@ -215,7 +226,7 @@ class Arrays:
 
 
 def fraction_text(number: Fraction) -> str:
-    """Return a fraction as text; raises :class:`LimitError` for one that is too long."""
+    """Return a fraction as text, such as ``16/5``; raises :class:`LimitError` for one that is too long."""
     try:
         return str(number)
     except ValueError:  # Python writes no whole number of more than 4,300 digits

@@ -33,8 +33,10 @@ class NotBestError(Exception):
 class Certificate(NamedTuple):
     """A verified certificate with its claim.
 
-    ``claim`` is ``optimal``, ``bound`` or ``infeasible``. ``certified`` are the first objectives, as many as
-    the certificate proves; the other objectives rest on the solver alone.
+    ``content``: its JSON.
+    ``claim``: ``optimal``, ``bound`` or ``infeasible``.
+    ``certified``: the first objectives, as many as the certificate proves. The other objectives rest on the
+    solver alone.
     """
 
     content: dict[str, Any]
@@ -42,7 +44,7 @@ class Certificate(NamedTuple):
     certified: tuple[Objective, ...]
 
     def text(self) -> str:
-        """Return the certificate as JSON, a cut and a weight on each line."""
+        """Return the certificate as JSON text, with each cut and each weight on a line of its own."""
         lines = []
         for key, value in self.content.items():
             if key == "cuts" and value:
@@ -75,7 +77,7 @@ def certify(
         objectives: The objectives, the most important first.
         units: The tree, by unit ids in an executable order.
         covered: The user rules that the certificate states, and what they claim.
-        expired: Whether time is up.
+        expired: Returns whether time is up.
         cuts: Sets of object nodes with a goal in each, tried first (:attr:`foon_asp.asp.Outcome.cuts`).
         cases: The case split to begin with (``Outcome.cases``).
         subject: The whole network and its data, if the problem has only a part of it. The part then has all
@@ -132,6 +134,7 @@ def certify_infeasible(
     """Return a certificate that there is no tree; ``subject`` is as for :func:`certify`.
 
     ``None`` where some tree satisfies all covered constraints, and where no proof is found before time is up.
+    Also ``None`` where constraints are covered and units have rates of their own.
     """
     if covered.rules and problem.own_rates:
         return None
@@ -171,7 +174,7 @@ def _write_tree_certificate(
     subject: verifier.Subject | None,
     bound: Vector | None = None,
 ) -> Certificate | None:
-    """Return the certificate of a claim, in which each cut and each limit has a number.
+    """Return the certificate of a claim about trees; each cut and each limit gets a number in it.
 
     ``None`` where the numbers in the proof are too long for certificates.
     """
@@ -182,6 +185,7 @@ def _write_tree_certificate(
     own_numbers: dict[int, int] = {}
 
     def cut_number(cut: Cut) -> int:
+        """Return the number of a cut; a new cut gets the next number."""
         return cuts.setdefault(cut.objects, len(cuts))
 
     def limit_number(row: int) -> int:
@@ -234,7 +238,11 @@ def _write_tree_certificate(
 
 
 class Claimed(NamedTuple):
-    """The claim of a certificate; ``units`` are a tree or plan, and ``bound`` is written as JSON."""
+    """The claim of a certificate.
+
+    ``units`` are a tree or plan, and ``bound`` is a cost vector in JSON; each is ``None`` for a claim without
+    it.
+    """
 
     claim: str
     objectives: tuple[Objective, ...]
@@ -254,7 +262,8 @@ def write_certificate(
 ) -> Certificate | None:
     """Return a sealed and verified certificate; ``None`` where it is beyond the limits of the verifier.
 
-    For a measure, the certificate states only the costs of the units that the proof looks at.
+    For a measure, the certificate states only the costs of the units that the proof looks at. Raises
+    :class:`BugError` where the verifier refuses it.
     """
     network, (claim, objectives, units, bound) = problem.network, claimed
     try:
@@ -305,7 +314,7 @@ def _costs_json(problem: Problem, objectives: Sequence[Objective], units: Sequen
 
 
 def _seal_and_verify(certificate: Certificate, subject: verifier.Subject) -> verifier.Verified:
-    """Seal a certificate, and return what the verifier says that it proves."""
+    """Seal a certificate in place, and return what the verifier says that it proves."""
     content = certificate.content
     content["seal"] = verifier.seal(content)
     return verify_any(verifier.read_certificate(certificate.text()), subject)
@@ -333,7 +342,7 @@ def _measure_json(problem: Problem, objective: Objective) -> dict[str, Any]:
 
 
 def _units_by_cost(costs: Mapping[int, int | Fraction]) -> dict[str, list[int]]:
-    """Return the units of each cost."""
+    """Return the units of each cost, ascending, by the cost as text: ``{"16/5": [3, 8]}``."""
     listed: dict[str, list[int]] = {}
     for unit in sorted(costs):
         listed.setdefault(str(costs[unit]), []).append(unit)

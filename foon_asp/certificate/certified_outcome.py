@@ -28,11 +28,11 @@ def certify_outcome(
     If the certificate proves the whole claim, ``certificate`` becomes the kind of proof of the answer, and a
     plan that was found at a limit becomes optimal. If it proves only the first objectives, these are marked
     as certified. The answer stays unchanged where only a bound is proved, or where user rules are taken on
-    trust.
+    trust. The seconds that this takes are added to the answer's in any case.
 
-    Raises :class:`BugError` when a tree that the solver called optimal is not, and when answer and
-    certificate contradict each other. ``subject`` is the whole network if the network of the answer is a part
-    of it, as for :func:`~foon_asp.certificate.certify`.
+    ``subject`` is the whole network if the network of the answer is a part of it, as for
+    :func:`~foon_asp.certificate.certify`. Raises :class:`BugError` when a tree that the solver called optimal
+    is not, and when answer and certificate contradict each other.
     """
     began = time.perf_counter()
     covered = coverage(settings)
@@ -74,7 +74,10 @@ def _find_certificate(
     expired: Callable[[], bool],
     subject: Subject | None = None,
 ) -> Certificate | None:
-    """Return a certificate about the trees that keep to the covered rules; ``None`` where none is found."""
+    """Return a certificate about the trees that keep to the covered rules; ``None`` where none is found.
+
+    Raises :class:`BugError` where a tree is better than the optimal one of the answer.
+    """
     if outcome.problem.items is not None:
         return _find_plan_certificate(outcome, covered, expired)
     if outcome.status is Status.INFEASIBLE:
@@ -94,7 +97,10 @@ def _find_certificate(
 def _find_plan_certificate(
     outcome: Outcome, covered: Coverage, expired: Callable[[], bool]
 ) -> Certificate | None:
-    """Return a certificate about the plans that keep to the covered rules, also of a plan at a limit."""
+    """Return a certificate about the plans that keep to the covered rules; ``None`` where none is found.
+
+    It may also be about a plan that was found at a limit.
+    """
     if outcome.status is Status.INFEASIBLE:
         return certify_no_plan(outcome.problem, covered, expired)
     if outcome.units is None:
@@ -105,8 +111,8 @@ def _find_plan_certificate(
 def _contradiction(outcome: Outcome, certificate: Certificate, covered: Coverage) -> str | None:
     """Return why an answer and a certificate contradict each other; ``None`` where they do not.
 
-    The verifier has accepted the certificate, but does not know the answer. So this compares goals, rules and
-    claim of the certificate with those of the answer.
+    The verifier has accepted the certificate, but does not know the answer. So goals and claim of the
+    certificate are compared with those of the answer here.
     """
     problem, content = outcome.problem, certificate.content
     goals = tuple(goal["id"] for goal in content["goals"])
@@ -142,7 +148,7 @@ def _cost_contradiction(
 
 
 def _read_vector(arrays: Arrays, stated: Sequence[Any]) -> Vector:
-    """Return a cost from a bound as certificates write it."""
+    """Return a cost vector from the JSON of a bound."""
     vector: list[Fraction] = []
     for objective, stated_part in zip(arrays.objectives, stated, strict=True):
         if multiplies(objective):
@@ -171,7 +177,7 @@ def _wrong_answer(outcome: Outcome, settings: Settings, why: str) -> BugError:
 
 
 def _tree_text(outcome: Outcome, units: Sequence[int]) -> str:
-    """Return a text that describes a tree and its costs, for the message about a contradiction."""
+    """Return a tree and its costs in words, for the message about a contradiction."""
     return f"the units {list(units)} ({_costs_text(outcome.problem, units)})"
 
 

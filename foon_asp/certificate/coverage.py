@@ -56,7 +56,7 @@ class Coverage(NamedTuple):
         return self.ruled(problem).removed
 
     def rules_beyond_removal(self) -> list[str]:
-        """Return the names of rules that may do more than remove units."""
+        """Return the names of covered rules that may do more than remove units."""
         return [rule["rule"] for rule in self.rules if not LIBRARY[rule["rule"]].removes]
 
 
@@ -68,7 +68,7 @@ def coverage(settings: Settings) -> Coverage:
 
     Ready-made constraints are covered, with the values that were set. Other rules only exclude trees, so a
     bound without them still holds. A replaced encoding may do anything, and is named as not covered. Under a
-    replaced encoding, only rules that remove units are covered.
+    replaced encoding, only ready-made rules that remove units are covered.
     """
     constants = dict(setting.partition("=")[::2] for setting in settings.constants)
     uses: list[tuple[str, Mapping[str, str]]] = []
@@ -129,7 +129,8 @@ def _parsed_value(written: str, kind: type) -> Any:
 def _facts_of_rules(constraint: Constraint, among_others: bool = False) -> dict[str, set[str]]:
     """Return the values that rules list as facts, by predicate.
 
-    If the rules also have other statements, the result is empty, unless ``among_others`` is set.
+    If the rules also have other statements, the result is empty. With ``among_others``, other statements are
+    ignored instead.
     """
     from foon_asp.encoding import encoding  # noqa: PLC0415 - they load clingo
     from foon_asp.rules import stating  # noqa: PLC0415 - they load clingo
@@ -155,6 +156,7 @@ def _name_with_digest(constraint: Constraint) -> str:
 
 
 def _sha256(content: bytes) -> str:
+    """Return the SHA-256 digest of a text in bytes, in hexadecimal."""
     return hashlib.sha256(content).hexdigest()
 
 
@@ -164,7 +166,7 @@ def without_unused_claims(
     """Return the rules, with only those claims about user rules that a proof uses.
 
     A claim that units are removed is used if all these units are ``members`` of cuts. All other claims
-    remain. ``limits`` are the limits that the proof uses.
+    remain. ``limits`` are the limits that the proof uses; they replace those of the user rules.
     """
     kept, stated = set(members), [_limit_json(*limit) for limit in limits]
     return tuple(

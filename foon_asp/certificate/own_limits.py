@@ -19,8 +19,9 @@ from foon_asp.rules.rules import Rules
 class OwnLimits:
     """Search for limits that follow from antimonotone user rules; ``found_limits`` are those found so far.
 
-    At first, these are the sums that rules limit. Each minimal set of units that breaks a rule gives another
-    limit: a tree lacks at least one unit of the set.
+    An antimonotone rule that holds of a tree also holds of smaller ones. At first, the limits found are the
+    sums that rules limit. Each minimal set of units that breaks a rule gives another limit: a tree lacks at
+    least one unit of the set.
     """
 
     def __init__(
@@ -69,7 +70,7 @@ class OwnLimits:
     def exceeded_limit(self, units: frozenset[int]) -> Limit | None:
         """Return a limit that units exceed, and record it; ``None`` where they keep to the rules.
 
-        Raises ``KeyboardInterrupt`` where time is up.
+        It is found by clingo. Raises ``KeyboardInterrupt`` where time is up.
         """
         if not self._has_user_rules:
             return None

@@ -76,9 +76,9 @@ def check_with_clingo(
 ) -> None:
     """Check with clingo the claims that a certificate of a problem takes on trust.
 
-    Clingo searches for a tree that keeps to the rules and violates a claim, and checks that the certificate's
-    tree keeps to the rules. Raises :class:`RefusedError` where a claim is false or clingo cannot run, and
-    :class:`LimitError` where it does not finish.
+    Clingo searches for a tree that keeps to the rules and violates a claim. It also checks that the
+    certificate's tree keeps to the rules. Raises :class:`RefusedError` where a claim is false or clingo
+    cannot run, and :class:`LimitError` where it does not finish.
     """
     texts = [RuleText(file["text"]) for file in own_rule["files"]]
     constraints = (*texts, *map(named_constraint, own_rule["library"]))
@@ -99,7 +99,10 @@ def check_with_clingo(
 
 
 def _has_tree(content: Mapping[str, Any], problem: Problem, settings: Settings, rules: str) -> bool:
-    """Return whether clingo finds a tree of executable units that keeps to the additional ``rules``."""
+    """Return whether clingo finds a tree of executable units that keeps to the additional ``rules``.
+
+    Raises :class:`RefusedError` where clingo cannot run, and :class:`LimitError` where it does not finish.
+    """
     ours = set(Objective)
     objectives = tuple(Objective(name) for name in content["objective"] if name in ours)
     try:
@@ -112,6 +115,10 @@ def _has_tree(content: Mapping[str, Any], problem: Problem, settings: Settings, 
 
 
 def _violated_claim(used: list[int], without: list[int]) -> str:
+    """Return the body of a clingo rule that holds where a claim is violated.
+
+    The claim is that no tree has all ``used`` units and none of ``without``.
+    """
     literals = [*(f"use({unit})" for unit in used), *(f"not use({unit})" for unit in without)]
     return ", ".join(literals) or "#true"
 
@@ -128,15 +135,17 @@ def _exceeded_limit(amounts: Mapping[str, Sequence[int]], max_sum: int) -> str:
 
 
 def _is_library(constraint: Constraint) -> bool:
+    """Return whether a constraint is one of our own, ready-made ones."""
     return isinstance(constraint, LibraryUse) or (isinstance(constraint, Path) and is_own(constraint))
 
 
 def _library_name(constraint: Constraint) -> str:
+    """Return the name of a ready-made constraint, with its values if these were given with it."""
     return constraint.stem if isinstance(constraint, Path) else str(constraint)
 
 
 def _text_with_digest(constraint: Constraint) -> dict[str, str]:
-    """Return the text of rules with its digest; a file that includes others is expanded."""
+    """Return the name, the digest and the text of rules; a file that includes others is expanded."""
     if isinstance(constraint, Path):
         is_alone = len(included_files(constraint)) == 1
         text = constraint.read_text("utf-8") if is_alone else read_encoding(constraint).text

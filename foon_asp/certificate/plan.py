@@ -59,9 +59,9 @@ def certify_plan(
 ) -> Certificate | None:
     """Certify that a plan is optimal, by as many of the first objectives as are proved, or certify a bound.
 
-    ``plan`` lists unit ids in the order of execution. Return ``None`` where nothing is proved before time is
-    up, and where an objective needs rates of units that differ from those of their motions. An objective that
-    needs rates is not proved if a rate is 0.
+    ``plan`` lists unit ids in the order of execution. Returns ``None`` where nothing is proved before time is
+    up. An objective that needs rates is not proved if a rate is 0. Units may have rates that differ from
+    those of their motions; then the result is ``None`` if an objective needs rates, or if rules are covered.
     """
     if problem.own_rates and (covered.rules or any(o.row.needs is Known.RATES for o in objectives)):
         return None
@@ -131,10 +131,11 @@ class _PlanQuestion:
     # --- finding
 
     def prove(self, objective: Objective, before: Sequence[Objective]) -> tuple[Any, Vector | None] | None:
-        """Return a proof that no plan as good by earlier objectives costs less than the incumbent.
+        """Return the JSON of a proof that no plan costs less than the incumbent by an objective, and a bound.
 
-        For the first objective, a smaller bound may be proved instead. The second value is then this bound,
-        and otherwise ``None``. Return ``None`` if nothing is proved.
+        Only plans as good by the objectives ``before`` count. For the first objective, a smaller bound may be
+        proved instead. The second value is then this bound, and otherwise ``None``. Returns ``None`` if
+        nothing is proved.
         """
         kept = [self._level(earlier) for earlier in before]
         if any(level is None for level in kept):
@@ -156,7 +157,7 @@ class _PlanQuestion:
         return stated.proof(proof), None if least == claim.least else least
 
     def prove_none(self) -> Any | None:
-        """Return a proof that there is no plan; ``None`` where none is found."""
+        """Return the JSON of a proof that there is no plan; ``None`` where none is found."""
         problem, ruled = self._problem, self._ruled
         if ruled.never:
             return {}
@@ -184,10 +185,11 @@ class _PlanQuestion:
         return prover
 
     def _unit_costs(self, objective: Objective) -> list[Fraction]:
+        """Return the cost of each relevant unit by an objective, or its rate."""
         return list(map(Fraction, self._problem.figures(objective, self._units)))
 
     def _claim(self, objective: Objective) -> Claim:
-        """Return the claim that no plan costs less than the incumbent."""
+        """Return the claim that no plan costs less than the incumbent by an objective."""
         problem, figures = self._problem, self._unit_costs(objective)
         if multiplies(objective):
             rates = sorted({rate for rate in figures if rate != 1}) or [_HALF]
@@ -211,7 +213,8 @@ class _PlanQuestion:
     def _level(self, objective: Objective) -> tuple[Level, int] | None:
         """Return the level of the incumbent by an objective, in integers, and the scale of the integers.
 
-        ``None`` where the integers would be too long.
+        A level says that a plan costs no more than the incumbent. ``None`` where the integers would be too
+        long.
         """
         figures = self._unit_costs(objective)
         if multiplies(objective):
@@ -228,7 +231,7 @@ class _PlanQuestion:
     # --- writing
 
     def cut_number(self, objects: Iterable[int]) -> int:
-        """Return the number of a cut, which is added to the certificate."""
+        """Return the number of a cut in the certificate, to which it is added if it is new."""
         return self._cuts.setdefault(tuple(sorted(set(objects))), len(self._cuts))
 
     def use_balance(self, o: int) -> int:
@@ -237,7 +240,10 @@ class _PlanQuestion:
         return o
 
     def rounded_number(self, condition: Rounded) -> int:
-        """Return the number of a rounded condition, which is added to the certificate after its parts."""
+        """Return the number of a rounded condition in the certificate.
+
+        A new one is added, after the conditions that it is made of.
+        """
         number = next((i for i, other in enumerate(self._rounded) if other is condition), None)
         if number is not None:
             return number
@@ -256,7 +262,11 @@ class _PlanQuestion:
         return len(self._rounded) - 1
 
     def count_reference(self, condition: Condition) -> tuple[str, int, Fraction]:
-        """Return kind and number of a condition on counts alone, and the factor to scale its weight by."""
+        """Return how the certificate refers to a condition on counts alone, as a kind and a number.
+
+        The third value is the factor by which the weight of the condition is multiplied. The condition is
+        recorded as used.
+        """
         if isinstance(condition, Balance):
             return "balance", self.use_balance(condition.object), Fraction(1)
         if isinstance(condition, Sum):
@@ -266,7 +276,7 @@ class _PlanQuestion:
         return "rounded", self.rounded_number(condition), condition.scale
 
     def unit(self, action: int) -> int:
-        """Return the unit of an action."""
+        """Return the id of the unit that an action is."""
         return self._units[action]
 
     def limit_and_scale(self, number: int) -> tuple[int, int]:
@@ -277,8 +287,8 @@ class _PlanQuestion:
     def _unreachable_nodes(self) -> list[int]:
         """Return unreachable nodes, which prove that no plan executes certain irrelevant units.
 
-        These are the units that could cross a cut or achieve a balanced node, and the achievers of the
-        returned nodes. Each has one of the returned nodes as a precondition.
+        Each of these units has one of the returned nodes as a precondition. They are the units that could
+        cross a cut or achieve a balanced node, and the achievers of the returned nodes.
         """
         flows, units, removed = self._problem.flows, set(self._units), self._ruled.removed
         touched = {o for cut in self._cuts for o in cut} | self._balanced
@@ -300,7 +310,10 @@ class _PlanQuestion:
         return [unit for unit in self._problem.makers[o] if o in self._problem.flows[unit].adds]
 
     def _amounts_json(self) -> list[list[Any]]:
-        """Return the amounts of all units of the data."""
+        """Return the JSON of the amounts of all units of the data: a unit, its inputs and its outputs.
+
+        Units are left out if no amounts are stated for them.
+        """
         network = self._problem.network
         by_id = ((network.unit_id(unit), sides) for unit, sides in self._problem.amounts.items())
         return [
@@ -317,7 +330,7 @@ class _PlanQuestion:
         plan: Sequence[int] | None = None,
         bound: Sequence[Vector] | None = None,
     ) -> Certificate | None:
-        """Write a certificate that is verified; ``None`` where that is beyond the limits."""
+        """Return a verified certificate; ``None`` where it is beyond the limits of the verifier."""
         problem = self._problem
         items, network = problem.items, problem.network
         assert items is not None
@@ -354,7 +367,12 @@ class _PlanQuestion:
 
 
 class _ProofWriter:
-    """Writer of proofs by counts as JSON."""
+    """Writer of proofs by counts as JSON.
+
+    ``order``: the order of costs by an objective that multiplies rates, else ``None``.
+    ``levels``, ``scales``: the levels of earlier objectives, and the scales of their integers.
+    ``columns``: the item of each column that is not a unit.
+    """
 
     def __init__(
         self,
@@ -368,7 +386,7 @@ class _ProofWriter:
         self._levels = [(level, scale) for level, scale in zip(levels, scales, strict=True)]
 
     def proof(self, proof: CountProof) -> Any:
-        """Return the JSON of a proof."""
+        """Return the JSON of a proof, with its branches."""
         if isinstance(proof, Split):
             item = self._columns.get(proof.column)
             branch = {"unit": self._question.unit(proof.column)} if item is None else {"item": item}
@@ -386,7 +404,10 @@ class _ProofWriter:
         }
 
     def _reference(self, condition: Condition) -> tuple[str, tuple[int, ...], int | Fraction]:
-        """Return the kind and key of a condition in a certificate, and the factor of its weight there."""
+        """Return how the certificate refers to a condition, as a kind and a key.
+
+        The third value is the factor by which the weight of the condition is multiplied.
+        """
         question = self._question
         if isinstance(condition, Landmark):
             cut = question.cut_number(condition.objects)
@@ -404,7 +425,7 @@ class _ProofWriter:
 
 
 def weight_json(weight: Vector, order: Lexicographic | None) -> str | dict[str, str]:
-    """Return the JSON of a weight by an objective: a number, or the exponents of rates."""
+    """Return the JSON of a weight by an objective: a number as text, or the exponents by rate."""
     rates = None if order is None else order.levels[0]
     if rates is None:
         return fraction_text(weight[0])
@@ -412,7 +433,7 @@ def weight_json(weight: Vector, order: Lexicographic | None) -> str | dict[str, 
 
 
 def _minus_log_bound(rate: Fraction, up: bool) -> Fraction:
-    """Return an upper or lower bound of ``-log(rate)``, in 60 digits."""
+    """Return a bound of ``-log(rate)`` in 60 digits: an upper one if ``up``, else a lower one."""
     if rate == 1:
         return Fraction(0)
     about, off = minus_log(rate, 60)
@@ -420,4 +441,5 @@ def _minus_log_bound(rate: Fraction, up: bool) -> Fraction:
 
 
 def _fine(rate: Fraction, up: bool) -> int:
+    """Return a bound of ``-log(rate)`` as an integer, scaled by ``LOGARITHM_SCALE`` and rounded down."""
     return math.floor(LOGARITHM_SCALE * _minus_log_bound(rate, up))

@@ -22,17 +22,19 @@ def extend_tree(
 
     They are derived by h_add. ``None`` where no extension is found among ``max_actions`` actions.
     """
-    goal_graph = _towards_required(graph)
+    required_graph = _graph_of_required(graph)
     remaining_cost = _cost_without(tree, cost)
     candidates = {
         *tree,
         *neighbourhood(
-            goal_graph, range(len(graph.needs)), remaining_cost, sum(map(cost, tree)), enough=_FIRST
+            required_graph, range(len(graph.needs)), remaining_cost, sum(map(cost, tree)), enough=_FIRST
         ),
     }
-    extension = derive(goal_graph, candidates, remaining_cost, h_add=True).tree(goal_graph, goal_graph.goals)
+    extension = derive(required_graph, candidates, remaining_cost, h_add=True).tree(
+        required_graph, required_graph.goals
+    )
     if extension is None:
-        narrowed = restricted_subproblem(goal_graph, candidates, remaining_cost, max_actions)
+        narrowed = restricted_subproblem(required_graph, candidates, remaining_cost, max_actions)
         extension = None if narrowed is None else narrowed[1]
     return None if extension is None else {*tree, *extension}
 
@@ -50,10 +52,10 @@ def actions_of_extensions(
     belong to the extension, so they count in full. Free actions of the derivation count as 0. Where time is
     up, the superset is larger.
     """
-    goal_graph, remaining_cost = _towards_required(graph), _cost_without(free, cost)
+    required_graph, remaining_cost = _graph_of_required(graph), _cost_without(free, cost)
     all_actions = range(len(graph.needs))
     remaining = neighbourhood(
-        goal_graph,
+        required_graph,
         all_actions,
         cost,
         limit,
@@ -62,14 +64,16 @@ def actions_of_extensions(
     )
     while not expired():
         derivations = derive(graph, remaining.union(free), remaining_cost, h_add=False)
-        nearer = neighbourhood(goal_graph, remaining, cost, limit, derivations.h_actions, min_reduced_cost=1)
+        nearer = neighbourhood(
+            required_graph, remaining, cost, limit, derivations.h_actions, min_reduced_cost=1
+        )
         if len(nearer) == len(remaining):
             break
         remaining = nearer
     return remaining
 
 
-def _towards_required(graph: GoalGraph) -> GoalGraph:
+def _graph_of_required(graph: GoalGraph) -> GoalGraph:
     """Return the graph with the required sets as its only goals."""
     return replace(graph, goals=tuple(graph.required), known_makers=graph.makers)
 
