@@ -131,7 +131,7 @@ def test_each_estimate_alone_leads_to_a_better_tree(
 
 
 @pytest.mark.parametrize(
-    ("prices", "shares", "left", "expected"),
+    ("prices", "lp_values", "left", "expected"),
     [
         # only what the relaxed solution lacks, added up (3005 and 3003), leads to what is apart
         ([2, 3, 3, 4, 6, 3, 1], [2.0, 0.75, 0.25, 2.0, 0.5, 1.25, 1.25], [0, 1, 1, 0, 2, 2, 2], APART),
