@@ -80,8 +80,10 @@ class Arrays:
             additive = not multiplies(objective) and objective not in self.problem.measures
             for i in range(len(multiples), len(multiples) + self.coordinate_count(objective)):
                 costs = {cost[i] for cost in all_costs} if additive else ()
-                below = math.lcm(*(cost.denominator for cost in costs))
-                multiples.append(Fraction(math.gcd(*(int(cost * below) for cost in costs)), below))
+                denominator = math.lcm(*(cost.denominator for cost in costs))
+                multiples.append(
+                    Fraction(math.gcd(*(int(cost * denominator) for cost in costs)), denominator)
+                )
         return multiples
 
     def multiple_json(self, coordinate: int) -> dict[str, str]:

@@ -84,10 +84,10 @@ def certify(
             achievers of each node that is needed and not available, and there are no constraints.
 
     Returns:
-        The certificate. Under constraints that are not covered, it proves a bound on all trees only. ``None``
-        if time is up before a proof is found; if an objective needs rates, and one is 0 or is not the rate
-        of its motion; and if the proof is beyond the limits of ``verify`` (products of rates too close to
-        be compared, or numbers too long to be written).
+        The certificate. Under constraints that are not covered, it may prove only a bound on all trees.
+        ``None`` if time is up before a proof is found. Also ``None`` if an objective needs rates, and one is
+        0 or is not the rate of its motion. Also ``None`` if the proof is beyond the limits of ``verify``:
+        products of rates too close to be compared, or numbers too long to be written.
 
     Raises:
         NotBestError: if the tree is not optimal, and no constraint is uncovered.
@@ -181,7 +181,7 @@ def _write_tree_certificate(
     problem, network = arrays.problem, arrays.problem.network
     subject = subject or subject_of(problem)
     cuts: dict[tuple[int, ...], int] = {}
-    limit_numbers, own = list(arrays.ruled.limits), arrays.own_limits
+    limit_numbers, own_limits = list(arrays.ruled.limits), arrays.own_limits
     own_numbers: dict[int, int] = {}
 
     def cut_number(cut: Cut) -> int:
@@ -191,7 +191,9 @@ def _write_tree_certificate(
     def limit_number(row: int) -> int:
         """Return the number of a limit; limits by user rules are numbered anew, after the rules."""
         index = limit_numbers[row]
-        return len(covered.rules) + own_numbers.setdefault(index, len(own_numbers)) if index in own else index
+        if index not in own_limits:
+            return index
+        return len(covered.rules) + own_numbers.setdefault(index, len(own_numbers))
 
     def packing_json(packing: Packing) -> dict[str, object]:
         """Return the JSON of a cost partition."""
@@ -228,7 +230,7 @@ def _write_tree_certificate(
         return None
     graph = arrays.graph
     members = (u for cut in cuts for o in cut for u in graph.makers[o] if {*cut}.isdisjoint(graph.needs[u]))
-    limits = [own[index] for index in own_numbers]
+    limits = [own_limits[index] for index in own_numbers]
     rules = without_unused_claims(covered.rules, members, limits) if covered.partial else covered.rules
     numbered = [list(map(network.object_number, objects)) for objects in cuts]
     claimed = Claimed(claim, arrays.objectives, units, least)
@@ -321,7 +323,10 @@ def _seal_and_verify(certificate: Certificate, subject: verifier.Subject) -> ver
 
 
 def subject_of(problem: Problem) -> verifier.Subject:
-    """Return the data that certificates of a problem over a whole network are about."""
+    """Return the data that certificates of a problem are about: its network, kitchen, rates and the like.
+
+    The problem has to be over a whole network, not a part of one.
+    """
     return verifier.Subject(
         *(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices),
         amounts=problem.amounts,

@@ -80,21 +80,21 @@ def coverage(settings: Settings) -> Coverage:
             uses.append((stem, constraint.constants if isinstance(constraint, LibraryUse) else constants))
         else:
             others.append(constraint)
-    read = {name for stem, _ in uses for name in LIBRARY[stem].values}
-    facts: dict[str, set[str]] = {name: set() for name in LISTED if name in read}
+    read_names = {name for stem, _ in uses for name in LIBRARY[stem].values}
+    facts: dict[str, set[str]] = {name: set() for name in LISTED if name in read_names}
     for stem, constants_given in uses:  # what one use lists, the others read
         for name in facts.keys() & LIBRARY[stem].values.keys():
             facts[name] |= {string_constant(constants_given.get(LISTED[name], ""))} - {""}
     if "heats" in facts:  # which begins with motions of the ready-made constraint
         facts["heats"] |= _facts_of_rules(find_constraint(Path("never_heated")), among_others=True)["heats"]
-    named: list[str] = []
+    uncovered: list[str] = []
     for constraint in others:
-        listed = _facts_of_rules(constraint) if facts else {}
-        if listed and listed.keys() <= facts.keys():
-            for name, listed_values in listed.items():
+        listed_facts = _facts_of_rules(constraint) if facts else {}
+        if listed_facts and listed_facts.keys() <= facts.keys():
+            for name, listed_values in listed_facts.items():
                 facts[name] |= listed_values
         else:
-            named.append(_name_with_digest(constraint))
+            uncovered.append(_name_with_digest(constraint))
     rules: dict[str, Rule] = {}
     for stem, constants_given in uses:
         kinds = LIBRARY[stem].values.items()
@@ -112,10 +112,10 @@ def coverage(settings: Settings) -> Coverage:
         for name in LIBRARY[stem].values
     }
     if settings.replaced is not None:
-        named.append(f"encodings {settings.replaced.name}")
-    named += [f"{name}={value}" for name, value in constants.items() if name not in used_constants]
+        uncovered.append(f"encodings {settings.replaced.name}")
+    uncovered += [f"{name}={value}" for name, value in constants.items() if name not in used_constants]
     return Coverage(
-        tuple(rules[text] for text in sorted(rules)), tuple(sorted(set(map(_escape_unprintable, named))))
+        tuple(rules[text] for text in sorted(rules)), tuple(sorted(set(map(_escape_unprintable, uncovered))))
     )
 
 
@@ -127,7 +127,7 @@ def _parsed_value(written: str, kind: type) -> Any:
 
 
 def _facts_of_rules(constraint: Constraint, among_others: bool = False) -> dict[str, set[str]]:
-    """Return the values that rules list as facts, by predicate.
+    """Return the values that rules list as facts, by predicate: ``{"motion": {"stir"}}``.
 
     If the rules also have other statements, the result is empty. With ``among_others``, other statements are
     ignored instead.
@@ -182,7 +182,7 @@ def without_unused_claims(
 
 
 def _limit_json(amounts: Mapping[int, Fraction], max_sum: Fraction) -> list[Any]:
-    """Return the JSON of a limit: units by their amount, and the greatest sum."""
+    """Return the JSON of a limit: units by their amount, and the greatest sum, as ``[{"1": [3, 8]}, 1]``."""
     units: dict[str, list[int]] = {}
     for unit in sorted(amounts):
         units.setdefault(str(amounts[unit]), []).append(unit)

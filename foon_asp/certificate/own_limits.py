@@ -29,10 +29,10 @@ class OwnLimits:
         problem: Problem,
         settings: Settings,
         rules: Rules,
-        own: frozenset[Constraint],
+        user_constraints: frozenset[Constraint],
         covered: Iterable[Limit],
     ) -> None:
-        """Read the rules of a question, of which the constraints ``own`` are user rules.
+        """Read the rules of a question, of which the constraints ``user_constraints`` are user rules.
 
         Limits that follow from the ``covered`` ones are left out.
         """
@@ -41,13 +41,15 @@ class OwnLimits:
             settings.constraints, settings.constants, soft=True, deadline=settings.begun
         )
         shrinking = {rule.source for rule in rules.unsettled if rule.kind in {Kind.FACT, Kind.SHRINKING}}
-        user_constraints = {c.number: 1 for c in numbered if c.constraint in own and c.source in shrinking}
-        relaxed = relaxed._replace(rules=relaxed.rules + write_soft(user_constraints))
+        weights = {
+            c.number: 1 for c in numbered if c.constraint in user_constraints and c.source in shrinking
+        }
+        relaxed = relaxed._replace(rules=relaxed.rules + write_soft(weights))
         self._settings = settings._replace(constraints=(), relaxed=relaxed)
         program = assemble(self._settings, lambda _: None)
         others = program.files[len(ENCODING_FILES) :]
         self._program = program._replace(files=(question_encoding("breaking_units.lp"), *others))
-        self._has_user_rules = bool(user_constraints)
+        self._has_user_rules = bool(weights)
         self._all_local = all(rule.local for rule in rules.rules if rule.source in shrinking)
         self.found_limits: list[Limit] = []
         if self._has_user_rules:
@@ -58,12 +60,13 @@ class OwnLimits:
                 ({u: Fraction(n) for u, n in sum_limit.weights.items() if n}, sum_limit.bound)
                 for sum_limit in sums
             ]
-            stated = [*covered]
+            covered_limits = [*covered]
             self.found_limits = [
                 (amounts, Fraction(max_sum))
                 for amounts, max_sum in limits
                 if not any(
-                    m <= max_sum and all(a.get(u, 0) >= n for u, n in amounts.items()) for a, m in stated
+                    m <= max_sum and all(a.get(u, 0) >= n for u, n in amounts.items())
+                    for a, m in covered_limits
                 )
             ]
 
@@ -84,13 +87,16 @@ class OwnLimits:
             self._program,
             tuple(sorted(seen)),
         )
-        ended = question.run(write_given(list(map(network.unit_number, sorted(units)))))
-        if ended.units is None:
-            if not ended.exhausted:
+        result = question.run(write_given(list(map(network.unit_number, sorted(units)))))
+        if result.units is None:
+            if not result.exhausted:
                 self._deadline.check()
                 raise KeyboardInterrupt
             return None
-        fewest = {network.unit_of_number(number) for number in ended.units}
-        limit: Limit = ({unit: Fraction(1) for unit in sorted(units & fewest)}, Fraction(len(fewest) - 1))
+        breaking_units = {network.unit_of_number(number) for number in result.units}
+        limit: Limit = (
+            {unit: Fraction(1) for unit in sorted(units & breaking_units)},
+            Fraction(len(breaking_units) - 1),
+        )
         self.found_limits.append(limit)
         return limit

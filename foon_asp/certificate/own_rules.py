@@ -135,7 +135,7 @@ def _exceeded_limit(amounts: Mapping[str, Sequence[int]], max_sum: int) -> str:
 
 
 def _is_library(constraint: Constraint) -> bool:
-    """Return whether a constraint is one of our own, ready-made ones."""
+    """Return whether a constraint is ready-made."""
     return isinstance(constraint, LibraryUse) or (isinstance(constraint, Path) and is_own(constraint))
 
 

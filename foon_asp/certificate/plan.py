@@ -44,7 +44,7 @@ _HALF = Fraction(1, 2)
 
 
 def covered_for_plans(covered: Coverage) -> Coverage:
-    """Return the coverage with the rules that certificates of plans cannot check moved to ``not_covered``."""
+    """Return the coverage for plans: rules that their certificates cannot check go to ``not_covered``."""
     rules = tuple(rule for rule in covered.rules if rule["rule"] in PLAN_RULES)
     others = {verifier.canonical(rule) for rule in covered.rules if rule not in rules and rule["rule"] != OWN}
     return Coverage(rules, tuple(sorted({*covered.not_covered, *others})))
@@ -179,8 +179,11 @@ class _PlanQuestion:
         flows: Flows = flows_of(self._problem, self._units)
         limits = [limit for _, limit, _ in self._limits]
         prover = PlanProver(flows, (), limits, derivation, expired=self._expired)
-        ruled, places = self._ruled, {unit: a for a, unit in enumerate(self._units)}
-        makers = {goal: tuple(places[u] for u in ruled.makers[goal] if u in places) for goal in ruled.goals}
+        ruled, actions_by_unit = self._ruled, {unit: a for a, unit in enumerate(self._units)}
+        makers = {
+            goal: tuple(actions_by_unit[u] for u in ruled.makers[goal] if u in actions_by_unit)
+            for goal in ruled.goals
+        }
         prover.require([Landmark(members, objects=(goal,)) for goal, members in makers.items()])
         return prover
 
@@ -218,7 +221,7 @@ class _PlanQuestion:
         """
         figures = self._unit_costs(objective)
         if multiplies(objective):
-            costs = [_fine(rate, up=False) for rate in figures]
+            costs = [_scaled_minus_log(rate, up=False) for rate in figures]
             max_cost = sum(_minus_log_bound(self._problem.rate(unit), up=True) for unit in self._plan)
             return Level(Measure(costs), Fraction(0), math.ceil(LOGARITHM_SCALE * max_cost)), LOGARITHM_SCALE
         cost = Fraction(self._problem.costs(self._plan).measure(objective))
@@ -291,16 +294,18 @@ class _PlanQuestion:
         cross a cut or achieve a balanced node, and the achievers of the returned nodes.
         """
         flows, units, removed = self._problem.flows, set(self._units), self._ruled.removed
-        touched = {o for cut in self._cuts for o in cut} | self._balanced
-        own = self._ruled.makers
-        touched -= self._problem.endless  # of which only taking them crosses a cut
-        makers = (own[o] if o in own else self._achievers(o) for o in sorted(touched))
+        proof_nodes = {o for cut in self._cuts for o in cut} | self._balanced
+        makers_by_rule = self._ruled.makers
+        proof_nodes -= self._problem.endless  # of which only taking them crosses a cut
+        makers = (
+            makers_by_rule[o] if o in makers_by_rule else self._achievers(o) for o in sorted(proof_nodes)
+        )
         waiting = [u for units_of in makers for u in units_of if u not in units and u not in removed]
         unreached: set[int] = set()
         while waiting:
-            asks = flows[waiting.pop()].asks
-            if unreached.isdisjoint(asks):
-                lacking = next(o for o in asks if not self._reached.available[o])
+            preconditions = flows[waiting.pop()].asks
+            if unreached.isdisjoint(preconditions):
+                lacking = next(o for o in preconditions if not self._reached.available[o])
                 unreached.add(lacking)
                 waiting += (unit for unit in self._achievers(lacking) if unit not in removed)
         return sorted(unreached)
@@ -436,10 +441,13 @@ def _minus_log_bound(rate: Fraction, up: bool) -> Fraction:
     """Return a bound of ``-log(rate)`` in 60 digits: an upper one if ``up``, else a lower one."""
     if rate == 1:
         return Fraction(0)
-    about, off = minus_log(rate, 60)
-    return about + off if up else about - off
+    approximation, error = minus_log(rate, 60)
+    return approximation + error if up else approximation - error
 
 
-def _fine(rate: Fraction, up: bool) -> int:
-    """Return a bound of ``-log(rate)`` as an integer, scaled by ``LOGARITHM_SCALE`` and rounded down."""
+def _scaled_minus_log(rate: Fraction, up: bool) -> int:
+    """Return a bound of ``-log(rate)`` as an integer, scaled by ``LOGARITHM_SCALE`` and rounded down.
+
+    It is an upper bound, before rounding, if ``up``, else a lower one.
+    """
     return math.floor(LOGARITHM_SCALE * _minus_log_bound(rate, up))

@@ -42,7 +42,8 @@ def solve_with_fast_downward(
 ) -> EngineAnswer:
     """Search for an optimal tree by the first objective alone, as :class:`Solve` does.
 
-    Fractions and logarithms of rates are rounded to millionths.
+    Fractions and logarithms of rates are rounded to millionths. Raises :class:`BugError` where Fast Downward
+    is not installed or fails.
     """
     program = driver()
     if program is None:

@@ -94,7 +94,7 @@ class _Program:
         raise BugError(f"HiGHS ends with {status}")
 
     def fix(self, objective: Objective) -> None:
-        """Add the row that no solution is worse by an objective than the current one.
+        """Add a row, so that later solutions are no worse by an objective than the current one.
 
         A small tolerance is added for the floats of HiGHS.
         """

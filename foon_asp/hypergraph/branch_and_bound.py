@@ -108,24 +108,24 @@ class Branching:
         """
         self.effort = effort
         waiting = [(0, 0, 0, self._root)]
-        number = 0
+        node_number = 0
         try:
             while waiting:
                 bound, depth, _, node = waiting[0]
-                before = self.bound, self._total
+                previous = self.bound, self._total
                 self.bound = max(self.bound, min(-(-bound // PARTS), self._total))
                 stopped = self._must_stop(expired)
                 if not stopped and not self._is_above_cutoff(bound):
-                    stopped = not self._close_or_branch(node, number, expired)
-                if (self.bound, self._total) != before:
+                    stopped = not self._close_or_branch(node, node_number, expired)
+                if (self.bound, self._total) != previous:
                     yield
                 if stopped:
                     return
                 heappop(waiting)
                 for child in (node.using, node.without):
                     if child is not None:
-                        number += 1
-                        heappush(waiting, (child.bound, depth - 1, number, child))
+                        node_number += 1
+                        heappush(waiting, (child.bound, depth - 1, node_number, child))
         except UnsolvedError:
             return
         self.closed = True
@@ -184,11 +184,11 @@ class Branching:
                 self._active[row] = active
                 self._covering.set_row_minimum(row, float(active))
 
-    def _close_or_branch(self, node: _Node, number: int, expired: Callable[[], bool]) -> bool:
+    def _close_or_branch(self, node: _Node, node_number: int, expired: Callable[[], bool]) -> bool:
         """Solve the relaxation at a node, and close the node or give it two children.
 
-        ``number`` is 0 for the root, which gets more rounds of cuts. Returns ``False`` if time or effort ran
-        out before that.
+        ``node_number`` is 0 for the root, which gets more rounds of cuts. Returns ``False`` if time or effort
+        ran out before that.
         """
         targets = set(self._targets).union(*(self._graph.needs[a] for a in node.used))
         self.effort -= len(self._actions)
@@ -201,9 +201,9 @@ class Branching:
         undecided[list(node.used | node.forbidden)] = False
         values: list[float] = []
         while True:
-            relaxed = self._covering.solve(expired)
-            lp_values = self._np.array(relaxed.x)
-            values.append(relaxed.value)
+            solution = self._covering.solve(expired)
+            lp_values = self._np.array(solution.x)
+            values.append(solution.value)
             self._raise_bound(node)
             if self._is_above_cutoff(node.bound):
                 return True
@@ -222,13 +222,15 @@ class Branching:
                     sorted(chosen - node.used)
                 )  # rounding left a gap that floats do not close
                 break
-            if number:
-                ends = len(values) > tuning.RELAXATION.node_rounds
+            if node_number:
+                is_last_round = len(values) > tuning.RELAXATION.node_rounds
             else:
-                ends = has_stalled(values, self._total / self._relaxation.greatest_cost - relaxed.value)
-            if ends or not self._separate(cutter, lp_values, node, expired):
+                is_last_round = has_stalled(
+                    values, self._total / self._relaxation.greatest_cost - solution.value
+                )
+            if is_last_round or not self._separate(cutter, lp_values, node, expired):
                 break
-        if number % tuning.RELAXATION.guess_interval == 0:
+        if node_number % tuning.RELAXATION.guess_interval == 0:
             self._try_guesses(lp_values, node)
             if self._is_above_cutoff(node.bound):
                 return True
@@ -244,8 +246,8 @@ class Branching:
         node.action = action
         forbidden = node.forbidden | node.above_cutoff
         node.without = _Node(node.used, forbidden | {action}, node.bound, node.weights)
-        paid = node.bound + int(reduced_costs[action])
-        node.using = _Node(node.used | {action}, forbidden, paid, node.weights)
+        using_bound = node.bound + int(reduced_costs[action])
+        node.using = _Node(node.used | {action}, forbidden, using_bound, node.weights)
         return True
 
     def _rounded_derivation(self, cutter: Cutter, lp_values: Any, node: _Node) -> set[int]:
@@ -289,14 +291,14 @@ class Branching:
         The first weights are stored in any case.
         """
         reduced_costs = self._costs_in_parts.copy()
-        paid = sum(self._costs[a] for a in node.used) * PARTS
+        used_cost = sum(self._costs[a] for a in node.used) * PARTS
         reduced_costs[list(node.used)] = 0
         reduced_costs[list(node.forbidden)] = sum(self._costs) * PARTS  # more than cuts can take
         dual_values = (
             (row, w) for row, w in enumerate(self._covering.duals()) if self._active.get(row, True)
         )
         weights = self._relaxation.feasible_weights(dual_values, reduced_costs)
-        bound = paid + sum(weights.values())
+        bound = used_cost + sum(weights.values())
         if bound > node.bound or not node.weights:
             node.bound = max(bound, node.bound)
             node.weights = [(row, weight) for row, weight in weights.items() if weight]
@@ -327,16 +329,16 @@ class Branching:
             } & node.forbidden
         if node.without is None or node.using is None or node.action is None:
             return self._packing_of(node)
-        proof, barred = self._proof_of(node.without)
-        using, barred_too = self._proof_of(node.using)
+        proof, relied_on = self._proof_of(node.without)
+        using, relied_on_using = self._proof_of(node.using)
         proof = Branch(self._actions[node.action], proof, using)
-        barred = (barred - {node.action}) | barred_too
-        fixed = sorted(barred & node.above_cutoff)
+        relied_on = (relied_on - {node.action}) | relied_on_using
+        fixed = sorted(relied_on & node.above_cutoff)
         if not fixed:
-            return proof, barred
+            return proof, relied_on
         packing, overloaded = self._packing_of(node)
         proof = CostFixing(tuple(self._actions[a] for a in fixed), packing, proof)
-        return proof, (barred - node.above_cutoff) | overloaded
+        return proof, (relied_on - node.above_cutoff) | overloaded
 
     def _packing_of(self, node: _Node) -> tuple[Packing, set[int]]:
         """Return the cost partition of a node, and the columns of forbidden actions that it overloads.

@@ -99,31 +99,32 @@ class CostPartitioning:
         if self._cutter.hopeless or not self._cutter.targets:
             self.converged = True
             return None
-        above = 100 * sufficient_bound - 99  # hundredths: costs are whole, and so are bounds
+        sufficient_hundredths = 100 * sufficient_bound - 99  # hundredths: costs are whole, and so are bounds
         solutions = 0
         while self._last is None or not self._expired():
-            relaxed = self._solve_lp()
-            if relaxed is None:
+            solution = self._solve_lp()
+            if solution is None:
                 break
-            self._last = relaxed
-            self._values.append(relaxed.value)
+            self._last = solution
+            self._values.append(solution.value)
             solutions += 1
-            remaining_gap = float_quotient(above, 100 * self._relaxation.greatest_cost) - relaxed.value
-            ends = remaining_gap <= 0 or has_stalled(self._values, remaining_gap)
-            if ends or not self._separate(relaxed.x):
-                if self._interior_point and not ends:
+            remaining_gap = (
+                float_quotient(sufficient_hundredths, 100 * self._relaxation.greatest_cost) - solution.value
+            )
+            is_last_round = remaining_gap <= 0 or has_stalled(self._values, remaining_gap)
+            if is_last_round or not self._separate(solution.x):
+                if self._interior_point and not is_last_round:
                     self._interior_point = False
                     continue
-                partition = self._rounded_partition(relaxed)
-                lost = Fraction(relaxed.value) * self._relaxation.greatest_cost - Fraction(
-                    partition.bound, PARTS
-                )
-                if not self._interior_point or lost < Fraction(1, 100):
+                partition = self._rounded_partition(solution)
+                cost = Fraction(solution.value) * self._relaxation.greatest_cost
+                rounding_loss = cost - Fraction(partition.bound, PARTS)
+                if not self._interior_point or rounding_loss < Fraction(1, 100):
                     self.converged = True
                     return partition
                 self._interior_point = False
             elif solutions >= max_solutions:
-                return self._rounded_partition(relaxed)
+                return self._rounded_partition(solution)
         self.converged = True
         return None if self._last is None else self._rounded_partition(self._last)
 
@@ -133,15 +134,15 @@ class CostPartitioning:
         It is an interior point. After the first failure, it is a basic solution.
         """
         if self._interior_point:
-            relaxed = self._relaxation.covering.interior_point(self._expired)
-            if relaxed is not None:
-                return relaxed
+            solution = self._relaxation.covering.interior_point(self._expired)
+            if solution is not None:
+                return solution
             self._interior_point = False
         try:
-            solved = self._relaxation.covering.solve(self._expired)
+            basic = self._relaxation.covering.solve(self._expired)
         except UnsolvedError:
             return None
-        return LpSolution(solved.value, solved.x, self._relaxation.covering.duals())
+        return LpSolution(basic.value, basic.x, self._relaxation.covering.duals())
 
     def _separate(self, x: list[float]) -> bool:
         """Add disjoint cuts that an LP solution violates; return whether any was added."""
@@ -161,34 +162,34 @@ class CostPartitioning:
         The second list is empty if there are no other targets.
         """
         count, targets = len(self._relaxation.actions), self._cutter.targets
-        alone: list[Cutter] = []
-        others: list[int] = []
+        single_target_cutters: list[Cutter] = []
+        other_targets: list[int] = []
         effort = tuning.RELAXATION.cuts * count if len(targets) > 1 else 0
-        everything = bytearray(b"\1") * graph.size
+        all_reachable = bytearray(b"\1") * graph.size
         for target in targets:
             if effort > 0:
-                cutter = Cutter(graph, [target], reachable=everything)
+                cutter = Cutter(graph, [target], reachable=all_reachable)
                 effort -= len(cutter.actions)
                 if 2 * len(cutter.actions) <= count:
-                    alone.append(cutter)
+                    single_target_cutters.append(cutter)
                     continue
-            others.append(target)
-        together = [Cutter(graph, others, reachable=everything)] if others else []
-        return alone, together
+            other_targets.append(target)
+        other_cutters = [Cutter(graph, other_targets, reachable=all_reachable)] if other_targets else []
+        return single_target_cutters, other_cutters
 
-    def _rounded_partition(self, solved: LpSolution) -> CostPartition:
+    def _rounded_partition(self, solution: LpSolution) -> CostPartition:
         """Return the cost partition by the duals of an LP solution, rounded to integers."""
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
-        relaxation, lp_values = self._relaxation, np.array(solved.x)
+        relaxation, lp_values = self._relaxation, np.array(solution.x)
         capacity, rows = relaxation.costs_in_parts(), relaxation.rows
-        dual_values = [*solved.duals] + [0.0] * (len(rows) - len(solved.duals))  # for rows added since
+        dual_values = [*solution.duals] + [0.0] * (len(rows) - len(solution.duals))  # for rows added since
         weights = relaxation.feasible_weights(enumerate(dual_values), capacity)
         whole, cuts, tight = relaxation.whole_cut, relaxation.cuts, 1 + ROUGH_TOLERANCE
         return CostPartition(
             sum(weights.values()),
             dict(zip(relaxation.actions, capacity.tolist(), strict=True)),
             [(whole(cuts[row]), weight) for row, weight in weights.items() if weight],
-            dict(zip(relaxation.actions, solved.x, strict=True)),
+            dict(zip(relaxation.actions, solution.x, strict=True)),
             [whole(cut) for cut, row in zip(cuts, rows, strict=True) if lp_values[row].sum() < tight],
         )

@@ -52,27 +52,27 @@ class Cutter:
         self._reachable = reachable
         self.actions: list[int] = []
         self.hopeless: Cut | None = None
-        lost = [o for o in self.targets if not reachable[o]]
-        if lost:
-            self.hopeless = self._grow_small_cut(lost[0], set(), reachable, {})
+        unreachable = [o for o in self.targets if not reachable[o]]
+        if unreachable:
+            self.hopeless = self._grow_small_cut(unreachable[0], set(), reachable, {})
             return
         # relevant objects are numbered anew: a large network has few of them
         self._numbers: dict[int, int] = {}
         stack = list(self.targets)
         for o in stack:
             self._numbers[o] = len(self._numbers)
-        chosen: set[int] = set()
+        relevant: set[int] = set()
         while stack:
             for action in graph.makers[stack.pop()]:
-                if action in chosen or action in forbidden:
+                if action in relevant or action in forbidden:
                     continue
                 if all(reachable[o] for o in graph.needs[action]):
-                    chosen.add(action)
+                    relevant.add(action)
                     for o in graph.needs[action]:
                         if not graph.at_start[o] and o not in self._numbers:
                             self._numbers[o] = len(self._numbers)
                             stack.append(o)
-        self.actions = sorted(chosen)
+        self.actions = sorted(relevant)
         self._positions = {action: i for i, action in enumerate(self.actions)}
         numbers = self._numbers
         self._gives = [[numbers[o] for o in set(graph.gives[a]) if o in numbers] for a in self.actions]
@@ -106,8 +106,8 @@ class Cutter:
         reached = bytearray(self._reachable)
         for o in [o for o, is_reached in zip(self._numbers, growth.reached, strict=True) if not is_reached]:
             reached[o] = False
-        first = next(o for o in self.targets if not reached[o])
-        return self._grow_small_cut(first, refused, reached, self._consumer_counts)
+        target = next(o for o in self.targets if not reached[o])
+        return self._grow_small_cut(target, refused, reached, self._consumer_counts)
 
     def without_forbidden(self, actions: Iterable[int]) -> tuple[int, ...] | None:
         """Return the given actions that are not forbidden; ``None`` if one is not in :attr:`actions`."""
@@ -207,16 +207,16 @@ class _Growth:
             if missing[action]:
                 waiting[action] = True
                 continue
-            new = [o for o in gives[action] if not reached[o]]
-            if not new:
+            newly_reached = [o for o in gives[action] if not reached[o]]
+            if not newly_reached:
                 continue
-            for o in new:
+            for o in newly_reached:
                 if decisive[o]:
                     break
             else:
-                if reach_from(new) is not None:
+                if reach_from(newly_reached) is not None:
                     continue
-                self._record_decisive(new)
+                self._record_decisive(newly_reached)
             refused.append(action)
             if len(refused) == max_refused:
                 break
@@ -226,11 +226,11 @@ class _Growth:
         """If one of the ``refused`` objects alone suffices to reach all targets, record it as decisive."""
         for o in refused:
             unreached = self._unreached
-            new = None if len(refused) == 1 else self._reach_from([o])
-            if new is None:
+            newly_reached = None if len(refused) == 1 else self._reach_from([o])
+            if newly_reached is None:
                 self._decisive[o] = True
                 return
-            self._unreach(new)
+            self._unreach(newly_reached)
             self._unreached = unreached
 
     def _reach_from(self, objects: list[int]) -> list[int] | None:
@@ -241,13 +241,13 @@ class _Growth:
         waiting, missing, reached = self._waiting, self._missing, self.reached
         consumers, gives, decisive, targets = self._consumers, self._gives, self._decisive, self._targets
         unreached = self._unreached
-        new: list[int] = []
+        newly_reached: list[int] = []
         for batch in (stack := [objects]):  # grows while it is walked through
             for o in batch:
                 if reached[o]:
                     continue
                 reached[o] = True
-                new.append(o)
+                newly_reached.append(o)
                 if o < targets:
                     unreached -= 1
                 for consumer in consumers[o]:
@@ -255,15 +255,15 @@ class _Growth:
                     if not lacking and waiting[consumer]:
                         stack.append(gives[consumer])
                 if not unreached or decisive[o]:
-                    self._unreach(new)
+                    self._unreach(newly_reached)
                     return None
         self._unreached = unreached
-        return new
+        return newly_reached
 
-    def _unreach(self, new: list[int]) -> None:
+    def _unreach(self, newly_reached: list[int]) -> None:
         """Mark objects as unreached again, and correct the counts of missing preconditions."""
         missing, reached = self._missing, self.reached
-        for o in new:
+        for o in newly_reached:
             reached[o] = False
             for consumer in self._consumers[o]:
                 missing[consumer] += 1

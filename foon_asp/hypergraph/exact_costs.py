@@ -204,7 +204,10 @@ class ExactCosts:
         return self._problem.rate(action)
 
     def _figure(self, objective: Objective, action: int) -> int:
-        """Return the scaled cost by one objective of an action, which is a unit or takes a kitchen item."""
+        """Return the scaled cost by one objective of an action.
+
+        The action is a unit or takes a kitchen item.
+        """
         if action >= self._units:
             return objective.row.item
         if objective in self._multiplied:
@@ -251,7 +254,7 @@ class CoarseCosts:
     def __call__(self, action: int) -> int:
         """Return the approximate cost of an action.
 
-        A fraction is in thousandths; so is ``-ln`` of a rate.
+        Costs in fractions, and ``-ln`` of rates, are in thousandths, rounded down.
         """
         problem = self._problem
         if action >= len(problem.network):

@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection
 from dataclasses import replace
 
 from foon_asp.hypergraph.goal_graph import GoalGraph
-from foon_asp.hypergraph.h_values import derive
+from foon_asp.hypergraph.h_values import compute_h_values
 from foon_asp.hypergraph.lazy_h_max import lazy_h_max_test
 from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
 from foon_asp.hypergraph.restricted_subproblem import restricted_subproblem
@@ -30,7 +30,7 @@ def extend_tree(
             required_graph, range(len(graph.needs)), remaining_cost, sum(map(cost, tree)), enough=_FIRST
         ),
     }
-    extension = derive(required_graph, candidates, remaining_cost, h_add=True).tree(
+    extension = compute_h_values(required_graph, candidates, remaining_cost, h_add=True).tree(
         required_graph, required_graph.goals
     )
     if extension is None:
@@ -63,7 +63,7 @@ def actions_of_extensions(
         reachable=lazy_h_max_test(graph, all_actions, remaining_cost),
     )
     while not expired():
-        derivations = derive(graph, remaining.union(free), remaining_cost, h_add=False)
+        derivations = compute_h_values(graph, remaining.union(free), remaining_cost, h_add=False)
         nearer = neighbourhood(
             required_graph, remaining, cost, limit, derivations.h_actions, min_reduced_cost=1
         )

@@ -49,7 +49,7 @@ class FirstAchievers:
         return made
 
     def landmark_of(self, cut: frozenset[int]) -> list[int]:
-        """Return the landmark of a cut, ascending: the actions that achieve one of its objects first."""
+        """Return the landmark of a cut, ascending: the crossing actions that can achieve an object first."""
         achievers, needs, before = self.graph.makers, self.graph.needs, self._landmarks_before
         inside = _bit_set(cut)
         return sorted(

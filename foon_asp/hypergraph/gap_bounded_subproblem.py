@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.exact_costs import ExactCosts
 from foon_asp.hypergraph.goal_graph import GoalGraph
-from foon_asp.hypergraph.h_values import derive
+from foon_asp.hypergraph.h_values import compute_h_values
 from foon_asp.hypergraph.landmark_cuts import Cuts, landmark_cuts
 from foon_asp.hypergraph.lazy_h_max import lazy_h_max_test
 from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
@@ -50,8 +50,8 @@ class Subproblem:
     def rival_achievers(self, units: Iterable[int]) -> set[int]:
         """Return all achievers of the objects that some units achieve, including these units."""
         graph, kitchen = self.graph, self.problem.kitchen
-        made = {o for unit in units for o in graph.gives[unit] if o not in kitchen}
-        return {achiever for o in made for achiever in graph.makers[o]}
+        achieved = {o for unit in units for o in graph.gives[unit] if o not in kitchen}
+        return {achiever for o in achieved for achiever in graph.makers[o]}
 
     def units_of_numbers(self, numbers: Iterable[int]) -> set[int]:
         """Return the ids of units, given by public numbers.
@@ -133,7 +133,7 @@ class Subproblem:
             reduced_cost = reduced_costs_of(costs, cuts)
             before = len(remaining)
             if self.redundant:
-                h_actions = derive(graph, remaining, reduced_cost, h_add=False).h_actions
+                h_actions = compute_h_values(graph, remaining, reduced_cost, h_add=False).h_actions
                 remaining = {action for action, h_action in h_actions.items() if h_action <= gap}
             else:
                 remaining = reduced_cost_fixing(graph, remaining, reduced_cost, gap, expired)
@@ -145,10 +145,10 @@ class Subproblem:
                 graph.goals,
                 candidates,
                 costs,
-                derive(graph, candidates, costs, h_add=False).h_objects,
+                compute_h_values(graph, candidates, costs, h_add=False).h_objects,
                 expired,
                 lambda reduced_cost, candidates=candidates: (
-                    derive(graph, candidates, reduced_cost, h_add=False).h_objects
+                    compute_h_values(graph, candidates, reduced_cost, h_add=False).h_objects
                 ),  # type: ignore[misc]
             )
             if cuts.interrupted:
@@ -171,7 +171,7 @@ class Subproblem:
 
         All costs count as 0, since not every action has a known cost.
         """
-        return derive(self.graph, actions, lambda _: 0, h_add=False).h_actions
+        return compute_h_values(self.graph, actions, lambda _: 0, h_add=False).h_actions
 
     def _units(self, actions: Iterable[int]) -> frozenset[int]:
         """Return the units among actions."""
@@ -200,7 +200,7 @@ def reduced_cost_fixing(
         graph, allowed, reduced_cost, limit, reachable=lazy_h_max_test(graph, allowed, reduced_cost)
     )
     while not expired():
-        derivations = derive(graph, remaining, reduced_cost, h_add=False)
+        derivations = compute_h_values(graph, remaining, reduced_cost, h_add=False)
         nearer = neighbourhood(graph, remaining, reduced_cost, limit, derivations.h_actions)
         if len(nearer) == len(remaining):
             break

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from foon_asp.hypergraph.action_landmarks import relevant_given_landmarks
 from foon_asp.hypergraph.dominance import undominated_actions
 from foon_asp.hypergraph.gap_bounded_subproblem import reduced_cost_fixing, reduced_costs_of
-from foon_asp.hypergraph.h_values import derive
+from foon_asp.hypergraph.h_values import compute_h_values
 from foon_asp.hypergraph.incumbent_gap import FirstCuts, Gap, Stage
 from foon_asp.hypergraph.incumbent_trees import improve_locally, irredundant_subset
 from foon_asp.hypergraph.landmark_cuts import Cuts, landmark_cuts
@@ -79,7 +79,9 @@ def tighten(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide | No
 
 def h_max_guide(task: Task, gap: Gap) -> Guide:
     """Return the guide for landmark cuts: a function from reduced costs to h_max over the candidates."""
-    return lambda reduced_cost: derive(task.graph, gap.candidates, reduced_cost, h_add=False).h_objects
+    return lambda reduced_cost: (
+        compute_h_values(task.graph, gap.candidates, reduced_cost, h_add=False).h_objects
+    )
 
 
 def is_proved_by(task: Task, gap: Gap, cuts: Cuts) -> bool:
@@ -121,7 +123,7 @@ def follow_h_add(task: Task, gap: Gap) -> Gap:
     """Replace the incumbent by the tree that follows h_add, if that is better."""
     costs = task.costs
     assert costs is not None
-    tree = derive(task.graph, gap.candidates, costs, h_add=True).tree(task.graph, task.graph.goals)
+    tree = compute_h_values(task.graph, gap.candidates, costs, h_add=True).tree(task.graph, task.graph.goals)
     better = irredundant_subset(task.graph, tree or gap.incumbent, costs)
     return gap.with_incumbent(better) if task.is_better(better, gap) else gap
 
@@ -161,7 +163,7 @@ def restrict_to_relevant(task: Task, gap: Gap) -> tuple[Gap, dict[int, int]] | N
     """
     graph = task.graph
     cone, _ = graph.cone(task.scope)
-    derivations = derive(graph, cone, task.coarse, h_add=False)
+    derivations = compute_h_values(graph, cone, task.coarse, h_add=False)
     tree = derivations.tree(graph, graph.goals)
     if tree is None:
         return None

@@ -27,7 +27,7 @@ class Derivations(NamedTuple):
         return follow(objects, self.best_achievers, graph.needs, graph.start)
 
 
-def derive(
+def compute_h_values(
     graph: GoalGraph, actions: Collection[int], cost: Mapping[int, int] | Callable[[int], int], h_add: bool
 ) -> Derivations:
     """Return the h-values and best achievers of the objects that actions reach; no cost is below 0.

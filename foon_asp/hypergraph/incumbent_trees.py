@@ -5,7 +5,7 @@ from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
 from foon_asp.hypergraph.goal_graph import GoalGraph
-from foon_asp.hypergraph.h_values import derive
+from foon_asp.hypergraph.h_values import compute_h_values
 from foon_asp.hypergraph.support import Support
 
 if TYPE_CHECKING:  # few questions need it
@@ -52,7 +52,7 @@ def trees_by_lp_values(
         return 1 + _scaled_cost(cost(action), 1 - min(1.0, lp_values[action]))
 
     for h_add in (True, False):
-        tree = derive(graph, allowed, price_by_lp_value, h_add).tree(graph, graph.goals)
+        tree = compute_h_values(graph, allowed, price_by_lp_value, h_add).tree(graph, graph.goals)
         if tree is not None:
             yield irredundant_subset(graph, tree, cost)
 
@@ -80,7 +80,7 @@ def trees_by_partition(
 
     for price in (price_by_lp_value, price_by_reduced_cost):
         for h_add in (True, False):
-            tree = derive(graph, actions, price, h_add).tree(graph, graph.goals)
+            tree = compute_h_values(graph, actions, price, h_add).tree(graph, graph.goals)
             if tree is not None:
                 yield irredundant_subset(graph, tree, cost)
 
@@ -121,7 +121,9 @@ def perturbation_search(
             price = {a: _scaled_cost(cost(a), 0.5 + random_number()) for a in candidates}
             price |= {a: 0 for a in sorted(last) if random_number() < share}
         effort -= len(candidates)
-        derived = derive(graph, candidates, price, h_add=random_number() < 0.5).tree(graph, graph.goals)
+        derived = compute_h_values(graph, candidates, price, h_add=random_number() < 0.5).tree(
+            graph, graph.goals
+        )
         candidate = irredundant_subset(graph, derived or last, cost)
         candidate_total = sum(map(cost, candidate))
         if candidate_total < total:
@@ -152,7 +154,7 @@ def improve_locally(
     def try_derived_tree(actions: Collection[int], price: Callable[[int], int], h_add: bool) -> None:
         """Derive a tree by h_add or h_max at some prices, and keep it if it is the best so far."""
         nonlocal best, total
-        derived = derive(graph, actions, price, h_add).tree(graph, graph.goals)
+        derived = compute_h_values(graph, actions, price, h_add).tree(graph, graph.goals)
         if derived is not None:
             candidate = irredundant_subset(graph, derived, cost)
             candidate_total = sum(map(cost, candidate))

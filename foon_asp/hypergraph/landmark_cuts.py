@@ -199,10 +199,10 @@ class _Search:
 
         ``None`` where no action crosses the zone.
         """
-        new = self._grow_zone(level, outer_zones)
-        while new is None:
+        new_objects = self._grow_zone(level, outer_zones)
+        while new_objects is None:
             level.clear_zone()
-            new = self._grow_zone(level, outer_zones)
+            new_objects = self._grow_zone(level, outer_zones)
         needs = self._graph.needs
         members = tuple(action for action in level.frontier if level.zone.isdisjoint(needs[action]))
         if not members:
@@ -211,7 +211,7 @@ class _Search:
         reduced_costs = {action: self.reduced_cost(action) for action in members}
         cheapest = min(reduced_costs, key=reduced_costs.__getitem__)
         weight = reduced_costs[cheapest]
-        level.cut = WeightedCut(frozenset(new), members, cheapest, weight, level.cut)
+        level.cut = WeightedCut(frozenset(new_objects), members, cheapest, weight, level.cut)
         self.bound += weight
         self.cuts.append(level.cut)
         for action, reduced_cost in reduced_costs.items():
@@ -235,31 +235,31 @@ class _Search:
         """
         needs, achievers, reduced_costs = self._graph.needs, self._graph.makers, self.reduced_costs
         zone, frontier = level.zone, level.frontier
-        new = [] if zone else [level.objects[-1]]
-        zone.update(new)
-        passed = [action for action in frontier if not reduced_costs.get(action, True)]
-        for action in passed:
+        new_objects = [] if zone else [level.objects[-1]]
+        zone.update(new_objects)
+        free_actions = [action for action in frontier if not reduced_costs.get(action, True)]
+        for action in free_actions:
             del frontier[action]
         i = 0
         while True:
-            for action in passed:
+            for action in free_actions:
                 if not zone.isdisjoint(needs[action]):
                     continue
                 lacking = self.free.missing_preconditions(action)
                 if not lacking:
                     return None
-                dearest = max(lacking, key=self.guide_key)
-                zone.add(dearest)
-                new.append(dearest)
-            if i == len(new):
-                return new
-            passed = []
-            for action in achievers[new[i]]:
+                costliest = max(lacking, key=self.guide_key)
+                zone.add(costliest)
+                new_objects.append(costliest)
+            if i == len(new_objects):
+                return new_objects
+            free_actions = []
+            for action in achievers[new_objects[i]]:
                 if action in self._allowed and outer_zones.isdisjoint(needs[action]):
                     if reduced_costs.get(action, True):
                         frontier[action] = None
                     else:
-                        passed.append(action)
+                        free_actions.append(action)
             i += 1
 
 

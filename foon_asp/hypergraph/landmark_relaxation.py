@@ -118,13 +118,13 @@ class LandmarkRelaxation:
         parts. Weights are subtracted from it in place, so that reduced costs remain. Afterwards, weights are
         raised greedily while capacity is left. The weights add up to a lower bound, whatever the duals are.
         """
-        of_1 = self.greatest_cost * PARTS
-        wanted = {row: round(Fraction(w) * of_1) if 0 < w < math.inf else 0 for row, w in dual_values}
-        weights = dict.fromkeys(wanted, 0)
-        dearest_first = sorted(wanted, key=lambda row: -wanted[row])
-        for limited in (True, False):
-            for row in dearest_first:
-                upper = wanted[row] if limited else math.inf
+        scale = self.greatest_cost * PARTS
+        rounded_duals = {row: round(Fraction(w) * scale) if 0 < w < math.inf else 0 for row, w in dual_values}
+        weights = dict.fromkeys(rounded_duals, 0)
+        greatest_first = sorted(rounded_duals, key=lambda row: -rounded_duals[row])
+        for within_duals in (True, False):
+            for row in greatest_first:
+                upper = rounded_duals[row] if within_duals else math.inf
                 weight = int(min(upper, capacity[self.rows[row]].min())) if upper else 0
                 if weight:
                     weights[row] += weight
@@ -142,10 +142,10 @@ def _subgraph(
     targets, start = tuple(targets), graph.start
     objects = sorted({o for a in actions for o in graph.needs[a] if o not in start}.union(targets))
     number = {o: i for i, o in enumerate(objects)}
-    small = Hypergraph(
+    subgraph = Hypergraph(
         len(number),
         [[number[o] for o in graph.needs[a] if o in number] for a in actions],
         [[number[o] for o in graph.gives[a] if o in number] for a in actions],
         (),
     )
-    return small, objects, [number[o] for o in targets]
+    return subgraph, objects, [number[o] for o in targets]

@@ -12,9 +12,9 @@ def lazy_h_max_test(
 ) -> Callable[[int, float], bool]:
     """Return a function of an object and a limit: whether the h_max of the object is at most the limit.
 
-    Only ``allowed`` actions count, at reduced cost. While ``derive`` computes h_max of all objects at once,
-    this function goes backwards from one object and prunes by the limit. With a low limit, it looks at a
-    small part of a large network. It also returns ``True`` where it would go too deep or take too long.
+    Only ``allowed`` actions count, at reduced cost. :func:`compute_h_values` computes h_max of all objects at
+    once. This function goes backwards from one object and prunes by the limit. With a low limit, it looks at
+    a small part of a large network. It also returns ``True`` where it would go too deep or take too long.
     """
     needs, achievers, start = graph.needs, graph.makers, graph.start
     lower_bounds: dict[int, float] = {}  # on the h_max of objects

@@ -80,11 +80,11 @@ class Lexicographic:
         self, vector: Sequence[Fraction | int]
     ) -> Iterator[tuple[int, Sequence[Fraction | int]]]:
         """Yield the index of each level and its coordinates."""
-        begin = 0
+        start = 0
         for level, measures in enumerate(self._float_factors):
-            end = begin + len(measures)
-            yield level, vector[begin:end]
-            begin = end
+            end = start + len(measures)
+            yield level, vector[start:end]
+            start = end
 
     def _log_terms(self, level: int, exponents: Sequence[Fraction | int]) -> list[float]:
         """Return each exponent times ``-log`` of its rate, as floats; a count stays as it is."""
@@ -102,19 +102,19 @@ class Lexicographic:
         large = 10**15  # with larger exponents, lost digits could matter
         if all(-large < exponent < large for exponent in exponents):
             terms = self._log_terms(level, exponents)
-            about = sum(terms)
+            approximation = sum(terms)
             # the sum is this exact, at least; below 1e-290 floats lose their last digits
-            if abs(about) > 1e-9 * sum(map(abs, terms)) + 1e-290:
-                return _sign(about)
+            if abs(approximation) > 1e-9 * sum(map(abs, terms)) + 1e-290:
+                return _sign(approximation)
         if self._is_product_one(level, exponents):
             return 0
         digits = _DIGITS
         while True:
             total = error = Fraction(0)
             for i, exponent in enumerate(exponents):
-                logarithm, off = minus_log(rates[i], digits)
+                logarithm, log_error = minus_log(rates[i], digits)
                 total += logarithm * exponent
-                error += abs(off * exponent)
+                error += abs(log_error * exponent)
             if abs(total) > error:
                 return _sign(total)
             digits += digits
@@ -163,11 +163,12 @@ def minus_log(rate: Fraction, digits: int) -> tuple[Fraction, Fraction]:
     Results are cached.
     """
     # close to 1, the logarithms of denominator and numerator share their first digits
-    shared = (rate.denominator.bit_length() - (rate.denominator - rate.numerator).bit_length()) // 3
-    precise = Context(prec=digits + shared + 10)
-    below, above = (Fraction(precise.ln(Decimal(n))) for n in (rate.denominator, rate.numerator))
+    shared_digits = (rate.denominator.bit_length() - (rate.denominator - rate.numerator).bit_length()) // 3
+    precise = Context(prec=digits + shared_digits + 10)
+    logarithms = [Fraction(precise.ln(Decimal(n))) for n in (rate.denominator, rate.numerator)]
     # each is off by half of its last digit, at most
-    return below - above, (below + above) / Fraction(10 ** (precise.prec - 1))
+    error = sum(logarithms) / Fraction(10 ** (precise.prec - 1))
+    return logarithms[0] - logarithms[1], error
 
 
 def _sign(number: Fraction | float) -> int:

@@ -189,10 +189,10 @@ class Prover:
                 """Continue the proof for derivations without the actions above the cutoff."""
                 return self._prove(goal, used, forbidden | above_cutoff, known_cuts, cases, at_root)
 
-            many = len(cutter.actions) > tuning.PROOF.rounded_actions or (
+            is_large = len(cutter.actions) > tuning.PROOF.rounded_actions or (
                 at_root and forbidden != self._forbidden
             )
-            step = self._cost_step() if many else Fraction(0)
+            step = self._cost_step() if is_large else Fraction(0)
             without_lp = cases is not None and not at_root
             proof, widened = self._prove_by_partition(
                 cutter, used, remaining_goal, known_cuts, others, step, without_lp, at_root
@@ -217,12 +217,10 @@ class Prover:
         if action is None:
             breaking = [a for a in self._breaking_actions(rounded_solution) if a not in used]
             if not breaking:
-                cheaper = goal is not None and self._order.compare(self._cost_of(rounded_solution), goal) < 0
-                if (
-                    cheaper
-                    and cutter.reached_by(rounded_solution)
-                    and not node.exceeds_limit(rounded_solution)
-                ):
+                cost = self._cost_of(rounded_solution)
+                is_cheaper = goal is not None and self._order.compare(cost, goal) < 0
+                is_derivation = cutter.reached_by(rounded_solution)
+                if is_cheaper and is_derivation and not node.exceeds_limit(rounded_solution):
                     raise CheaperError(self._runnable_actions(rounded_solution))
                 raise _TimeUpError  # floats led nowhere
             action = breaking[0]

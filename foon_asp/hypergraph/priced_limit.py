@@ -43,43 +43,40 @@ def search_within_limit(
 
     Returns ``None`` if neither a tree is found nor its absence proved.
     """
-    first = any_within_limit(subproblem, row, expired)
-    if first is None or first.tree is None:
-        return first
-    incumbent, exceeding = first.tree, tree
+    first_result = any_within_limit(subproblem, row, expired)
+    if first_result is None or first_result.tree is None:
+        return first_result
+    incumbent, exceeding = first_result.tree, tree
     remaining: Units | None = None
     for _ in range(tuning.PRICES.prices):
-        ratio = -(
+        price = -(
             -(subproblem.total(incumbent) - subproblem.total(exceeding))
             // (row.total(exceeding) - row.total(incumbent))
         )
-        if ratio <= 0:
+        if price <= 0:
             break
-        allowed = subproblem.total(incumbent) + ratio * row.bound
+        max_priced_cost = subproblem.total(incumbent) + price * row.bound
         reduced = _reduced_at(
             subproblem,
-            subproblem.costs.with_price(row.weight, ratio),
+            subproblem.costs.with_price(row.weight, price),
             objectives,
             expired,
             incumbent,
-            allowed,
+            max_priced_cost,
             tuning.PRICES.rising_units,
         )
         if reduced.tree is None:
             break
-        better = row.total(reduced.tree) <= row.bound and subproblem.total(reduced.tree) < subproblem.total(
-            incumbent
-        )
-        incumbent = reduced.tree if better else incumbent
+        amount, total = row.total(reduced.tree), subproblem.total(reduced.tree)
+        is_better = amount <= row.bound and total < subproblem.total(incumbent)
+        incumbent = reduced.tree if is_better else incumbent
         if remaining is None or len(reduced.units) < len(remaining):
             remaining = frozenset(reduced.units)
         if len(remaining) > tuning.PRICES.rising_units:
             return _by_rising_prices(subproblem, objectives, incumbent, exceeding, row, expired)
-        if row.total(reduced.tree) > row.bound and subproblem.total(reduced.tree) > subproblem.total(
-            exceeding
-        ):
+        if amount > row.bound and total > subproblem.total(exceeding):
             exceeding = reduced.tree
-        elif not better:
+        elif not is_better:
             break
         if len(remaining) <= tuning.PRICES.easy_units:
             break
@@ -101,40 +98,44 @@ def _by_rising_prices(
     replaces one of the two. The price with the greatest bound determines the units of better trees.
     """
     next_price = Fraction(subproblem.total(exceeding), len(exceeding))
-    greatest: tuple[Fraction, Fraction] | None = None  # bound, and its price
+    greatest_bound: tuple[Fraction, Fraction] | None = None  # bound, and its price
     subproblem = _restricted_to_cost(subproblem, incumbent, expired)
     for _ in range(tuning.PRICES.rising_prices):
-        tie = Fraction(
+        tie_price = Fraction(
             subproblem.total(incumbent) - subproblem.total(exceeding),
             row.total(exceeding) - row.total(incumbent),
         )
-        if tie <= 0:
+        if tie_price <= 0:
             break
-        price, next_price = min(tie, next_price), 2 * next_price
+        price, next_price = min(tie_price, next_price), 2 * next_price
         reduced = _reduced_at(subproblem, subproblem.costs.with_price(row.weight, price), objectives, expired)
         if reduced.tree is None:
             break
         bound = Fraction(reduced.bound, price.denominator) - price * row.bound
-        greatest = max(greatest or (bound, price), (bound, price))
-        count, total = row.total(reduced.tree), subproblem.total(reduced.tree)
-        tied = price == tie and total + price * count >= subproblem.total(incumbent) + price * row.total(
-            incumbent
-        )
-        if count > row.bound:
+        greatest_bound = max(greatest_bound or (bound, price), (bound, price))
+        amount, total = row.total(reduced.tree), subproblem.total(reduced.tree)
+        incumbent_at_price = subproblem.total(incumbent) + price * row.total(incumbent)
+        is_tie = price == tie_price and total + price * amount >= incumbent_at_price
+        if amount > row.bound:
             exceeding = reduced.tree
         elif total < subproblem.total(incumbent):
             incumbent = reduced.tree
             subproblem = _restricted_to_cost(subproblem, incumbent, expired)
         else:
             break
-        if tied or count == row.bound:
+        if is_tie or amount == row.bound:
             break
-    if greatest is None:
+    if greatest_bound is None:
         return WithinLimit(incumbent)
-    _, price = greatest
-    allowed = subproblem.total(incumbent) * price.denominator + price.numerator * row.bound
+    _, price = greatest_bound
+    max_priced_cost = subproblem.total(incumbent) * price.denominator + price.numerator * row.bound
     reduced = _reduced_at(
-        subproblem, subproblem.costs.with_price(row.weight, price), objectives, expired, incumbent, allowed
+        subproblem,
+        subproblem.costs.with_price(row.weight, price),
+        objectives,
+        expired,
+        incumbent,
+        max_priced_cost,
     )
     if reduced.tree is None:
         return WithinLimit(incumbent)

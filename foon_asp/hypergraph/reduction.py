@@ -17,7 +17,7 @@ from foon_asp.hypergraph.exact_costs import CoarseCosts, ExactCosts, TooFineErro
 from foon_asp.hypergraph.extension import actions_of_extensions, extend_tree
 from foon_asp.hypergraph.gap_bounded_subproblem import Subproblem
 from foon_asp.hypergraph.goal_graph import graph_of
-from foon_asp.hypergraph.h_values import derive
+from foon_asp.hypergraph.h_values import compute_h_values
 from foon_asp.hypergraph.incumbent_gap import Gap, Stage
 from foon_asp.hypergraph.incumbent_trees import irredundant_subset
 from foon_asp.hypergraph.landmark_cuts import Cuts
@@ -198,7 +198,7 @@ def reduce_at_costs(
                 yield gap
                 if len(gap.candidates) > max(max_actions, task.tuning.worthwhile_share * before):
                     return gap
-                h_values = derive(task.graph, gap.candidates, costs, h_add=False).h_objects
+                h_values = compute_h_values(task.graph, gap.candidates, costs, h_add=False).h_objects
             return (yield from run_rounds(task, gap, h_values))
 
         presolve = _Presolve(task, None, nullcontext)
@@ -274,7 +274,7 @@ def run_rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
         if not changed and (thorough or len(gap.candidates) <= limits.easy_actions):
             return gap
         thorough = not changed
-        h_values = derive(task.graph, gap.candidates, costs or task.coarse, h_add=False).h_objects
+        h_values = compute_h_values(task.graph, gap.candidates, costs or task.coarse, h_add=False).h_objects
     return gap
 
 
@@ -315,7 +315,9 @@ def run_near_goals(task: Task, gap: Gap, h_values: HValues) -> Stage:
     gap = greedy.prune_dominated(task, gap)
     yield gap
     if not task.expired():
-        h_values = derive(task.graph, gap.candidates, task.costs or task.coarse, h_add=False).h_objects
+        h_values = compute_h_values(
+            task.graph, gap.candidates, task.costs or task.coarse, h_add=False
+        ).h_objects
         gap = yield from run_rounds(task, gap, h_values)
     return gap
 
@@ -433,7 +435,7 @@ class _Presolve:
                 self.report(Gap(gap.incumbent, 0, gap.candidates))
                 self.report(gap)
                 if not gap.proved:
-                    h_values = derive(self.task.graph, gap.candidates, costs, h_add=False).h_objects
+                    h_values = compute_h_values(self.task.graph, gap.candidates, costs, h_add=False).h_objects
                     self.run_stages(ROUNDS.whole, h_values)
             solved.record(self.task, self.gap)
 
@@ -496,12 +498,12 @@ def _presolve_by_extension(presolve: _Presolve) -> None:
     task = presolve.task
     graph, restriction = task.graph, task.problem.restriction
     assert restriction is not None
-    alone = replace(task.problem, restriction=replace(restriction, required=()))
-    goals_task = _task_of(alone, task.objectives, task.reductions, task.expired)
+    goals_problem = replace(task.problem, restriction=replace(restriction, required=()))
+    goals_task = _task_of(goals_problem, task.objectives, task.reductions, task.expired)
     goals_task = _with_costs(goals_task, range(len(goals_task.graph.needs)))
-    goals_only = _Presolve(goals_task, presolve.bounds_listener, presolve.guard)
-    goals_only.run(ROUNDS)
-    reduced, gap, costs = goals_only.reduced(), goals_only.gap, goals_task.costs
+    goals_presolve = _Presolve(goals_task, presolve.bounds_listener, presolve.guard)
+    goals_presolve.run(ROUNDS)
+    reduced, gap, costs = goals_presolve.reduced(), goals_presolve.gap, goals_task.costs
     if costs is None or gap is None or reduced.subproblem is None:
         return
     subproblem, h_values = reduced.subproblem, dict[int, int]()
@@ -512,8 +514,8 @@ def _presolve_by_extension(presolve: _Presolve) -> None:
         if tree is None:
             return
         incumbent = frozenset(irredundant_subset(graph, tree, costs))
-        first = Gap(incumbent, 0, range(len(graph.needs)))
-        presolve.report(first)
+        start = Gap(incumbent, 0, range(len(graph.needs)))
+        presolve.report(start)
         if reduced.interrupted:
             raise KeyboardInterrupt
         only_better, total = Reduction.BOUNDS in task.reductions, sum(map(costs, incumbent))
@@ -521,7 +523,7 @@ def _presolve_by_extension(presolve: _Presolve) -> None:
         if only_better and optimal:
             presolve.task = replace(task, costs=costs)
             evidence = gap.evidence._replace(first=None, tight=())
-            presolve.gap = first.with_bound(gap.lower_bound, evidence).as_proved()
+            presolve.gap = start.with_bound(gap.lower_bound, evidence).as_proved()
             return
         limit = total - only_better
         candidates = {*subproblem.actions_within(limit, task.expired), *incumbent}
@@ -529,9 +531,9 @@ def _presolve_by_extension(presolve: _Presolve) -> None:
         candidates |= actions_of_extensions(graph, candidates, costs, distance, task.expired)
         if task.expired():
             raise KeyboardInterrupt
-        derivations = derive(graph, candidates, task.coarse, h_add=False)
+        derivations = compute_h_values(graph, candidates, task.coarse, h_add=False)
         h_values.update(derivations.h_objects)
-        presolve.gap = first.with_candidates(graph.cone(derivations.h_actions)[0])
+        presolve.gap = start.with_candidates(graph.cone(derivations.h_actions)[0])
 
     presolve.run_guarded(extend)
     if presolve.gap is not None and presolve.ended and not presolve.gap.proved:

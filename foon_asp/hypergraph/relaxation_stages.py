@@ -11,7 +11,7 @@ from foon_asp.hypergraph.cost_partition import CostPartition, CostPartitioning
 from foon_asp.hypergraph.covering import ROUGH_TOLERANCE
 from foon_asp.hypergraph.gap_bounded_subproblem import reduced_cost_fixing
 from foon_asp.hypergraph.greedy_stages import prune_dominated, search_repeatedly
-from foon_asp.hypergraph.h_values import derive
+from foon_asp.hypergraph.h_values import compute_h_values
 from foon_asp.hypergraph.incumbent_gap import Gap, Stage
 from foon_asp.hypergraph.incumbent_trees import (
     irredundant_subset,
@@ -85,13 +85,13 @@ def follow_solution(task: Task, gap: Gap, partition: CostPartition, looks: int) 
         if task.is_better(tree, gap):
             gap = gap.with_incumbent(tree)
             yield gap
-    least, count = -(-partition.bound // PARTS), len(gap.candidates)
-    if least < task.incumbent_cost(gap) and len(used) <= task.tuning.sparse_share * count:
+    rounded_bound, count = -(-partition.bound // PARTS), len(gap.candidates)
+    if rounded_bound < task.incumbent_cost(gap) and len(used) <= task.tuning.sparse_share * count:
         cuts = [cut for cut, _ in partition.cuts]
         gap = yield from search_among(task, gap, used, cuts, 2 * looks * count)
-    elif least < task.incumbent_cost(gap):
+    elif rounded_bound < task.incumbent_cost(gap):
         tree = perturbation_search(
-            *(graph, gap.candidates, set(gap.incumbent), costs, least, task.expired),
+            *(graph, gap.candidates, set(gap.incumbent), costs, rounded_bound, task.expired),
             *(partition.lp_values, task.random_source.random, looks),
         )
         gap = gap.with_incumbent(tree) if task.is_better(tree, gap) else gap
@@ -133,7 +133,7 @@ def search_among(
     """
     graph, costs = task.graph, task.costs
     assert costs is not None
-    runnable = derive(graph, actions, costs, h_add=False).h_actions
+    runnable = compute_h_values(graph, actions, costs, h_add=False).h_actions
     search = Branching(
         *(graph, graph.goals, runnable, costs, cuts, task.incumbent_cost(gap)),
         lambda lp_values, without: trees_by_lp_values(graph, runnable, costs, lp_values, without),
@@ -163,8 +163,8 @@ def branch(task: Task, gap: Gap) -> Stage:
     """
     costs, graph, limits = task.costs, task.graph, task.tuning
     assert costs is not None
-    close = gap.lower_bound >= task.incumbent_cost(gap) * limits.branching_bound
-    if not may_branch(task, gap) or len(gap.candidates) <= limits.relaxed_actions or not close:
+    is_close = gap.lower_bound >= task.incumbent_cost(gap) * limits.branching_bound
+    if not may_branch(task, gap) or len(gap.candidates) <= limits.relaxed_actions or not is_close:
         return gap
     gap = yield from search_repeatedly(task, gap)
     total, evidence, candidates = task.incumbent_cost(gap), gap.evidence, gap.candidates

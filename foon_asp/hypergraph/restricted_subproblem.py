@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from foon_asp.hypergraph.goal_graph import GoalGraph
-from foon_asp.hypergraph.h_values import Derivations, derive
+from foon_asp.hypergraph.h_values import Derivations, compute_h_values
 
 
 def restricted_subproblem(
@@ -33,7 +33,7 @@ def restricted_subproblem(
                 action = candidates.pop()
                 chosen.add(action)
                 fresh.update(n for n in needs[action] if n not in ranked)
-        derivations = derive(graph, chosen, cost, h_add=False)
+        derivations = compute_h_values(graph, chosen, cost, h_add=False)
         tree = derivations.tree(graph, graph.goals)
         if tree is not None:
             return derivations, tree

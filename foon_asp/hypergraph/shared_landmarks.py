@@ -73,28 +73,28 @@ class SharedLandmarks:
         Cuts are kept as evidence only if the gap stays open, since they are many and large. Where HiGHS
         fails, the gap has ``tree`` and the bound 0.
         """
-        relaxed = self._relax(task, excluded, tree)
+        result = self._relax(task, excluded, tree)
         candidates = self._actions - excluded
-        if relaxed is None:
+        if result is None:
             return Gap(tree, 0, candidates)
-        relaxation, gap = self._relaxation, Gap(relaxed.tree, 0, candidates)
+        relaxation, gap = self._relaxation, Gap(result.tree, 0, candidates)
         capacity = relaxation.costs_in_parts()
         capacity[[self._position[action] for action in excluded]] = capacity.sum()  # they limit no weight
-        weights = relaxation.feasible_weights(zip(relaxed.rows, relaxed.duals, strict=False), capacity)
+        weights = relaxation.feasible_weights(zip(result.rows, result.duals, strict=False), capacity)
         bound, total = sum(weights.values()), task.incumbent_cost(gap)
         if bound > (total - 1) * PARTS:
             return gap.with_bound(total, gap.evidence).as_proved()
-        sums, targets = self._row_sums(relaxed.rows, self._np.array(relaxed.x)), self._targets(task)
+        sums, targets = self._row_sums(result.rows, self._np.array(result.x)), self._targets(task)
         cuts = {
             row: self._cut_of_row(row, targets)
-            for row, value in zip(relaxed.rows, sums, strict=True)
+            for row, value in zip(result.rows, sums, strict=True)
             if weights.get(row) or value < _LP.tight
         }
         partition = CostPartition(
             bound,
             dict(zip(relaxation.actions, capacity.tolist(), strict=True)),
             [(cuts[row], weight) for row, weight in weights.items() if weight],
-            dict(zip(relaxation.actions, relaxed.x, strict=True)),
+            dict(zip(relaxation.actions, result.x, strict=True)),
             [*cuts.values()],
         )
         return apply_partition(task, gap, partition)
@@ -114,9 +114,9 @@ class SharedLandmarks:
             row for row, reached in enumerate(self._reached_without) if not all(reached[o] for o in targets)
         ]
         forbidden = frozenset(self._position[action] for action in excluded)
-        uses = self._row_sums(landmarks, self._value_array(dict.fromkeys(tree, 1.0)))
+        use_counts = self._row_sums(landmarks, self._value_array(dict.fromkeys(tree, 1.0)))
         # by complementary slackness, others have no weight where the tree is optimal and the relaxation tight
-        rows = [row for row, count in zip(landmarks, uses, strict=True) if count == 1]
+        rows = [row for row, count in zip(landmarks, use_counts, strict=True) if count == 1]
         covering, cutter = Covering(relaxation.relative_costs.tolist()), None
         for column in forbidden:
             covering.set_bounds(column, 0.0, 0.0)
@@ -126,23 +126,25 @@ class SharedLandmarks:
         budget = tuning.RELAXATION.cuts * len(relaxation.actions)
         while True:
             try:
-                solved = covering.solve(task.expired)
+                solution = covering.solve(task.expired)
             except UnsolvedError:
                 return None
-            x = np.where(relaxation.relative_costs > 0, np.array(solved.x), 1.0)
+            x = np.where(relaxation.relative_costs > 0, np.array(solution.x), 1.0)
             tree = self._improve_by_lp(task, tree, x)
-            values.append(solved.value)
+            values.append(solution.value)
             # costs are whole, so a bound above the total less one proves the total
-            almost = 100 * sum(map(self.costs, tree)) - 99
-            remaining_gap = float_quotient(almost, 100 * relaxation.greatest_cost) - solved.value
+            sufficient_hundredths = 100 * sum(map(self.costs, tree)) - 99
+            remaining_gap = (
+                float_quotient(sufficient_hundredths, 100 * relaxation.greatest_cost) - solution.value
+            )
             if remaining_gap <= 0 or has_stalled(values, remaining_gap) or task.expired():
                 break
-            chosen = frozenset(rows)
+            current_rows = frozenset(rows)
             sums = self._row_sums(landmarks, x)
             violated = sorted(
                 (value, row)
                 for row, value in zip(landmarks, sums, strict=True)
-                if value < _LP.violated and row not in chosen
+                if value < _LP.violated and row not in current_rows
             )
             added = [row for _, row in violated[: tuning.SHARED.violated_landmarks]]
             if not added:
@@ -157,7 +159,7 @@ class SharedLandmarks:
             rows += added
             for row in added:
                 covering.add_row(relaxation.rows[row])
-        return _Relaxation(tree, rows, solved.x, covering.duals())
+        return _Relaxation(tree, rows, solution.x, covering.duals())
 
     def _value_array(self, value_of_action: dict[int, float]) -> Any:
         """Return an array of the value of each action, by position; actions without a value have 0."""

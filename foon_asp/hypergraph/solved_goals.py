@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.exact_costs import ExactCosts, TooFineError
-from foon_asp.hypergraph.h_values import Derivations, derive
+from foon_asp.hypergraph.h_values import Derivations, compute_h_values
 from foon_asp.hypergraph.incumbent_gap import Gap
 from foon_asp.hypergraph.incumbent_trees import irredundant_subset
 from foon_asp.hypergraph.reductions import Reduction
@@ -93,7 +93,7 @@ class SolvedGoals:
         assert costs is not None
         assert derivations is not None
         allowed = derivations.h_actions.keys() - removed
-        tree = derive(graph, allowed, costs, h_add=True).tree(graph, graph.goals)
+        tree = compute_h_values(graph, allowed, costs, h_add=True).tree(graph, graph.goals)
         if tree is None:
             return None
         union = (tree | self._trees.get(graph.goals, frozenset())) - removed
@@ -115,7 +115,7 @@ class SolvedGoals:
         if not {Reduction.BOUNDS, Reduction.DEAR} <= task.reductions:
             return
         graph = task.graph
-        derivations = derive(graph, range(len(graph.needs)), task.coarse, h_add=True)
+        derivations = compute_h_values(graph, range(len(graph.needs)), task.coarse, h_add=True)
         with suppress(TooFineError):
             costs = ExactCosts(task.problem, task.objectives, derivations.h_actions)
             if not costs.doubt:

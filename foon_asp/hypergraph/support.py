@@ -4,7 +4,7 @@ from collections.abc import Callable, Collection
 from heapq import heapify, heappop, heappush
 
 from foon_asp.hypergraph.goal_graph import GoalGraph
-from foon_asp.hypergraph.h_values import derive
+from foon_asp.hypergraph.h_values import compute_h_values
 
 
 class Support:
@@ -20,7 +20,7 @@ class Support:
 
     def __init__(self, graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int]) -> None:
         self._graph, self._cost = graph, cost
-        self.h_objects, self._best_achiever, self._h_actions = derivations = derive(
+        self.h_objects, self._best_achiever, self._h_actions = derivations = compute_h_values(
             graph, tree, cost, h_add=True
         )
         self.actions = derivations.tree(graph, graph.goals) or set()

@@ -8,7 +8,7 @@ import pytest
 
 from foon_asp.hypergraph.cost_partition import CostPartition
 from foon_asp.hypergraph.goal_graph import GoalGraph
-from foon_asp.hypergraph.h_values import derive
+from foon_asp.hypergraph.h_values import compute_h_values
 from foon_asp.hypergraph.incumbent_trees import (
     improve_locally,
     irredundant_subset,
@@ -33,7 +33,7 @@ def test_nothing_more_can_be_left_out_of_a_tree() -> None:
     for graph, price, able in solvable(120):
         tree = irredundant_subset(graph, able, price.__getitem__)
         assert executes(graph, tree)
-        made = (derive(graph, tree - {a}, price, h_add=True) for a in tree)
+        made = (compute_h_values(graph, tree - {a}, price, h_add=True) for a in tree)
         assert all(each.tree(graph, graph.goals) is None for each in made)
         costs += total(tree, price)
     assert costs <= 660
@@ -42,13 +42,13 @@ def test_nothing_more_can_be_left_out_of_a_tree() -> None:
 def test_what_cannot_be_left_out_stays() -> None:
     only = 0
     for price, graph, slim in with_trees():
-        able = derive(graph, graph.cone()[0], price.__getitem__, h_add=False).h_actions
+        able = compute_h_values(graph, graph.cone()[0], price.__getitem__, h_add=False).h_actions
         assert irredundant_subset(graph, able, price.__getitem__) in slim
         for tree in slim:
             assert irredundant_subset(graph, tree, price.__getitem__) == tree
             for larger in (tree | {more} for more in able):
                 inside = [other for other in slim if other <= larger]
-                runs = derive(graph, larger, lambda _: 1, h_add=False).h_actions
+                runs = compute_h_values(graph, larger, lambda _: 1, h_add=False).h_actions
                 if len(runs) == len(larger) and len(inside) == 1:
                     only += 1  # whatever the costs
                     assert irredundant_subset(graph, larger, price.__getitem__) == tree
@@ -84,7 +84,7 @@ def test_with_one_out_the_others_are_followed_by_costs_that_add_up() -> None:
 def test_a_tree_is_exchanged_for_a_cheaper_one_only(thorough: bool) -> None:
     costs = better = 0
     for price, graph, slim in with_trees():
-        able = derive(graph, graph.cone()[0], price.__getitem__, h_add=False).h_actions
+        able = compute_h_values(graph, graph.cone()[0], price.__getitem__, h_add=False).h_actions
         ordered = sorted((total(tree, price), sorted(tree)) for tree in slim)
         best, dearest = set(ordered[0][1]), set(ordered[-1][1])
         found = improve_locally(graph, able, dearest, price.__getitem__, lambda a: a % 3, never, thorough)
@@ -204,7 +204,7 @@ def by_chance(
 def test_chance_leads_where_no_estimate_does() -> None:
     price, single = SET_COSTS.__getitem__, set(range(9))
     for added in (True, False):
-        assert derive(SETS, range(12), price, added).tree(SETS, SETS.goals) == single
+        assert compute_h_values(SETS, range(12), price, added).tree(SETS, SETS.goals) == single
     assert by_chance(SETS, range(12), single, price, 0) == {9, 10, 11}
     assert by_chance(SETS, range(12), single, price, 0, lambda: True) is single
     assert by_chance(SETS, range(9), single, price, 0) is single

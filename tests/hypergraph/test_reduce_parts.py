@@ -16,7 +16,7 @@ from foon_asp.hypergraph.action_landmarks import relevant_given_landmarks
 from foon_asp.hypergraph.dominance import undominated_actions
 from foon_asp.hypergraph.exact_costs import CoarseCosts
 from foon_asp.hypergraph.goal_graph import GoalGraph, graph_of
-from foon_asp.hypergraph.h_values import Derivations, derive
+from foon_asp.hypergraph.h_values import Derivations, compute_h_values
 from foon_asp.hypergraph.lazy_h_max import lazy_h_max_test
 from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
 from foon_asp.hypergraph.restricted_subproblem import restricted_subproblem
@@ -61,7 +61,7 @@ def solvable(seeds: int) -> Iterator[tuple[GoalGraph, dict[int, int], list[int]]
             ]
             graph = plain(actions, rng.sample(range(1, 12), 6), [0])
         price = {a: rng.randint(0, 6) for a in range(len(graph.needs))}
-        made = derive(graph, price, price, h_add=False)
+        made = compute_h_values(graph, price, price, h_add=False)
         if made.tree(graph, graph.goals):
             yield graph, price, list(made.h_actions)
 
@@ -95,7 +95,7 @@ def test_estimates_are_what_they_are_defined_to_be(added: bool) -> None:
         graph = random_graph(seed)
         price = {a: rng.randint(seed % 2, 5) for a in range(9)}
         actions = rng.sample(range(9), 8)
-        found = derive(graph, actions, price, added)
+        found = compute_h_values(graph, actions, price, added)
         assert (found.h_objects, found.h_actions) == costs_by_definition(graph, actions, price, added)
         assert list(found.h_actions.values()) == sorted(found.h_actions.values())
         assert all(found.h_actions[found.best_achievers[o]] == cost for o, cost in found.h_objects.items())
@@ -114,7 +114,7 @@ def test_estimates_are_what_they_are_defined_to_be(added: bool) -> None:
 
 def test_what_is_there_from_the_start_is_made_by_nothing() -> None:
     graph = plain([([], [0, 1]), ([0], [2])], [0, 2], [0])
-    found = derive(graph, range(2), {0: 1, 1: 1}.__getitem__, h_add=True)
+    found = compute_h_values(graph, range(2), {0: 1, 1: 1}.__getitem__, h_add=True)
     assert found == Derivations({1: 1, 2: 1}, {1: 0, 2: 1}, {0: 1, 1: 1})
     assert [found.tree(graph, objects) for objects in ([0], [0, 2], [2, 3])] == [set(), {1}, None]
 
@@ -123,7 +123,7 @@ def test_of_a_tree_each_action_is_followed_once() -> None:
     # two of each of 60 steps, each of which needs both of the step before: 2 ** 60 ways back
     steps = [([2 * step, 2 * step + 1], [2 * step + 2 + side]) for step in range(60) for side in range(2)]
     graph = plain(steps, [120, 121], [0, 1])
-    found = derive(graph, range(120), dict.fromkeys(range(120), 1), h_add=False)
+    found = compute_h_values(graph, range(120), dict.fromkeys(range(120), 1), h_add=False)
     assert found.tree(graph, graph.goals) == set(range(120))
 
 
@@ -154,7 +154,7 @@ def test_what_is_near_is_what_it_is_defined_to_be() -> None:
         graph = random_graph(seed, actions=12)
         rest = {a: rng.randint(seed % 2, 5) for a in range(12)}
         allowed = set(rng.sample(range(12), 11))
-        before = derive(graph, allowed, rest, h_add=False).h_actions
+        before = compute_h_values(graph, allowed, rest, h_add=False).h_actions
         for limit in (0, 1, 2, 4, 7, 11):
             for known in (None, before):
                 found = neighbourhood(
@@ -170,7 +170,7 @@ def test_what_is_near_is_what_it_is_defined_to_be() -> None:
 def test_all_cheap_trees_are_near() -> None:
     for price, graph, slim in with_trees():
         cone, _ = graph.cone()
-        made = derive(graph, cone, price.__getitem__, h_add=False)
+        made = compute_h_values(graph, cone, price.__getitem__, h_add=False)
         for limit in (0, 1, 3, 6, 12, 100):
             cheap = [tree for tree in slim if sum(map(price.__getitem__, tree)) <= limit]
             close = neighbourhood(graph, set(cone), price.__getitem__, limit)
@@ -215,7 +215,7 @@ def test_what_is_within_reach_is_what_is_derived_at_once(
         allowed = set(rng.sample(range(14), 12))
         rest = {a: rng.randint(seed % 2, 4) for a in allowed}
         exact = (deep, looks, seed % 2) == (100, 1000, 1)
-        made = derive(graph, allowed, rest, h_add=False)
+        made = compute_h_values(graph, allowed, rest, h_add=False)
         reach = lazy_h_max_test(graph, allowed, rest.__getitem__)
         asked = [(o, limit) for o in range(graph.size) for limit in range(9)]
         rng.shuffle(asked)
