@@ -136,8 +136,8 @@ def _cost_contradiction(
     arrays = Arrays(problem, certificate.certified, covered)
     cost = arrays.order.total(arrays.costs[a] for a in arrays.actions(units))
     if certificate.claim == "bound":
-        least = _read_vector(arrays, content["bound"])
-        if arrays.order.sign([*map(sub, cost, least)]) < 0:
+        bound = _read_vector(arrays, content["bound"])
+        if arrays.order.sign([*map(sub, cost, bound)]) < 0:
             return f"the certificate proves the bound {content['bound']}, and the tree costs less"
         return None
     tree = [unit for u in content["tree"] if (unit := problem.network.unit_of_number(u)) is not None]

@@ -47,8 +47,8 @@ class OwnLimits:
         relaxed = relaxed._replace(rules=relaxed.rules + write_soft(weights))
         self._settings = settings._replace(constraints=(), relaxed=relaxed)
         program = assemble(self._settings, lambda _: None)
-        others = program.files[len(ENCODING_FILES) :]
-        self._program = program._replace(files=(question_encoding("breaking_units.lp"), *others))
+        other_files = program.files[len(ENCODING_FILES) :]
+        self._program = program._replace(files=(question_encoding("breaking_units.lp"), *other_files))
         self._has_user_rules = bool(weights)
         self._all_local = all(rule.local for rule in rules.rules if rule.source in shrinking)
         self.found_limits: list[Limit] = []

@@ -137,11 +137,11 @@ class _PlanQuestion:
         proved instead. The second value is then this bound, and otherwise ``None``. Returns ``None`` if
         nothing is proved.
         """
-        kept = [self._level(earlier) for earlier in before]
-        if any(level is None for level in kept):
+        earlier_levels = [self._level(earlier) for earlier in before]
+        if any(level is None for level in earlier_levels):
             return None
-        levels = [level for level, _ in filter(None, kept)]
-        scales = [scale for _, scale in filter(None, kept)]
+        levels = [level for level, _ in filter(None, earlier_levels)]
+        scales = [scale for _, scale in filter(None, earlier_levels)]
         claim = self._claim(objective)
         if claim.least is None or not claim.order.sign(claim.least):
             return {}, None  # nothing costs less than nothing
@@ -200,15 +200,15 @@ class _PlanQuestion:
             counts = Counter(problem.rate(unit) for unit in self._plan)
             least = tuple(Fraction(counts[rate]) for rate in rates)
             costs = [tuple(Fraction(rate == own_rate) for own_rate in rates) for rate in figures]
-            whole = order.approximate(least)[0]
+            plan_cost = order.approximate(least)[0]
             float_costs = (order.approximate(cost)[0] for cost in costs)
-            caps = [math.floor(whole / cost + 1e-6) if cost else None for cost in float_costs]
+            caps = [math.floor(plan_cost / cost + 1e-6) if cost else None for cost in float_costs]
             return Claim(order, costs, order.zero, least, None, caps)
         cost = Fraction(problem.costs(self._plan).measure(objective))
         parts = None
         if objective not in problem.measures:
-            every = problem.figures(objective, range(len(problem.network)))
-            parts = math.lcm(*(Fraction(figure).denominator for figure in every))
+            all_unit_costs = problem.figures(objective, range(len(problem.network)))
+            parts = math.lcm(*(Fraction(figure).denominator for figure in all_unit_costs))
         caps = [math.ceil(cost / figure) - 1 if figure else None for figure in figures]
         order = Lexicographic([None])
         return Claim(order, [(f,) for f in figures], (Fraction(objective.row.item),), (cost,), parts, caps)
@@ -252,13 +252,13 @@ class _PlanQuestion:
             return number
         by_kind: dict[str, dict[int, Fraction]] = {}
         for of_sum, weight in condition.weights:
-            kind, at, scale = self.count_reference(of_sum)
+            kind, index, scale = self.count_reference(of_sum)
             weights = by_kind.setdefault(kind, {})
-            weights[at] = weights.get(at, Fraction(0)) + weight * scale
+            weights[index] = weights.get(index, Fraction(0)) + weight * scale
         self._rounded.append(condition)
         self._rounded_stated.append(
             {
-                kind: [[at, fraction_text(weight)] for at, weight in sorted(weights.items())]
+                kind: [[index, fraction_text(weight)] for index, weight in sorted(weights.items())]
                 for kind, weights in sorted(by_kind.items())
             }
         )

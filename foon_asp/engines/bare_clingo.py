@@ -432,8 +432,9 @@ def _minus_log_interval(rate: Fraction) -> tuple[Fraction, Fraction]:
             return Fraction(0), Fraction(0)
         return Fraction(context.next_minus(logarithm)), Fraction(context.next_plus(logarithm))
 
-    (low, high), (lower, higher) = logarithm_interval(rate.numerator), logarithm_interval(rate.denominator)
-    return lower - high, higher - low
+    numerator_low, numerator_high = logarithm_interval(rate.numerator)
+    denominator_low, denominator_high = logarithm_interval(rate.denominator)
+    return denominator_low - numerator_high, denominator_high - numerator_low
 
 
 def _limit_process(process: int, seconds: float, memory: int) -> None:

@@ -64,9 +64,9 @@ class ExactCosts:
         ends as soon as a bound reaches the limit, or a tree costs less than it.
         """
         units, costs = self._units, copy(self)
-        whole, costs._multiplier = Fraction(price).as_integer_ratio()
+        numerator, costs._multiplier = Fraction(price).as_integer_ratio()
         costs._cache, costs._limit, costs.doubt = {}, limit, self.doubt * costs._multiplier
-        costs._price = lambda action: whole * counts(action) if action < units else 0
+        costs._price = lambda action: numerator * counts(action) if action < units else 0
         return costs
 
     @property
@@ -147,14 +147,14 @@ class ExactCosts:
         coordinates = {rate: i for i, rate in enumerate(rates)}
         vectors = _Vectors(self, coordinates)
         reduced_costs = {action: vectors.vector(action) for action in cuts.reduced_costs}
-        proved = [0] * order.width
+        slack = [0] * order.width
         for cut in cuts.cuts:
             weight = tuple(reduced_costs[cut.cheapest])
             if _is_too_large(weight) or order.sign(weight) < 0:
                 return False
             for i, coordinate in enumerate(weight):
                 if coordinate:
-                    proved[i] += coordinate
+                    slack[i] += coordinate
                     for action in cut.members:
                         reduced_costs[action][i] -= coordinate
         if any(
@@ -164,8 +164,8 @@ class ExactCosts:
             return False
         for action in tree:
             for i, coordinate in enumerate(vectors.vector(action)):
-                proved[i] -= coordinate
-        return not _is_too_large(proved) and order.sign(proved) >= 0
+                slack[i] -= coordinate
+        return not _is_too_large(slack) and order.sign(slack) >= 0
 
     def combined_cost(self, costs: Costs) -> int:
         """Return the cost of a tree as one integer, from its costs by objective.
@@ -231,10 +231,10 @@ class _Vectors:
         vector: list[int] = []
         for objective, figure in self._costs.figures(action):
             if multiplies(objective):
-                parts = [0] * len(self._coordinates)
+                exponents = [0] * len(self._coordinates)
                 if figure:
-                    parts[self._coordinates[self._costs.rate(action)]] = 1
-                vector += parts
+                    exponents[self._coordinates[self._costs.rate(action)]] = 1
+                vector += exponents
             else:
                 vector.append(figure)
         return vector

@@ -64,12 +64,12 @@ def actions_of_extensions(
     )
     while not expired():
         derivations = compute_h_values(graph, remaining.union(free), remaining_cost, h_add=False)
-        nearer = neighbourhood(
+        narrowed = neighbourhood(
             required_graph, remaining, cost, limit, derivations.h_actions, min_reduced_cost=1
         )
-        if len(nearer) == len(remaining):
+        if len(narrowed) == len(remaining):
             break
-        remaining = nearer
+        remaining = narrowed
     return remaining
 
 

@@ -201,8 +201,8 @@ def reduced_cost_fixing(
     )
     while not expired():
         derivations = compute_h_values(graph, remaining, reduced_cost, h_add=False)
-        nearer = neighbourhood(graph, remaining, reduced_cost, limit, derivations.h_actions)
-        if len(nearer) == len(remaining):
+        narrowed = neighbourhood(graph, remaining, reduced_cost, limit, derivations.h_actions)
+        if len(narrowed) == len(remaining):
             break
-        remaining = nearer
+        remaining = narrowed
     return remaining

@@ -56,8 +56,8 @@ def raise_bound(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide 
 def tighten(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide | None, thorough: bool) -> Stage:
     """Raise the lower bound by cuts, look for better trees, and fix candidates by reduced costs.
 
-    Where the cuts prove the incumbent optimal, no candidates are fixed, and the gap is marked as proved.
-    Raises ``KeyboardInterrupt`` where the search for cuts was interrupted.
+    Yields the gap after each step. Where the cuts prove the incumbent optimal, no candidates are fixed, and
+    the gap is marked as proved. Raises ``KeyboardInterrupt`` where the search for cuts was interrupted.
     """
     gap, cuts = raise_bound(task, gap, h_values, guide)
     yield gap
@@ -107,7 +107,10 @@ def search_neighbourhood(task: Task, gap: Gap, cuts: Cuts, thorough: bool) -> Ga
 
 
 def search_repeatedly(task: Task, gap: Gap) -> Stage:
-    """Search the neighbourhood thoroughly from each new incumbent, within the budget of branching."""
+    """Search the neighbourhood thoroughly from each new incumbent, within the budget of branching.
+
+    Yields the gap after each search.
+    """
     budget, previous = task.tuning.branching_budget, frozenset[int]()
     while gap.incumbent != previous and not task.expired():
         previous = gap.incumbent

@@ -106,30 +106,30 @@ def perturbation_search(
     Ends at a cost of ``sufficient_cost`` or where time is up. Also ends when each action was looked at
     ``tries`` times since the last improvement.
     """
-    best = last = tree
+    best = current_tree = tree
     total = sum(map(cost, tree))
-    ordered = sorted(actions)
-    effort = tries * len(ordered)
+    ordered_actions = sorted(actions)
+    effort = tries * len(ordered_actions)
     while effort > 0 and total > sufficient_cost and not expired():
         if random_number() < 0.5:
-            candidates = ordered
-            unused = ((a, (1 - min(1.0, lp_values[a])) * (0.5 + random_number())) for a in candidates)
-            price = {a: 1 + _scaled_cost(cost(a), share) for a, share in unused}
+            candidates = ordered_actions
+            factors = ((a, (1 - min(1.0, lp_values[a])) * (0.5 + random_number())) for a in candidates)
+            price = {a: 1 + _scaled_cost(cost(a), share) for a, share in factors}
         else:
-            share, fraction = random_number(), 1.0 if random_number() < 0.5 else random_number() ** 2
-            candidates = [a for a in ordered if random_number() < fraction or a in last]
+            share, allowed_share = random_number(), 1.0 if random_number() < 0.5 else random_number() ** 2
+            candidates = [a for a in ordered_actions if random_number() < allowed_share or a in current_tree]
             price = {a: _scaled_cost(cost(a), 0.5 + random_number()) for a in candidates}
-            price |= {a: 0 for a in sorted(last) if random_number() < share}
+            price |= {a: 0 for a in sorted(current_tree) if random_number() < share}
         effort -= len(candidates)
         derived = compute_h_values(graph, candidates, price, h_add=random_number() < 0.5).tree(
             graph, graph.goals
         )
-        candidate = irredundant_subset(graph, derived or last, cost)
+        candidate = irredundant_subset(graph, derived or current_tree, cost)
         candidate_total = sum(map(cost, candidate))
         if candidate_total < total:
-            best, effort = candidate, tries * len(ordered)
+            best, effort = candidate, tries * len(ordered_actions)
         if candidate_total <= total:
-            last, total = candidate, candidate_total
+            current_tree, total = candidate, candidate_total
     return best
 
 

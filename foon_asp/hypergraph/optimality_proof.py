@@ -470,7 +470,7 @@ class _Node:
     """The relaxation at one node of the branching: a column for each action, a row for each limit and cut.
 
     ``lp_values`` are the LP values of the columns in the last solution. ``cuts`` are the cuts in order of
-    rows.
+    rows. The excess over a limit costs 1000 times the ``goal``, which is the bound to be proved.
     """
 
     def __init__(self, prover: Prover, cutter: Cutter, used: frozenset[int], goal: Vector | None) -> None:

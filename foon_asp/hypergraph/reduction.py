@@ -241,7 +241,7 @@ def run_rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
     """Repeat landmark cuts, search for trees and pruning, until nothing changes or a tree is optimal.
 
     Where the cuts exclude few candidates, the linear relaxation and branching follow. Then better trees are
-    looked for thoroughly. Ends early where time is up.
+    looked for thoroughly. Ends early where time is up. Yields each gap that it reaches.
     """
     costs, limits = task.costs, task.tuning
     if costs is not None and len(gap.candidates) > limits.easy_actions:
@@ -284,7 +284,10 @@ def _has_changed(gap: Gap, before: Gap) -> bool:
 
 
 def _tighten_by_relaxation(task: Task, gap: Gap) -> Stage:
-    """Tighten the gap by optimal cost partitions and branch and bound, if there are many candidates."""
+    """Tighten the gap by optimal cost partitions and branch and bound; yield each gap that is reached.
+
+    Does nothing if there are few candidates.
+    """
     if len(gap.candidates) <= task.tuning.relaxed_actions:
         return gap
     from foon_asp.hypergraph.relaxation_stages import (  # noqa: PLC0415 (few questions need it)
@@ -299,8 +302,8 @@ def _tighten_by_relaxation(task: Task, gap: Gap) -> Stage:
 def run_near_goals(task: Task, gap: Gap, h_values: HValues) -> Stage:
     """Run the greedy stages near the goals of a large network, then rounds over the remaining candidates.
 
-    No guide is used, since h-values of reduced costs take time linear in all actions. Raises
-    ``KeyboardInterrupt`` where time is up before any reduction.
+    No guide is used, since h-values of reduced costs take time linear in all actions. Yields each gap that it
+    reaches. Raises ``KeyboardInterrupt`` where time is up before any reduction.
     """
     if task.costs is not None:
         gap = yield from greedy.tighten(task, gap, h_values, None, thorough=False)
@@ -323,7 +326,10 @@ def run_near_goals(task: Task, gap: Gap, h_values: HValues) -> Stage:
 
 
 def _follow_h_add(task: Task, gap: Gap, h_values: HValues) -> Stage:
-    """Replace the incumbent by the tree that follows h_add, if that is better."""
+    """Replace the incumbent by the tree that follows h_add, if that is better; yield the gap.
+
+    Does nothing without exact costs.
+    """
     if task.costs is not None:
         gap = greedy.follow_h_add(task, gap)
         yield gap
@@ -331,7 +337,10 @@ def _follow_h_add(task: Task, gap: Gap, h_values: HValues) -> Stage:
 
 
 def _bound_once(task: Task, gap: Gap, h_values: HValues) -> Stage:
-    """Raise the lower bound once by landmark cuts."""
+    """Raise the lower bound once by landmark cuts; yield the gap.
+
+    Does nothing without exact costs.
+    """
     if task.costs is not None:
         gap = greedy.raise_bound(task, gap, h_values, greedy.h_max_guide(task, gap)).gap
         yield gap
@@ -339,7 +348,10 @@ def _bound_once(task: Task, gap: Gap, h_values: HValues) -> Stage:
 
 
 def _bound_lazily(task: Task, gap: Gap, h_values: HValues) -> Stage:
-    """Raise the lower bound by landmark cuts without a guide, since a guide looks at all actions."""
+    """Raise the lower bound once by landmark cuts without a guide; yield the gap.
+
+    A guide would look at all actions. Does nothing without exact costs.
+    """
     if task.costs is not None:
         gap = greedy.raise_bound(task, gap, h_values, None).gap
         yield gap
@@ -375,6 +387,7 @@ class _Presolve:
     ``gap``: the last gap; ``None`` before there is a tree.
     ``ended``: whether nothing interrupted the run.
     ``redundant``: whether trees may have redundant actions. Then the costs of all actions are needed.
+    ``listener``, ``guard``: as for :func:`reduce`.
     """
 
     def __init__(self, task: Task, listener: Listener | None, guard: Guard, redundant: bool = False) -> None:
@@ -388,7 +401,10 @@ class _Presolve:
         return Bounds(self._listener)
 
     def run_guarded(self, step: Callable[[], None]) -> None:
-        """Run a step under the guard; ``KeyboardInterrupt`` is raised only if there is no tree yet."""
+        """Run a step under the guard, and set ``ended``.
+
+        ``KeyboardInterrupt`` ends the step. It is raised further only if there is no tree yet.
+        """
         self.ended = False
         try:
             with self.guard():
@@ -450,7 +466,7 @@ class _Presolve:
             self.run(ROUNDS)
 
     def run_stages(self, stages: Stages, h_values: HValues) -> None:
-        """Run stages from the current gap; report trees and bounds on the way."""
+        """Run stages from the current gap with exact costs; report trees and bounds on the way."""
         assert self.gap is not None
         actions = range(len(self.task.graph.needs)) if self._redundant else self.gap.candidates
         self.task = task = _with_costs(self.task, actions)
@@ -458,7 +474,7 @@ class _Presolve:
             self.report(gap)
 
     def report(self, gap: Gap) -> None:
-        """Make another gap the current one; report its tree and its bound if they are new."""
+        """Make another gap the current one; report its tree and its bound to the listener if they are new."""
         before, self.gap = self.gap, gap
         if before is None or gap.incumbent is not before.incumbent:
             self._listener.tree(self._units(gap.incumbent))

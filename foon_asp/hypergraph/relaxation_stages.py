@@ -28,7 +28,7 @@ def partition_costs(task: Task, gap: Gap) -> Stage:
     """Raise the bound by optimal cost partitions, derive trees from LP solutions, and fix candidates.
 
     Where many candidates were excluded, the relaxation begins anew over the remaining ones. Ends where few
-    are excluded, where time is up, and where branching is faster.
+    are excluded, where time is up, and where branching is faster. Yields each gap that it reaches.
     """
     costs, graph, limits = task.costs, task.graph, task.tuning
     assert costs is not None
@@ -73,7 +73,8 @@ def follow_solution(task: Task, gap: Gap, partition: CostPartition, looks: int) 
     """Look for better trees that follow an LP solution, then apply its cost partition.
 
     Trees are also looked for by branch and bound, if the solution uses few actions, else by perturbation
-    search. ``looks`` is the budget: how often each candidate may be looked at.
+    search. ``looks`` is the budget: how often each candidate may be looked at. Yields each gap that it
+    reaches.
     """
     costs, graph = task.costs, task.graph
     assert costs is not None
@@ -129,7 +130,8 @@ def search_among(
 ) -> Stage:
     """Look for a better tree among a few actions by branch and bound (sub-MIP heuristic).
 
-    ``cuts`` are cuts to begin with. ``effort`` is the budget, in actions looked at.
+    ``cuts`` are cuts to begin with. ``effort`` is the budget, in actions looked at. Yields the gap with each
+    better tree.
     """
     graph, costs = task.graph, task.costs
     assert costs is not None
@@ -159,7 +161,7 @@ def branch(task: Task, gap: Gap) -> Stage:
     """Branch and bound over the candidates, within the budget, if the lower bound is close enough.
 
     Better trees are first looked for in the neighbourhood. If the search closes all nodes, the gap is marked
-    as proved, and the case split becomes evidence.
+    as proved, and the case split becomes evidence. Yields each gap that it reaches.
     """
     costs, graph, limits = task.costs, task.graph, task.tuning
     assert costs is not None

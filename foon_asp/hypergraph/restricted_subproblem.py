@@ -18,10 +18,10 @@ def restricted_subproblem(
     needs, achievers, start = graph.needs, graph.makers, graph.start
     chosen = set(actions)
     ranked: dict[int, list[int]] = {}  # by relevant object, its achievers not yet added, best last
-    fresh = set(graph.goals)
+    unreached = set(graph.goals)
     while len(chosen) <= max_actions:
-        while fresh:
-            o = fresh.pop()
+        while unreached:
+            o = unreached.pop()
             if o in start:
                 continue
             candidates = ranked.get(o)
@@ -32,12 +32,12 @@ def restricted_subproblem(
             if candidates:
                 action = candidates.pop()
                 chosen.add(action)
-                fresh.update(n for n in needs[action] if n not in ranked)
+                unreached.update(n for n in needs[action] if n not in ranked)
         derivations = compute_h_values(graph, chosen, cost, h_add=False)
         tree = derivations.tree(graph, graph.goals)
         if tree is not None:
             return derivations, tree
-        fresh = {o for o, candidates in ranked.items() if candidates and o not in derivations.h_objects}
-        if not fresh:
+        unreached = {o for o, candidates in ranked.items() if candidates and o not in derivations.h_objects}
+        if not unreached:
             return None
     return None

@@ -53,8 +53,9 @@ class _Relaxation(NamedTuple):
 class SharedLandmarks:
     """Landmarks of all objects that a network can make from a kitchen, for costs without rounding.
 
-    The linear relaxation for a question begins with known landmarks of its goals. Landmarks that it adds are
-    kept for later questions. A question may exclude actions.
+    ``actions`` are the actions that can run, and ``objects`` the objects that they make. The linear
+    relaxation for a question begins with known landmarks of its goals. Landmarks that it adds are kept for
+    later questions. A question may exclude actions.
     """
 
     def __init__(self, task: Task, costs: ExactCosts, actions: Iterable[int], objects: Sequence[int]) -> None:
