@@ -141,11 +141,9 @@ def certify_infeasible(
     arrays = Arrays(problem, (), covered)
     never = min(arrays.ruled.never, default=None)
     proof = _prover(arrays, expired).prove_none() if never is None else Broken(never)
-    return (
-        None
-        if proof is None
-        else _write_tree_certificate(arrays, covered, "infeasible", None, proof, subject)
-    )
+    if proof is None:
+        return None
+    return _write_tree_certificate(arrays, covered, "infeasible", None, proof, subject)
 
 
 def _prover(arrays: Arrays, expired: Callable[[], bool], cuts: Sequence[Sequence[int]] = ()) -> Prover:

@@ -177,12 +177,12 @@ def _wrong_answer(outcome: Outcome, settings: Settings, why: str) -> BugError:
 
 
 def _tree_text(outcome: Outcome, units: Sequence[int]) -> str:
-    """Return a tree and its costs in words, for the message about a contradiction."""
+    """Return a tree and its costs in words, for a message."""
     return f"the units {list(units)} ({_costs_text(outcome.problem, units)})"
 
 
 def _costs_text(problem: Problem, units: Sequence[int]) -> str:
-    """Return the costs of a tree in words, for the message about a contradiction."""
+    """Return the costs of a tree in words, such as ``3 units, 7 inputs``, for a message."""
     costs = problem.costs(units)
     figures = [f"{costs.units} units", f"{costs.inputs} inputs", f"{costs.ingredients} ingredients"]
     figures.append(f"{costs.kitchen} kitchen items")

@@ -134,8 +134,8 @@ class _PlanQuestion:
         """Return the JSON of a proof that no plan costs less than the incumbent by an objective, and a bound.
 
         Only plans as good by the objectives ``before`` count. For the first objective, a smaller bound may be
-        proved instead. The second value is then this bound, and otherwise ``None``. Returns ``None`` if
-        nothing is proved.
+        proved instead. The second value is then this bound, and otherwise ``None``. The proof is empty where
+        the incumbent costs nothing. Returns ``None`` if nothing is proved.
         """
         earlier_levels = [self._level(earlier) for earlier in before]
         if any(level is None for level in earlier_levels):
@@ -153,11 +153,14 @@ class _PlanQuestion:
         proof, least, columns = proved
         if least != claim.least and before:
             return None
-        stated = _ProofWriter(self, claim.order if multiplies(objective) else None, levels, scales, columns)
-        return stated.proof(proof), None if least == claim.least else least
+        writer = _ProofWriter(self, claim.order if multiplies(objective) else None, levels, scales, columns)
+        return writer.proof(proof), None if least == claim.least else least
 
     def prove_none(self) -> Any | None:
-        """Return the JSON of a proof that there is no plan; ``None`` where none is found."""
+        """Return the JSON of a proof that there is no plan; ``None`` where none is found.
+
+        The proof is empty where a rule excludes every plan.
+        """
         problem, ruled = self._problem, self._ruled
         if ruled.never:
             return {}

@@ -69,7 +69,7 @@ def cross_check(
     Without ``seconds``, the remaining time of the question is divided among the engines. Without a time
     limit, each has a minute. Bare clingo comes first, and checks answers under any rules. The other
     ``engines`` check answers only if all rules are built-in or forbid single units, and no items are used up.
-    After ctrl-C, no other engine is asked.
+    Answers that are not proved are not checked. After ctrl-C, no other engine is asked.
 
     Raises :class:`DisagreementError` for the first engine whose answer differs. For an engine of another
     package, this error is raised only if the engine's tree is valid and better than ours. Otherwise that

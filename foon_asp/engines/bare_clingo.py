@@ -282,7 +282,10 @@ class _Comparison:
                 raise difference_error(str(objective), ours, theirs, compared, multiplies(objective))
 
     def _has_exact_weights(self, objective: Objective) -> bool:
-        """Return whether the weights are the costs of units times one factor, so that none is rounded."""
+        """Return whether the weights are the costs of units times one factor, so that none is rounded.
+
+        Where rates multiply, they are exact only if all rates are 1.
+        """
         weights = self.weights[objective]
         pairs = set(zip(self._unit_costs(weights, objective), weights.values(), strict=True))
         if multiplies(objective):

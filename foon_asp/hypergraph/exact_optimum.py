@@ -61,7 +61,7 @@ def exact_optimum(
             entering_variable = basis.entering_variable(order)
             if entering_variable is None:
                 kept = {row: weight for row, weight in basis.duals.items() if order.sign(weight)}
-                lp_values = {column: share for column, share in basis.x.items() if share}
+                lp_values = {column: lp_value for column, lp_value in basis.x.items() if lp_value}
                 value = order.total(multiply(weight, row_minimums[row]) for row, weight in kept.items())
                 return ExactOptimum(lp_values, kept, value)
             for number, is_row in (entering_variable, basis.leaving_variable(*entering_variable)):
@@ -96,8 +96,8 @@ class _Basis:
             for column, value in entries.items():
                 transposed[column][row] = value
         self.x = {
-            c: share
-            for c, (share,) in solve_exactly(self._matrix, {r: (row_minimums[r],) for r in tight}).items()
+            c: lp_value
+            for c, (lp_value,) in solve_exactly(self._matrix, {r: (row_minimums[r],) for r in tight}).items()
         }
         self.duals = solve_exactly(transposed, {column: costs[column] for column in columns})
         self.slack = [

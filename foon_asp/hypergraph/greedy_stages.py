@@ -100,7 +100,7 @@ def search_neighbourhood(task: Task, gap: Gap, cuts: Cuts, thorough: bool) -> Ga
     reduced_cost = reduced_costs_of(costs, cuts)
     distance, tree = task.incumbent_cost(gap) - cuts.bound, set(gap.incumbent)
     candidates = neighbourhood(
-        task.thin, gap.candidates, reduced_cost, distance, enough=task.tuning.neighbourhood_actions
+        task.thin_graph, gap.candidates, reduced_cost, distance, enough=task.tuning.neighbourhood_actions
     )
     better = improve_locally(task.graph, candidates | tree, tree, costs, reduced_cost, task.expired, thorough)
     return gap if better is tree else gap.with_incumbent(better)
@@ -166,7 +166,7 @@ def restrict_to_relevant(task: Task, gap: Gap) -> tuple[Gap, dict[int, int]] | N
     """
     graph = task.graph
     cone, _ = graph.cone(task.scope)
-    derivations = compute_h_values(graph, cone, task.coarse, h_add=False)
+    derivations = compute_h_values(graph, cone, task.coarse_costs, h_add=False)
     tree = derivations.tree(graph, graph.goals)
     if tree is None:
         return None

@@ -182,7 +182,7 @@ class Prover:
         undecided = set(cutter.actions) - used if cases else ()
         while cases is not None and cases[0] not in undecided:
             cases = cases[2] if cases[0] in used else cases[1]
-        widened: Sequence[Cut] = ()
+        cuts: Sequence[Cut] = ()
         if remaining_goal is not None:
 
             def others(above_cutoff: frozenset[int], known_cuts: Collection[frozenset[int]]) -> Proof:
@@ -194,7 +194,7 @@ class Prover:
             )
             step = self._cost_step() if is_large else Fraction(0)
             without_lp = cases is not None and not at_root
-            proof, widened = self._prove_by_partition(
+            proof, cuts = self._prove_by_partition(
                 cutter, used, remaining_goal, known_cuts, others, step, without_lp, at_root
             )
             if proof is not None:
@@ -203,7 +203,7 @@ class Prover:
             return self._branch(goal, used, forbidden, known_cuts, cases[0], cases[1:])
         while True:
             node = _Node(self, cutter, used, goal)
-            node.add_cuts(widened)
+            node.add_cuts(cuts)
             exact = node.relax(remaining_goal)
             if exact is not None and node.is_sufficient(exact.value, remaining_goal):
                 return node.packing(exact)
@@ -213,7 +213,7 @@ class Prover:
             if limit is None:
                 break
             self._limits.append(limit)
-            widened = node.cuts
+            cuts = node.cuts
         if action is None:
             breaking = [a for a in self._breaking_actions(rounded_solution) if a not in used]
             if not breaking:
@@ -372,7 +372,8 @@ class Prover:
         """Return a proof by reduced-cost fixing; ``None`` if too few actions are above the cutoff.
 
         A derivation with an action costs at least the sum of the weights plus the reduced cost of the action.
-        ``None`` also if ``step`` is 0.
+        For derivations without the actions above the cutoff, ``others`` proves the goal. If its proof needs
+        no such action, it is returned as it is. ``None`` also if ``step`` is 0.
         """
         if not step:
             return None
@@ -382,8 +383,8 @@ class Prover:
         if len(above_cutoff) <= tuning.PROOF.fixed_share * len(cutter.actions):
             return None
         proof = others(above_cutoff, known_cuts)
-        needed = above_cutoff.intersection(self._landmark_actions(proof))
-        return CostFixing(tuple(sorted(needed)), packing._replace(rounded=0), proof) if needed else proof
+        fixed = above_cutoff.intersection(self._landmark_actions(proof))
+        return CostFixing(tuple(sorted(fixed)), packing._replace(rounded=0), proof) if fixed else proof
 
     def _landmark_actions(self, proof: Proof) -> Iterator[int]:
         """Yield the actions that cross cuts of a proof, including fixed actions."""

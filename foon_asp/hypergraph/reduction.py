@@ -187,7 +187,7 @@ def reduce_at_costs(
     reductions = {Reduction.DEAR, Reduction.BOUNDS} if below else ALL
     with uncollected():
         task = _task_of(subproblem.problem, objectives, reductions, expired, presolve_tuning)
-        task = replace(task, costs=costs, coarse=costs, below=below, scope=subproblem.remaining)
+        task = replace(task, costs=costs, coarse_costs=costs, below=below, scope=subproblem.remaining)
 
         def fix_before_rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
             """Fix candidates by the cutoff first, and run all rounds only if few enough remain."""
@@ -274,7 +274,9 @@ def run_rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
         if not changed and (thorough or len(gap.candidates) <= limits.easy_actions):
             return gap
         thorough = not changed
-        h_values = compute_h_values(task.graph, gap.candidates, costs or task.coarse, h_add=False).h_objects
+        h_values = compute_h_values(
+            task.graph, gap.candidates, costs or task.coarse_costs, h_add=False
+        ).h_objects
     return gap
 
 
@@ -319,7 +321,7 @@ def run_near_goals(task: Task, gap: Gap, h_values: HValues) -> Stage:
     yield gap
     if not task.expired():
         h_values = compute_h_values(
-            task.graph, gap.candidates, task.costs or task.coarse, h_add=False
+            task.graph, gap.candidates, task.costs or task.coarse_costs, h_add=False
         ).h_objects
         gap = yield from run_rounds(task, gap, h_values)
     return gap
@@ -371,10 +373,12 @@ def _first_tree_near_goals(task: Task) -> tuple[Gap, HValues] | None:
     if not task.reductions & {Reduction.BOUNDS, Reduction.DEAR} or size <= limits.lazy_actions:
         return None
     all_actions = range(size)
-    nearest = neighbourhood(task.thin, all_actions, task.coarse, math.inf, enough=limits.first_actions)
+    nearest = neighbourhood(
+        task.thin_graph, all_actions, task.coarse_costs, math.inf, enough=limits.first_actions
+    )
     if len(nearest) < limits.first_actions:
         return None
-    narrowed = restricted_subproblem(task.thin, nearest, task.coarse, size // 4)
+    narrowed = restricted_subproblem(task.thin_graph, nearest, task.coarse_costs, size // 4)
     if narrowed is None:
         return None
     derivations, tree = narrowed
@@ -432,8 +436,8 @@ class _Presolve:
         self.gap, h_values = opening
         if task.reductions:
             trees = [self.gap.incumbent, known_tree] if known_tree else [self.gap.incumbent]
-            tree = min(trees, key=lambda tree: sum(map(task.coarse, tree)))
-            self.report(self.gap.with_incumbent(irredundant_subset(task.graph, tree, task.coarse)))
+            tree = min(trees, key=lambda tree: sum(map(task.coarse_costs, tree)))
+            self.report(self.gap.with_incumbent(irredundant_subset(task.graph, tree, task.coarse_costs)))
             self.run_stages(stages, h_values)
 
     def run_with_solved_goals(self, solved: SolvedGoals) -> None:
@@ -526,7 +530,7 @@ def _presolve_by_extension(presolve: _Presolve) -> None:
 
     def extend() -> None:
         """Extend the best tree for the goals alone; the candidates are the actions of cheap extensions."""
-        tree = extend_tree(task.thin, gap.incumbent, costs, len(graph.needs) // 4)
+        tree = extend_tree(task.thin_graph, gap.incumbent, costs, len(graph.needs) // 4)
         if tree is None:
             return
         incumbent = frozenset(irredundant_subset(graph, tree, costs))
@@ -547,7 +551,7 @@ def _presolve_by_extension(presolve: _Presolve) -> None:
         candidates |= actions_of_extensions(graph, candidates, costs, distance, task.expired)
         if task.expired():
             raise KeyboardInterrupt
-        derivations = compute_h_values(graph, candidates, task.coarse, h_add=False)
+        derivations = compute_h_values(graph, candidates, task.coarse_costs, h_add=False)
         h_values.update(derivations.h_objects)
         presolve.gap = start.with_candidates(graph.cone(derivations.h_actions)[0])
 

@@ -79,7 +79,7 @@ def follow_solution(task: Task, gap: Gap, partition: CostPartition, looks: int) 
     costs, graph = task.costs, task.graph
     assert costs is not None
     used = {
-        action for action, share in partition.lp_values.items() if share > ROUGH_TOLERANCE
+        action for action, lp_value in partition.lp_values.items() if lp_value > ROUGH_TOLERANCE
     } | gap.incumbent
     for tree in trees_by_partition(graph, gap.candidates, costs, partition):
         used |= tree

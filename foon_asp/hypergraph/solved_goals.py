@@ -26,7 +26,7 @@ class SolvedGoals:
         self._trees: dict[tuple[int, ...], frozenset[int]] = {}  # by goals; with units that others remove
         self._derivations: Derivations | None = None  # by h_add, once landmarks are shared
         self._landmarks: SharedLandmarks | None = None
-        self._declined = False  # whether costs are rounded, so that nothing is shared
+        self._sharing_tried = False  # it fails where costs are rounded
 
     @property
     def sharing(self) -> bool:
@@ -109,13 +109,13 @@ class SolvedGoals:
         if gap is None or not gap.proved:
             return
         self._trees[task.graph.goals] = gap.incumbent
-        if not gap.evidence.tight or self._landmarks is not None or self._declined:
+        if not gap.evidence.tight or self._landmarks is not None or self._sharing_tried:
             return
-        self._declined = True
+        self._sharing_tried = True
         if not {Reduction.BOUNDS, Reduction.DEAR} <= task.reductions:
             return
         graph = task.graph
-        derivations = compute_h_values(graph, range(len(graph.needs)), task.coarse, h_add=True)
+        derivations = compute_h_values(graph, range(len(graph.needs)), task.coarse_costs, h_add=True)
         with suppress(TooFineError):
             costs = ExactCosts(task.problem, task.objectives, derivations.h_actions)
             if not costs.doubt:

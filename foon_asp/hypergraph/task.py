@@ -17,8 +17,8 @@ class Task:
     """A question as a graph with costs, and the settings of its reduction.
 
     ``expired``: returns whether time is up.
-    ``thin``: the graph with few achievers of each required set.
-    ``coarse``: rough costs, for estimates.
+    ``thin_graph``: the graph with few achievers of each required set.
+    ``coarse_costs``: rough costs, for estimates.
     ``scope``: the actions that trees may have.
     ``costs``: exact costs; ``None`` if rates are too fine, and before the first tree.
     ``below``: trees that cost less are wanted, even if they are no better than the incumbent. 0 for none.
@@ -30,8 +30,8 @@ class Task:
     reductions: frozenset[Reduction]
     expired: Callable[[], bool]
     graph: GoalGraph
-    thin: GoalGraph
-    coarse: Callable[[int], int]
+    thin_graph: GoalGraph
+    coarse_costs: Callable[[int], int]
     tuning: PresolveTuning
     scope: Collection[int]
     costs: ExactCosts | None = None
