@@ -203,7 +203,7 @@ class Postconditions:
             all(
                 exact.is_logarithm(total, Fraction(costs.measure(objective)))
                 if multiplies(objective)
-                else exact.total(objective, total) == costs.measure(objective)
+                else exact.unscale(objective, total) == costs.measure(objective)
                 for objective, total in totals.items()
             ),
             lambda: f"the tree {actions} costs {_costs_text(costs)}, but the reductions make it {totals}",

@@ -100,7 +100,7 @@ class _IncumbentListener(Listener):
 
     def bound(self, costs: ExactCosts, bound: int) -> None:
         """Receive a proved lower bound, and report it as one on the first objective."""
-        self.reporter.bound(self.levels[0], costs.first(bound))
+        self.reporter.bound(self.levels[0], costs.first_objective_bound(bound))
 
     def run_ended(self, run: "Run") -> None:
         """Receive a finished run of clingo; if it has statistics, report them and note that clingo ran."""
@@ -251,7 +251,7 @@ class _Solver:
         This is tried for each sum of the rules whose limit ``tree`` exceeds. ``None`` if no price yields a
         tree that keeps to all rules.
         """
-        from foon_asp.hypergraph.priced_limit import limited  # noqa: PLC0415 (of use with few rules)
+        from foon_asp.hypergraph.priced_limit import search_within_limit  # noqa: PLC0415 (of use with few rules)
 
         program = self.prepared.full_program
         assert program is not None
@@ -261,7 +261,9 @@ class _Solver:
                 continue
             try:
                 with self.deadline.watched("cutting the network", late=True):
-                    result = limited(subproblem, self.levels, tree, row, lambda: self.deadline.passed)
+                    result = search_within_limit(
+                        subproblem, self.levels, tree, row, lambda: self.deadline.passed
+                    )
             except KeyboardInterrupt:
                 self.deadline.interrupt()
                 return self._outcome(Status.UNKNOWN, None, {})
@@ -282,9 +284,9 @@ class _Solver:
 
         The last neighbourhood is the whole subproblem. If a limit is reached, the run is not exhausted.
         """
-        all_units, size = subproblem.everything(), SEARCH.nearest_units
+        all_units, size = subproblem.all_units(), SEARCH.nearest_units
         while True:
-            neighbourhood = all_units if size >= len(all_units) else subproblem.nearest(size) | tree
+            neighbourhood = all_units if size >= len(all_units) else subproblem.nearest_units(size) | tree
             size *= SEARCH.nearest_growth
             self._restrict_to(neighbourhood)
             run = self._run(self.levels)
@@ -334,7 +336,7 @@ class _Solver:
         program = program._replace(files=files, arguments=arguments)
         landmarks = subproblem.landmarks()
         required = write_required([map(number, sorted(landmark)) for landmark in landmarks])
-        before = subproblem.left_of(self._mattered)
+        before = subproblem.units_of_numbers(self._mattered)
         max_units = SEARCH.explored_units + len(before)
         explored = subproblem.with_only_achievers(
             before.union(
@@ -710,7 +712,7 @@ class _Solver:
         reduced = self.prepared.reduced
         if reduced is None or reduced.costs is None:
             return bounds
-        objective_first, proved = self.levels[0], reduced.costs.first(reduced.bound)
+        objective_first, proved = self.levels[0], reduced.costs.first_objective_bound(reduced.bound)
         if multiplies(objective_first):
             return {objective_first: min(bounds[objective_first], proved)}
         assert self.listener.incumbent is not None
@@ -784,8 +786,8 @@ def _cut_objects(reduced: Reduced | None) -> list[frozenset[int]]:
     if reduced is None:
         return []
     best = _first_cut_objects(reduced.cuts)
-    if reduced.shared:
-        best = [objects for objects, _ in reduced.shared.cuts]
+    if reduced.partition:
+        best = [objects for objects, _ in reduced.partition.cuts]
     first = _first_cut_objects(reduced.subproblem.cuts if reduced.subproblem else None)
     return [*dict.fromkeys([*best, *first, *reduced.tight])]
 

@@ -15,7 +15,7 @@ from foon_asp.asp.solver import solve
 from foon_asp.encoding.fact_writer import write_avoided, write_in_all, write_objectives, write_unseen
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import UserError
-from foon_asp.hypergraph.reduction import at_costs, reduce_under_rules
+from foon_asp.hypergraph.reduction import reduce_at_costs, reduce_under_rules
 from foon_asp.problem import Costs, Objective, Problem, multiplies, reach
 from foon_asp.problem.restriction import Restriction
 
@@ -118,11 +118,11 @@ class _UnionSearch:
                 zero_costs = dict.fromkeys(levels, Fraction(0)) | {
                     o: Fraction(1) for o in levels if multiplies(o)
                 }
-                limit = costs.of(Costs({**zero_costs, levels[0]: self._limit()}))
+                limit = costs.combined_cost(Costs({**zero_costs, levels[0]: self._limit()}))
             else:
                 limit = subproblem.total(self._in_some) + costs.doubt
             with deadline.watched("cutting the network"):
-                kept = at_costs(
+                kept = reduce_at_costs(
                     subproblem,
                     levels,
                     costs,

@@ -17,10 +17,12 @@ from foon_asp.proof import ruled, verifier
 class Arrays:
     """A question about trees in numbers: units are actions, and taking a kitchen item may be an action.
 
-    With the objective ``kitchen``, no node is initial. Each item ``k`` then has an additional achiever
-    without preconditions and of cost 1: the action ``items[k]``. Otherwise, ``items`` is empty. The nodes and
-    steps of covered constraints come last; a step is an action of cost 0. ``forbidden`` are the units that
-    constraints remove, and ``limits`` are the limits of constraints. Without objectives, all costs are 0.
+    With the objective ``kitchen``, no node is initial. Each kitchen item ``k`` then has an additional
+    achiever without preconditions and of cost 1: the action ``items[k]``. Otherwise, ``items`` is empty.
+
+    Covered constraints may add nodes and steps. They come last; a step is an action of cost 0. ``forbidden``
+    are the units that constraints remove, and ``limits`` are the limits of constraints. Without objectives,
+    all costs are 0.
     """
 
     def __init__(self, problem: Problem, objectives: Sequence[Objective], covered: Coverage) -> None:
@@ -30,14 +32,14 @@ class Arrays:
         self.rates = sorted({r for r in self._rates() if r != 1}) if Objective.SUCCESS in objectives else []
         self.order = Lexicographic([self.rates if multiplies(o) else None for o in objectives] or [None])
         self.ruled = covered.ruled(problem)
-        self._own = covered.limits
-        self._of_rules = len(covered.rules)  # the number of the first limit beyond those of the rules
+        self._own_limits = covered.limits
+        self._first_own_limit = len(covered.rules)  # the number of the first limit beyond those of the rules
         for limit in covered.limits.found_limits if covered.limits else ():
-            self._admit(limit)
+            self._add_own_limit(limit)
         self.goals = [goal for goal in problem.goals if goal not in problem.kitchen] + self.ruled.goals
         self.forbidden = self.ruled.removed
-        cost = cache(self._cost)  # many units cost the same
-        self.costs = [cost(*self._measures(unit)) for unit in range(len(network))]
+        cost = cache(self._cost_vector)  # many units cost the same
+        self.costs = [cost(*self._rate_and_costs(unit)) for unit in range(len(network))]
         needs: list[Sequence[int]] = list(problem.needs)
         gives: list[Sequence[int]] = list(problem.gives)
         self.items: dict[int, int] = {}
@@ -47,7 +49,7 @@ class Arrays:
             gives = [[o for o in effects if o not in problem.kitchen] for effects in gives]
             needs += [()] * len(kitchen)
             gives += [(o,) for o in kitchen]
-            taking = tuple(Fraction(o.row.item) for o in objectives for _ in range(self.parts(o)))
+            taking = tuple(Fraction(o.row.item) for o in objectives for _ in range(self.coordinate_count(o)))
             self.costs += [taking] * len(kitchen)
         for unit, nodes in self.ruled.needs.items():
             needs[unit] = (*needs[unit], *nodes)
@@ -63,7 +65,7 @@ class Arrays:
 
     @property
     def limits(self) -> list[Limit]:
-        """The limits of constraints: the amount of each action, and the greatest sum."""
+        """The limits of constraints: pairs of the amount of each action and the greatest sum."""
         return [
             ({self._steps.get(member, member): amount for member, amount in amounts.items()}, max_amount)
             for amounts, max_amount in self.ruled.limits.values()
@@ -71,58 +73,64 @@ class Arrays:
 
     @cached_property
     def multiples(self) -> list[Fraction]:
-        """For each coordinate the greatest common divisor of all costs; 0 for rates and for measures."""
+        """The greatest common divisor of all costs at each coordinate; 0 for rates and for measures."""
         multiples: list[Fraction] = []
         all_costs = set(self.costs)
         for objective in self.objectives:
             additive = not multiplies(objective) and objective not in self.problem.measures
-            for i in range(len(multiples), len(multiples) + self.parts(objective)):
+            for i in range(len(multiples), len(multiples) + self.coordinate_count(objective)):
                 costs = {cost[i] for cost in all_costs} if additive else ()
-                below = math.lcm(*(cost.denominator for cost in costs))
-                multiples.append(Fraction(math.gcd(*(int(cost * below) for cost in costs)), below))
+                denominator = math.lcm(*(cost.denominator for cost in costs))
+                multiples.append(
+                    Fraction(math.gcd(*(int(cost * denominator) for cost in costs)), denominator)
+                )
         return multiples
 
-    def multiple(self, coordinate: int) -> dict[str, str]:
-        """Return the JSON of the common divisor of all costs at a coordinate."""
-        coordinates = [str(objective) for objective in self.objectives for _ in range(self.parts(objective))]
-        return {coordinates[coordinate]: written(self.multiples[coordinate])}
+    def multiple_json(self, coordinate: int) -> dict[str, str]:
+        """Return the JSON of the common divisor of all costs at a coordinate: ``{"units": "1"}``."""
+        coordinates = [
+            str(objective) for objective in self.objectives for _ in range(self.coordinate_count(objective))
+        ]
+        return {coordinates[coordinate]: fraction_text(self.multiples[coordinate])}
 
-    def _admit(self, limit: Limit) -> None:
-        """Add a limit by user rules."""
-        self.ruled.limits[self._of_rules + len(self.own_limits)] = ruled.Limit(*limit)
+    def _add_own_limit(self, limit: Limit) -> None:
+        """Add a limit by user rules, under the next number."""
+        self.ruled.limits[self._first_own_limit + len(self.own_limits)] = ruled.Limit(*limit)
 
-    def exceeded(self, derivation: frozenset[int]) -> Limit | None:
+    def exceeded_limit(self, derivation: frozenset[int]) -> Limit | None:
         """Return a limit by user rules that a derivation exceeds, and add it; ``None`` without one."""
-        limit = self._own and self._own.exceeded(self._units(derivation))
+        limit = self._own_limits and self._own_limits.exceeded_limit(self._units_among(derivation))
         if limit:
-            self._admit(limit)
+            self._add_own_limit(limit)
         return limit or None
 
     @property
-    def asks(self) -> bool:
-        """Whether the proof has to check its derivations against limits by user rules."""
-        return self._own is not None
+    def has_own_limits(self) -> bool:
+        """Whether limits by user rules may be found, so that the proof has to check its derivations."""
+        return self._own_limits is not None
 
     @property
     def own_limits(self) -> dict[int, Limit]:
-        """The limits by user rules found so far, by their numbers."""
+        """The limits by user rules found so far, by number."""
         return {
-            n: (limit.amounts, limit.max_sum) for n, limit in self.ruled.limits.items() if n >= self._of_rules
+            n: (limit.amounts, limit.max_sum)
+            for n, limit in self.ruled.limits.items()
+            if n >= self._first_own_limit
         }
 
-    def bars(self, used: frozenset[int], without: frozenset[int]) -> dict[int, frozenset[int]]:
+    def barred_actions(self, used: frozenset[int], without: frozenset[int]) -> dict[int, frozenset[int]]:
         """Return the barred units of each constraint, by its number.
 
-        No tree with all used actions and none of ``without`` has a barred unit.
+        A tree with all used actions and none of ``without`` breaks the constraint if it has a barred unit.
         """
-        return self.ruled.bars(self._units(used), without)
+        return self.ruled.bars(self._units_among(used), without)
 
-    def breaking(self, derivation: frozenset[int]) -> list[int]:
-        """Return units of a derivation that together break a constraint, barred units first; else none.
+    def breaking_actions(self, derivation: frozenset[int]) -> list[int]:
+        """Return units of a derivation that together break a constraint; none if it breaks none.
 
-        The set is irreducible: the constraint bars no unit of a smaller set.
+        Barred units come first. The set is irreducible: the constraint bars no unit of a smaller set.
         """
-        chosen = self._units(derivation)
+        chosen = self._units_among(derivation)
         for barred in self.ruled.barred.values():
             if broken := chosen & barred(chosen, self.forbidden):
                 for unit in sorted(chosen):
@@ -132,10 +140,11 @@ class Arrays:
                 return [*broken, *(chosen - broken)]
         return []
 
-    def _units(self, actions: frozenset[int]) -> frozenset[int]:
+    def _units_among(self, actions: frozenset[int]) -> frozenset[int]:
+        """Return the units among actions."""
         return frozenset(action for action in actions if action < len(self.problem.network))
 
-    def parts(self, objective: Objective) -> int:
+    def coordinate_count(self, objective: Objective) -> int:
         """Return how many coordinates of a cost vector belong to an objective."""
         return len(self.rates) if multiplies(objective) else 1
 
@@ -147,8 +156,8 @@ class Arrays:
         taking = (action for o, action in self.items.items() if o in needed)
         return [*units, *taking, *map(self._steps.__getitem__, sorted(steps))]
 
-    def cases(self, cases: Cases) -> Cases:
-        """Return the branching cases of an answer, renumbered as actions; ``None`` for unknown cases.
+    def renumber_cases(self, cases: Cases) -> Cases:
+        """Return the case split of an answer with the actions of these arrays; ``None`` for unknown actions.
 
         In an answer, the action that takes an item has the number of units plus the item's id.
         """
@@ -157,25 +166,36 @@ class Arrays:
         action, without, using = cases
         units = len(self.problem.network)
         own_action = action if action < units else self.items.get(action - units)
-        return None if own_action is None else (own_action, self.cases(without), self.cases(using))
+        return (
+            None
+            if own_action is None
+            else (own_action, self.renumber_cases(without), self.renumber_cases(using))
+        )
 
-    def stated(self, vector: Sequence[Fraction]) -> list[object]:
-        """Return the JSON of a cost or weight, one part an objective; raises like :func:`written`."""
+    def vector_json(self, vector: Sequence[Fraction]) -> list[object]:
+        """Return the JSON of a cost or weight, one part for each objective.
+
+        A part is a fraction as text or, for ``success``, the exponents by rate. Raises :class:`LimitError` as
+        :func:`fraction_text` does.
+        """
         if not self.objectives:
-            return [written(vector[0])]
+            return [fraction_text(vector[0])]
         parts: list[object] = []
         begin = 0
         for objective in self.objectives:
-            values = vector[begin : begin + self.parts(objective)]
+            values = vector[begin : begin + self.coordinate_count(objective)]
             begin += len(values)
             if multiplies(objective):
-                parts.append({str(r): written(e) for r, e in zip(self.rates, values, strict=True) if e})
+                parts.append({str(r): fraction_text(e) for r, e in zip(self.rates, values, strict=True) if e})
             else:
-                parts.append(written(values[0]))
+                parts.append(fraction_text(values[0]))
         return parts
 
-    def member(self, action: int) -> dict[str, int]:
-        """Return the JSON of an action, by ids in the whole network."""
+    def action_json(self, action: int) -> dict[str, int]:
+        """Return the JSON of an action, by ids in the whole network: ``{"unit": 7}``.
+
+        The key is ``unit``, ``item`` or ``step``.
+        """
         network = self.problem.network
         if action < len(network):
             return {"unit": network.unit_number(action)}
@@ -185,17 +205,18 @@ class Arrays:
         return {"item": network.object_number(sorted(self.items)[action - len(network)])}
 
     def _rates(self) -> Iterable[Fraction]:
+        """Return the rates of all units."""
         return map(self.problem.rate, range(len(self.problem.network)))
 
-    def _measures(self, unit: int) -> Iterator[Fraction | int | None]:
-        """Yield the rate of a unit, ``None`` where rates do not count, and its additive costs."""
+    def _rate_and_costs(self, unit: int) -> Iterator[Fraction | int | None]:
+        """Yield the rate of a unit and its additive costs; the rate is ``None`` where rates do not count."""
         yield self.problem.rate(unit) if self.rates else None
         for objective in self.objectives:
             if not multiplies(objective):
                 yield self.problem.figure(objective, unit)
 
-    def _cost(self, rate: Fraction | None, *counts: int | Fraction) -> Vector:
-        """Return a cost as a vector, from the rate and the other costs of an action."""
+    def _cost_vector(self, rate: Fraction | None, *counts: int | Fraction) -> Vector:
+        """Return a cost as a vector, from the rate and the additive costs of an action."""
         cost: list[Fraction] = []
         remaining = iter(counts)
         for objective in self.objectives:
@@ -206,8 +227,8 @@ class Arrays:
         return tuple(cost) or self.order.zero
 
 
-def written(number: Fraction) -> str:
-    """Return a fraction as text; raises :class:`LimitError` for one that is too long."""
+def fraction_text(number: Fraction) -> str:
+    """Return a fraction as text, such as ``16/5``; raises :class:`LimitError` for one that is too long."""
     try:
         return str(number)
     except ValueError:  # Python writes no whole number of more than 4,300 digits

@@ -9,8 +9,8 @@ from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from foon_asp.certificate.arrays import Arrays, written
-from foon_asp.certificate.coverage import NOTHING, Coverage, needed
+from foon_asp.certificate.arrays import Arrays, fraction_text
+from foon_asp.certificate.coverage import NOTHING, Coverage, without_unused_claims
 from foon_asp.errors import BugError
 from foon_asp.hypergraph.cut import Cut
 from foon_asp.hypergraph.lexicographic import Vector
@@ -33,8 +33,10 @@ class NotBestError(Exception):
 class Certificate(NamedTuple):
     """A verified certificate with its claim.
 
-    ``claim`` is ``optimal``, ``bound`` or ``infeasible``. ``certified`` are the first objectives, as many as
-    the certificate proves; the other objectives rest on the solver alone.
+    ``content``: its JSON.
+    ``claim``: ``optimal``, ``bound`` or ``infeasible``.
+    ``certified``: the first objectives, as many as the certificate proves. The other objectives rest on the
+    solver alone.
     """
 
     content: dict[str, Any]
@@ -42,19 +44,19 @@ class Certificate(NamedTuple):
     certified: tuple[Objective, ...]
 
     def text(self) -> str:
-        """Return the certificate as JSON, a cut and a weight on each line."""
+        """Return the certificate as JSON text, with each cut and each weight on a line of its own."""
         lines = []
         for key, value in self.content.items():
             if key == "cuts" and value:
-                shown = "[\n" + ",\n".join("  " + json_line(cut) for cut in value) + "\n ]"
+                value_text = "[\n" + ",\n".join("  " + json_line(cut) for cut in value) + "\n ]"
             elif key == "proof" and isinstance(value, dict) and value.get("weights"):
                 pairs = ",\n".join("  " + json_line(pair) for pair in value["weights"])
                 others = {name: content for name, content in value.items() if name != "weights"}
                 suffix = "".join(f', "{name}": {json_line(content)}' for name, content in others.items())
-                shown = f'{{"weights": [\n{pairs}\n ]{suffix}}}'
+                value_text = f'{{"weights": [\n{pairs}\n ]{suffix}}}'
             else:
-                shown = json_line(value)
-            lines.append(f' "{key}": {shown}')
+                value_text = json_line(value)
+            lines.append(f' "{key}": {value_text}')
         return "{\n" + ",\n".join(lines) + "\n}\n"
 
 
@@ -75,17 +77,17 @@ def certify(
         objectives: The objectives, the most important first.
         units: The tree, by unit ids in an executable order.
         covered: The user rules that the certificate states, and what they claim.
-        expired: Whether time is up.
+        expired: Returns whether time is up.
         cuts: Sets of object nodes with a goal in each, tried first (:attr:`foon_asp.asp.Outcome.cuts`).
         cases: The case split to begin with (``Outcome.cases``).
         subject: The whole network and its data, if the problem has only a part of it. The part then has all
             achievers of each node that is needed and not available, and there are no constraints.
 
     Returns:
-        The certificate. Under constraints that are not covered, it proves a bound on all trees only. ``None``
-        if time is up before a proof is found; if an objective needs rates, and one is 0 or is not the rate
-        of its motion; and if the proof is beyond the limits of ``verify`` (products of rates too close to
-        be compared, or numbers too long to be written).
+        The certificate. Under constraints that are not covered, it may prove only a bound on all trees.
+        ``None`` if time is up before a proof is found. Also ``None`` if an objective needs rates, and one is
+        0 or is not the rate of its motion. Also ``None`` if the proof is beyond the limits of ``verify``:
+        products of rates too close to be compared, or numbers too long to be written.
 
     Raises:
         NotBestError: if the tree is not optimal, and no constraint is uncovered.
@@ -96,31 +98,31 @@ def certify(
         problem.own_rates or not all(map(problem.rate, range(len(problem.network))))
     ):
         return None
-    guide = tuple(units)
+    bounding_tree = tuple(units)
     # of an answer under rules, a cut can hold what its search added for them
     known_cuts = [[o for o in cut if o < len(problem.network.objects)] for cut in cuts]
     for count in range(len(objectives), 0, -1):
         arrays = Arrays(problem, objectives[:count], covered)
         prover = _prover(arrays, expired, known_cuts)
         try:
-            proof = prover.prove(arrays.actions(units), arrays.cases(cases))
+            proof = prover.prove(arrays.actions(units), arrays.renumber_cases(cases))
         except CheaperError as cheaper:
-            guide = tuple(a for a in cheaper.actions if a < len(problem.network))
+            bounding_tree = tuple(a for a in cheaper.actions if a < len(problem.network))
             if not covered.partial:
-                raise NotBestError(guide, problem.costs(guide)) from None
+                raise NotBestError(bounding_tree, problem.costs(bounding_tree)) from None
             break
         if proof is not None:
-            certificate = _write(arrays, covered, "optimal", units, proof, subject)
+            certificate = _write_tree_certificate(arrays, covered, "optimal", units, proof, subject)
             if certificate is not None:
                 return certificate
         if expired():
             break
     arrays = Arrays(problem, objectives, covered)
-    relaxed = _prover(arrays, expired).relax(arrays.actions(guide))
+    relaxed = _prover(arrays, expired).relax(arrays.actions(bounding_tree))
     if relaxed is None:
         return None
     packing, bound = relaxed
-    return _write(arrays, covered, "bound", units, packing, subject, bound)
+    return _write_tree_certificate(arrays, covered, "bound", units, packing, subject, bound)
 
 
 def certify_infeasible(
@@ -132,18 +134,21 @@ def certify_infeasible(
     """Return a certificate that there is no tree; ``subject`` is as for :func:`certify`.
 
     ``None`` where some tree satisfies all covered constraints, and where no proof is found before time is up.
+    Also ``None`` where constraints are covered and units have rates of their own.
     """
     if covered.rules and problem.own_rates:
         return None
     arrays = Arrays(problem, (), covered)
     never = min(arrays.ruled.never, default=None)
     proof = _prover(arrays, expired).prove_none() if never is None else Broken(never)
-    return None if proof is None else _write(arrays, covered, "infeasible", None, proof, subject)
+    if proof is None:
+        return None
+    return _write_tree_certificate(arrays, covered, "infeasible", None, proof, subject)
 
 
 def _prover(arrays: Arrays, expired: Callable[[], bool], cuts: Sequence[Sequence[int]] = ()) -> Prover:
     """Return a prover over the arrays of a question, which starts with known cuts."""
-    rules = arrays if arrays.ruled.barred or arrays.asks else None
+    rules = arrays if arrays.ruled.barred or arrays.has_own_limits else None
     return Prover(
         arrays.graph,
         arrays.goals,
@@ -158,7 +163,7 @@ def _prover(arrays: Arrays, expired: Callable[[], bool], cuts: Sequence[Sequence
     )
 
 
-def _write(
+def _write_tree_certificate(
     arrays: Arrays,
     covered: Coverage,
     claim: str,
@@ -167,70 +172,77 @@ def _write(
     subject: verifier.Subject | None,
     bound: Vector | None = None,
 ) -> Certificate | None:
-    """Return the certificate of a claim, in which each cut and each limit has a number.
+    """Return the certificate of a claim about trees; each cut and each limit gets a number in it.
 
     ``None`` where the numbers in the proof are too long for certificates.
     """
     problem, network = arrays.problem, arrays.problem.network
     subject = subject or subject_of(problem)
     cuts: dict[tuple[int, ...], int] = {}
-    places, own = list(arrays.ruled.limits), arrays.own_limits
-    of_own: dict[int, int] = {}
+    limit_numbers, own_limits = list(arrays.ruled.limits), arrays.own_limits
+    own_numbers: dict[int, int] = {}
 
-    def number(cut: Cut) -> int:
+    def cut_number(cut: Cut) -> int:
+        """Return the number of a cut; a new cut gets the next number."""
         return cuts.setdefault(cut.objects, len(cuts))
 
-    def limit(row: int) -> int:
+    def limit_number(row: int) -> int:
         """Return the number of a limit; limits by user rules are numbered anew, after the rules."""
-        index = places[row]
-        return len(covered.rules) + of_own.setdefault(index, len(of_own)) if index in own else index
+        index = limit_numbers[row]
+        if index not in own_limits:
+            return index
+        return len(covered.rules) + own_numbers.setdefault(index, len(own_numbers))
 
-    def packed(packing: Packing) -> dict[str, object]:
+    def packing_json(packing: Packing) -> dict[str, object]:
         """Return the JSON of a cost partition."""
-        weights = sorted((number(cut), arrays.stated(weight)) for cut, weight in packing.weights)
-        limits = sorted((limit(row), arrays.stated(weight)) for row, weight in packing.limits)
+        weights = sorted((cut_number(cut), arrays.vector_json(weight)) for cut, weight in packing.weights)
+        limits = sorted((limit_number(row), arrays.vector_json(weight)) for row, weight in packing.limits)
         content: dict[str, object] = {"weights": [list(pair) for pair in weights]}
         if limits:
             content["limits"] = [list(pair) for pair in limits]
         if packing.rounded is not None:
-            content["multiples"] = arrays.multiple(packing.rounded)
+            content["multiples"] = arrays.multiple_json(packing.rounded)
         return content
 
-    def stated(proof: Proof) -> dict[str, object]:
+    def proof_json(proof: Proof) -> dict[str, object]:
         """Return the JSON of a proof, with its branches."""
         if isinstance(proof, Hopeless):
-            return {"hopeless": number(proof.cut)}
+            return {"hopeless": cut_number(proof.cut)}
         if isinstance(proof, Packing):
-            return packed(proof)
+            return packing_json(proof)
         if isinstance(proof, Broken):
             return {"broken": proof.rule}
         if isinstance(proof, CostFixing):
-            above_cutoff = [arrays.member(action) for action in proof.actions]
-            return {"dear": above_cutoff, **packed(proof.packing), "others": stated(proof.others)}
+            above_cutoff = [arrays.action_json(action) for action in proof.actions]
+            return {"dear": above_cutoff, **packing_json(proof.packing), "others": proof_json(proof.others)}
         return {
-            "branch": arrays.member(proof.action),
-            "without": stated(proof.without),
-            "using": stated(proof.using),
+            "branch": arrays.action_json(proof.action),
+            "without": proof_json(proof.without),
+            "using": proof_json(proof.using),
         }
 
     try:
-        proof_content = stated(proof)
-        least = None if bound is None else arrays.stated(bound)
+        proof_content = proof_json(proof)
+        least = None if bound is None else arrays.vector_json(bound)
     except verifier.LimitError:
         return None
     graph = arrays.graph
     members = (u for cut in cuts for o in cut for u in graph.makers[o] if {*cut}.isdisjoint(graph.needs[u]))
-    limits = [own[index] for index in of_own]
-    rules = needed(covered.rules, members, limits) if covered.partial else covered.rules
+    limits = [own_limits[index] for index in own_numbers]
+    rules = without_unused_claims(covered.rules, members, limits) if covered.partial else covered.rules
     numbered = [list(map(network.object_number, objects)) for objects in cuts]
     claimed = Claimed(claim, arrays.objectives, units, least)
-    return write(
+    return write_certificate(
         verifier.TREE_FORM, problem, claimed, covered._replace(rules=rules), numbered, proof_content, subject
     )
 
 
 class Claimed(NamedTuple):
-    """The claim of a certificate; ``units`` are a tree or plan, and ``bound`` is written as JSON."""
+    """The claim of a certificate.
+
+    ``units`` are a tree or plan, and ``bound`` is a cost vector in JSON; each is ``None`` for a claim without
+    it.
+    """
 
     claim: str
     objectives: tuple[Objective, ...]
@@ -238,7 +250,7 @@ class Claimed(NamedTuple):
     bound: Sequence[object] | None
 
 
-def write(
+def write_certificate(
     form: verifier.Form,
     problem: Problem,
     claimed: Claimed,
@@ -250,7 +262,8 @@ def write(
 ) -> Certificate | None:
     """Return a sealed and verified certificate; ``None`` where it is beyond the limits of the verifier.
 
-    For a measure, the certificate states only the costs of the units that the proof looks at.
+    For a measure, the certificate states only the costs of the units that the proof looks at. Raises
+    :class:`BugError` where the verifier refuses it.
     """
     network, (claim, objectives, units, bound) = problem.network, claimed
     try:
@@ -268,24 +281,24 @@ def write(
             "digests": subject.digests(covered.rules),
             "rules": [dict(rule) for rule in covered.rules],
             "measures": {
-                str(objective): _measure(problem, objective)
+                str(objective): _measure_json(problem, objective)
                 for objective in objectives
                 if objective in problem.measures
             },
             "not_covered": list(covered.not_covered),
             **more_keys,
             "tree": None if units is None else list(map(network.unit_number, units)),
-            "costs": None if units is None else _costs(problem, objectives, units),
+            "costs": None if units is None else _costs_json(problem, objectives, units),
             "bound": bound,
             "cuts": cuts,
             "proof": proof,
         }
         certificate = Certificate(content, claim, objectives)
-        verified = _verified(certificate, subject)
+        verified = _seal_and_verify(certificate, subject)
         for measure in verified.trusted:  # of all units, those that the proof looks at
-            content["measures"][measure.name]["costs"] = _by_cost(measure.costs)
+            content["measures"][measure.name]["costs"] = _units_by_cost(measure.costs)
         if verified.trusted:
-            _verified(certificate, subject)
+            _seal_and_verify(certificate, subject)
     except verifier.LimitError:
         return None
     except verifier.RefusedError as refused:
@@ -293,22 +306,25 @@ def write(
     return certificate
 
 
-def _costs(problem: Problem, objectives: Sequence[Objective], units: Sequence[int]) -> list[object]:
+def _costs_json(problem: Problem, objectives: Sequence[Objective], units: Sequence[int]) -> list[object]:
     """Return the JSON of the costs of a tree or plan by each objective."""
     measured = problem.costs(units)
     figures = [measured.measure(objective) for objective in objectives]
-    return [figure if isinstance(figure, int) else written(figure) for figure in figures]
+    return [figure if isinstance(figure, int) else fraction_text(figure) for figure in figures]
 
 
-def _verified(certificate: Certificate, subject: verifier.Subject) -> verifier.Verified:
-    """Seal a certificate, and return what the verifier says that it proves."""
+def _seal_and_verify(certificate: Certificate, subject: verifier.Subject) -> verifier.Verified:
+    """Seal a certificate in place, and return what the verifier says that it proves."""
     content = certificate.content
     content["seal"] = verifier.seal(content)
     return verify_any(verifier.read_certificate(certificate.text()), subject)
 
 
 def subject_of(problem: Problem) -> verifier.Subject:
-    """Return the data that certificates of a problem over a whole network are about."""
+    """Return the data that certificates of a problem are about: its network, kitchen, rates and the like.
+
+    The problem has to be over a whole network, not a part of one.
+    """
     return verifier.Subject(
         *(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices),
         amounts=problem.amounts,
@@ -316,7 +332,7 @@ def subject_of(problem: Problem) -> verifier.Subject:
     )
 
 
-def _measure(problem: Problem, objective: Objective) -> dict[str, Any]:
+def _measure_json(problem: Problem, objective: Objective) -> dict[str, Any]:
     """Return the JSON of a measure: its rules, their digest, and the costs of all units."""
     rules = problem.measures[objective].text
     numbers = map(problem.network.unit_number, range(len(problem.network)))
@@ -324,12 +340,12 @@ def _measure(problem: Problem, objective: Objective) -> dict[str, Any]:
     return {
         "rules": rules,
         "sha256": hashlib.sha256(rules.encode()).hexdigest(),
-        "costs": _by_cost(dict(zip(numbers, costs, strict=True))),
+        "costs": _units_by_cost(dict(zip(numbers, costs, strict=True))),
     }
 
 
-def _by_cost(costs: Mapping[int, int | Fraction]) -> dict[str, list[int]]:
-    """Return the units of each cost."""
+def _units_by_cost(costs: Mapping[int, int | Fraction]) -> dict[str, list[int]]:
+    """Return the units of each cost, ascending, by the cost as text: ``{"16/5": [3, 8]}``."""
     listed: dict[str, list[int]] = {}
     for unit in sorted(costs):
         listed.setdefault(str(costs[unit]), []).append(unit)

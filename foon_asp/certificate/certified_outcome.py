@@ -28,18 +28,18 @@ def certify_outcome(
     If the certificate proves the whole claim, ``certificate`` becomes the kind of proof of the answer, and a
     plan that was found at a limit becomes optimal. If it proves only the first objectives, these are marked
     as certified. The answer stays unchanged where only a bound is proved, or where user rules are taken on
-    trust.
+    trust. The seconds that this takes are added to the answer's in any case.
 
-    Raises :class:`BugError` when a tree that the solver called optimal is not, and when answer and
-    certificate contradict each other. ``subject`` is the whole network if the network of the answer is a part
-    of it, as for :func:`~foon_asp.certificate.certify`.
+    ``subject`` is the whole network if the network of the answer is a part of it, as for
+    :func:`~foon_asp.certificate.certify`. Raises :class:`BugError` when a tree that the solver called optimal
+    is not, and when answer and certificate contradict each other.
     """
     began = time.perf_counter()
     covered = coverage(settings)
     plans = outcome.problem.items is not None
     if plans:
         covered = covered_for_plans(covered)
-    certificate = _certified(outcome, settings, covered, expired, subject)
+    certificate = _find_certificate(outcome, settings, covered, expired, subject)
     if (
         not plans
         and covered.not_covered
@@ -49,14 +49,14 @@ def certify_outcome(
         from foon_asp.certificate.own_rules import with_own_rules  # noqa: PLC0415 - it loads clingo
 
         with_own = with_own_rules(covered, outcome.problem, settings)
-        trusting = None if with_own is None else _certified(outcome, settings, with_own, expired)
+        trusting = None if with_own is None else _find_certificate(outcome, settings, with_own, expired)
         if with_own is not None and trusting is not None and trusting.claim != "bound":
             covered, certificate = with_own, trusting
     outcome.seconds["certificate"] = time.perf_counter() - began
     if certificate is not None:
-        why = _at_odds(outcome, certificate, covered)
+        why = _contradiction(outcome, certificate, covered)
         if why is not None:
-            raise _contradiction(outcome, settings, why)
+            raise _wrong_answer(outcome, settings, why)
     if certificate is None or certificate.claim == "bound" or trusted(certificate.content):
         return outcome, certificate
     complete = certificate.claim == "infeasible" or certificate.certified == levels(outcome.objectives)
@@ -67,16 +67,19 @@ def certify_outcome(
     return outcome._replace(proof=proof, certified=certificate.certified), certificate
 
 
-def _certified(
+def _find_certificate(
     outcome: Outcome,
     settings: Settings,
     covered: Coverage,
     expired: Callable[[], bool],
     subject: Subject | None = None,
 ) -> Certificate | None:
-    """Return a certificate about the trees that keep to the covered rules; ``None`` where none is found."""
+    """Return a certificate about the trees that keep to the covered rules; ``None`` where none is found.
+
+    Raises :class:`BugError` where a tree is better than the optimal one of the answer.
+    """
     if outcome.problem.items is not None:
-        return _certified_plan(outcome, covered, expired)
+        return _find_plan_certificate(outcome, covered, expired)
     if outcome.status is Status.INFEASIBLE:
         return certify_infeasible(outcome.problem, covered, expired, subject)
     if outcome.status is not Status.OPTIMAL or outcome.units is None:
@@ -87,12 +90,17 @@ def _certified(
             outcome.problem, wanted, outcome.units, covered, expired, outcome.cuts, subject, outcome.cases
         )
     except NotBestError as better:
-        why = f"there is a better tree, {_tree(outcome, better.units)}"
-        raise _contradiction(outcome, settings, why) from None
+        why = f"there is a better tree, {_tree_text(outcome, better.units)}"
+        raise _wrong_answer(outcome, settings, why) from None
 
 
-def _certified_plan(outcome: Outcome, covered: Coverage, expired: Callable[[], bool]) -> Certificate | None:
-    """Return a certificate about the plans that keep to the covered rules, also of a plan at a limit."""
+def _find_plan_certificate(
+    outcome: Outcome, covered: Coverage, expired: Callable[[], bool]
+) -> Certificate | None:
+    """Return a certificate about the plans that keep to the covered rules; ``None`` where none is found.
+
+    It may also be about a plan that was found at a limit.
+    """
     if outcome.status is Status.INFEASIBLE:
         return certify_no_plan(outcome.problem, covered, expired)
     if outcome.units is None:
@@ -100,11 +108,11 @@ def _certified_plan(outcome: Outcome, covered: Coverage, expired: Callable[[], b
     return certify_plan(outcome.problem, levels(outcome.objectives), outcome.units, covered, expired)
 
 
-def _at_odds(outcome: Outcome, certificate: Certificate, covered: Coverage) -> str | None:
+def _contradiction(outcome: Outcome, certificate: Certificate, covered: Coverage) -> str | None:
     """Return why an answer and a certificate contradict each other; ``None`` where they do not.
 
-    The verifier has accepted the certificate, but does not know the answer. So this compares goals, rules and
-    claim of the certificate with those of the answer.
+    The verifier has accepted the certificate, but does not know the answer. So goals and claim of the
+    certificate are compared with those of the answer here.
     """
     problem, content = outcome.problem, certificate.content
     goals = tuple(goal["id"] for goal in content["goals"])
@@ -117,10 +125,10 @@ def _at_odds(outcome: Outcome, certificate: Certificate, covered: Coverage) -> s
         return "the certificate proves that there is no tree"
     if problem.items is not None:  # it has the plan itself, whose costs were held against what is proved
         return None
-    return _costs_at_odds(outcome, outcome.units, certificate, covered)
+    return _cost_contradiction(outcome, outcome.units, certificate, covered)
 
 
-def _costs_at_odds(
+def _cost_contradiction(
     outcome: Outcome, units: Sequence[int], certificate: Certificate, covered: Coverage
 ) -> str | None:
     """Return why the costs of a tree contradict a certificate; ``None`` where they do not."""
@@ -128,19 +136,19 @@ def _costs_at_odds(
     arrays = Arrays(problem, certificate.certified, covered)
     cost = arrays.order.total(arrays.costs[a] for a in arrays.actions(units))
     if certificate.claim == "bound":
-        least = _read(arrays, content["bound"])
-        if arrays.order.sign([*map(sub, cost, least)]) < 0:
+        bound = _read_vector(arrays, content["bound"])
+        if arrays.order.sign([*map(sub, cost, bound)]) < 0:
             return f"the certificate proves the bound {content['bound']}, and the tree costs less"
         return None
     tree = [unit for u in content["tree"] if (unit := problem.network.unit_of_number(u)) is not None]
     proved = arrays.order.total(arrays.costs[a] for a in arrays.actions(tree))
     if arrays.order.sign([*map(sub, cost, proved)]) != 0:
-        return f"the certificate proves another tree optimal, {_tree(outcome, tree)}"
+        return f"the certificate proves another tree optimal, {_tree_text(outcome, tree)}"
     return None
 
 
-def _read(arrays: Arrays, stated: Sequence[Any]) -> Vector:
-    """Return a cost from a bound as certificates write it."""
+def _read_vector(arrays: Arrays, stated: Sequence[Any]) -> Vector:
+    """Return a cost vector from the JSON of a bound."""
     vector: list[Fraction] = []
     for objective, stated_part in zip(arrays.objectives, stated, strict=True):
         if multiplies(objective):
@@ -150,7 +158,7 @@ def _read(arrays: Arrays, stated: Sequence[Any]) -> Vector:
     return tuple(vector)
 
 
-def _contradiction(outcome: Outcome, settings: Settings, why: str) -> BugError:
+def _wrong_answer(outcome: Outcome, settings: Settings, why: str) -> BugError:
     """Return an error for a wrong answer of the solver, with the question but without the data."""
     problem = outcome.problem
     question = [
@@ -164,17 +172,17 @@ def _contradiction(outcome: Outcome, settings: Settings, why: str) -> BugError:
     question += [f"constant: {constant}" for constant in settings.constants]
     if settings.replaced is not None:
         question.append(f"encodings: {settings.replaced}")
-    answer = "no tree" if outcome.units is None else _tree(outcome, outcome.units)
+    answer = "no tree" if outcome.units is None else _tree_text(outcome, outcome.units)
     return BugError(f"the answer is {outcome.status}, {answer}, but {why}\n" + "\n".join(question))
 
 
-def _tree(outcome: Outcome, units: Sequence[int]) -> str:
-    """Return a text that describes a tree and its costs, for the message about a contradiction."""
-    return f"the units {list(units)} ({_figures(outcome.problem, units)})"
+def _tree_text(outcome: Outcome, units: Sequence[int]) -> str:
+    """Return a tree and its costs in words, for a message."""
+    return f"the units {list(units)} ({_costs_text(outcome.problem, units)})"
 
 
-def _figures(problem: Problem, units: Sequence[int]) -> str:
-    """Return the costs of a tree in words, for the message about a contradiction."""
+def _costs_text(problem: Problem, units: Sequence[int]) -> str:
+    """Return the costs of a tree in words, such as ``3 units, 7 inputs``, for a message."""
     costs = problem.costs(units)
     figures = [f"{costs.units} units", f"{costs.inputs} inputs", f"{costs.ingredients} ingredients"]
     figures.append(f"{costs.kitchen} kitchen items")

@@ -51,12 +51,12 @@ class Coverage(NamedTuple):
         question, nodes = question_of(problem), len(problem.network.objects)
         return Ruled([meaning(rule, question) for rule in self.rules], nodes, len(problem.network) + nodes)
 
-    def forbids(self, problem: Problem) -> frozenset[int]:
+    def forbidden_units(self, problem: Problem) -> frozenset[int]:
         """Return the units of a problem that rules remove."""
         return self.ruled(problem).removed
 
-    def beyond(self) -> list[str]:
-        """Return the names of rules that may do more than remove units."""
+    def rules_beyond_removal(self) -> list[str]:
+        """Return the names of covered rules that may do more than remove units."""
         return [rule["rule"] for rule in self.rules if not LIBRARY[rule["rule"]].removes]
 
 
@@ -68,7 +68,7 @@ def coverage(settings: Settings) -> Coverage:
 
     Ready-made constraints are covered, with the values that were set. Other rules only exclude trees, so a
     bound without them still holds. A replaced encoding may do anything, and is named as not covered. Under a
-    replaced encoding, only rules that remove units are covered.
+    replaced encoding, only ready-made rules that remove units are covered.
     """
     constants = dict(setting.partition("=")[::2] for setting in settings.constants)
     uses: list[tuple[str, Mapping[str, str]]] = []
@@ -80,26 +80,26 @@ def coverage(settings: Settings) -> Coverage:
             uses.append((stem, constraint.constants if isinstance(constraint, LibraryUse) else constants))
         else:
             others.append(constraint)
-    read = {name for stem, _ in uses for name in LIBRARY[stem].values}
-    facts: dict[str, set[str]] = {name: set() for name in LISTED if name in read}
+    read_names = {name for stem, _ in uses for name in LIBRARY[stem].values}
+    facts: dict[str, set[str]] = {name: set() for name in LISTED if name in read_names}
     for stem, constants_given in uses:  # what one use lists, the others read
         for name in facts.keys() & LIBRARY[stem].values.keys():
             facts[name] |= {string_constant(constants_given.get(LISTED[name], ""))} - {""}
     if "heats" in facts:  # which begins with motions of the ready-made constraint
-        facts["heats"] |= _facts(find_constraint(Path("never_heated")), among_others=True)["heats"]
-    named: list[str] = []
+        facts["heats"] |= _facts_of_rules(find_constraint(Path("never_heated")), among_others=True)["heats"]
+    uncovered: list[str] = []
     for constraint in others:
-        listed = _facts(constraint) if facts else {}
-        if listed and listed.keys() <= facts.keys():
-            for name, listed_values in listed.items():
+        listed_facts = _facts_of_rules(constraint) if facts else {}
+        if listed_facts and listed_facts.keys() <= facts.keys():
+            for name, listed_values in listed_facts.items():
                 facts[name] |= listed_values
         else:
-            named.append(_named(constraint))
+            uncovered.append(_name_with_digest(constraint))
     rules: dict[str, Rule] = {}
     for stem, constants_given in uses:
         kinds = LIBRARY[stem].values.items()
         values = {
-            name: sorted(facts[name]) if kind is list else _value(constants_given.get(name, ""), kind)
+            name: sorted(facts[name]) if kind is list else _parsed_value(constants_given.get(name, ""), kind)
             for name, kind in kinds
         }
         if all(value not in (None, "", []) for value in values.values()):
@@ -112,22 +112,25 @@ def coverage(settings: Settings) -> Coverage:
         for name in LIBRARY[stem].values
     }
     if settings.replaced is not None:
-        named.append(f"encodings {settings.replaced.name}")
-    named += [f"{name}={value}" for name, value in constants.items() if name not in used_constants]
-    return Coverage(tuple(rules[text] for text in sorted(rules)), tuple(sorted(set(map(_printable, named)))))
+        uncovered.append(f"encodings {settings.replaced.name}")
+    uncovered += [f"{name}={value}" for name, value in constants.items() if name not in used_constants]
+    return Coverage(
+        tuple(rules[text] for text in sorted(rules)), tuple(sorted(set(map(_escape_unprintable, uncovered))))
+    )
 
 
-def _value(written: str, kind: type) -> Any:
+def _parsed_value(written: str, kind: type) -> Any:
     """Return a value of a constraint, as a number or text; ``None`` for a number that is not set."""
     if kind is int:
         return None if written in _UNSET else int(written)
     return string_constant(written)
 
 
-def _facts(constraint: Constraint, among_others: bool = False) -> dict[str, set[str]]:
-    """Return the values that rules list as facts, by predicate.
+def _facts_of_rules(constraint: Constraint, among_others: bool = False) -> dict[str, set[str]]:
+    """Return the values that rules list as facts, by predicate: ``{"motion": {"stir"}}``.
 
-    If the rules also have other statements, the result is empty, unless ``among_others`` is set.
+    If the rules also have other statements, the result is empty. With ``among_others``, other statements are
+    ignored instead.
     """
     from foon_asp.encoding import encoding  # noqa: PLC0415 - they load clingo
     from foon_asp.rules import stating  # noqa: PLC0415 - they load clingo
@@ -142,27 +145,30 @@ def _facts(constraint: Constraint, among_others: bool = False) -> dict[str, set[
     return values
 
 
-def _named(constraint: Constraint) -> str:
+def _name_with_digest(constraint: Constraint) -> str:
     """Return the name of rules with their digest, and with their text if they were given as text."""
     if isinstance(constraint, RuleText):
         return (
-            f"{constraint.name} {_digest(constraint.text.encode('utf-8', 'surrogatepass'))} {constraint.text}"
+            f"{constraint.name} {_sha256(constraint.text.encode('utf-8', 'surrogatepass'))} {constraint.text}"
         )
     file = constraint.file if isinstance(constraint, LibraryUse) else constraint
-    return f"{constraint.name} {_digest(file.read_bytes())}"
+    return f"{constraint.name} {_sha256(file.read_bytes())}"
 
 
-def _digest(content: bytes) -> str:
+def _sha256(content: bytes) -> str:
+    """Return the SHA-256 digest of a text in bytes, in hexadecimal."""
     return hashlib.sha256(content).hexdigest()
 
 
-def needed(rules: Iterable[Rule], members: Iterable[int], limits: Iterable[Limit] = ()) -> tuple[Rule, ...]:
+def without_unused_claims(
+    rules: Iterable[Rule], members: Iterable[int], limits: Iterable[Limit] = ()
+) -> tuple[Rule, ...]:
     """Return the rules, with only those claims about user rules that a proof uses.
 
     A claim that units are removed is used if all these units are ``members`` of cuts. All other claims
-    remain. ``limits`` are the limits that the proof uses.
+    remain. ``limits`` are the limits that the proof uses; they replace those of the user rules.
     """
-    kept, stated = set(members), [_stated(*limit) for limit in limits]
+    kept, stated = set(members), [_limit_json(*limit) for limit in limits]
     return tuple(
         {
             **rule,
@@ -175,14 +181,14 @@ def needed(rules: Iterable[Rule], members: Iterable[int], limits: Iterable[Limit
     )
 
 
-def _stated(amounts: Mapping[int, Fraction], max_sum: Fraction) -> list[Any]:
-    """Return the JSON of a limit: units by their amount, and the greatest sum."""
+def _limit_json(amounts: Mapping[int, Fraction], max_sum: Fraction) -> list[Any]:
+    """Return the JSON of a limit: units by their amount, and the greatest sum, as ``[{"1": [3, 8]}, 1]``."""
     units: dict[str, list[int]] = {}
     for unit in sorted(amounts):
         units.setdefault(str(amounts[unit]), []).append(unit)
     return [units, int(max_sum)]
 
 
-def _printable(name: str) -> str:
+def _escape_unprintable(name: str) -> str:
     """Return a name with escapes for characters that cannot be printed, such as line ends."""
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in name)

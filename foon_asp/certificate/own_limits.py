@@ -19,8 +19,9 @@ from foon_asp.rules.rules import Rules
 class OwnLimits:
     """Search for limits that follow from antimonotone user rules; ``found_limits`` are those found so far.
 
-    At first, these are the sums that rules limit. Each minimal set of units that breaks a rule gives another
-    limit: a tree lacks at least one unit of the set.
+    An antimonotone rule that holds of a tree also holds of smaller ones. At first, the limits found are the
+    sums that rules limit. Each minimal set of units that breaks a rule gives another limit: a tree lacks at
+    least one unit of the set.
     """
 
     def __init__(
@@ -28,10 +29,10 @@ class OwnLimits:
         problem: Problem,
         settings: Settings,
         rules: Rules,
-        own: frozenset[Constraint],
+        user_constraints: frozenset[Constraint],
         covered: Iterable[Limit],
     ) -> None:
-        """Read the rules of a question, of which the constraints ``own`` are user rules.
+        """Read the rules of a question, of which the constraints ``user_constraints`` are user rules.
 
         Limits that follow from the ``covered`` ones are left out.
         """
@@ -40,16 +41,18 @@ class OwnLimits:
             settings.constraints, settings.constants, soft=True, deadline=settings.begun
         )
         shrinking = {rule.source for rule in rules.unsettled if rule.kind in {Kind.FACT, Kind.SHRINKING}}
-        theirs = {c.number: 1 for c in numbered if c.constraint in own and c.source in shrinking}
-        relaxed = relaxed._replace(rules=relaxed.rules + write_soft(theirs))
+        weights = {
+            c.number: 1 for c in numbered if c.constraint in user_constraints and c.source in shrinking
+        }
+        relaxed = relaxed._replace(rules=relaxed.rules + write_soft(weights))
         self._settings = settings._replace(constraints=(), relaxed=relaxed)
         program = assemble(self._settings, lambda _: None)
-        others = program.files[len(ENCODING_FILES) :]
-        self._program = program._replace(files=(question_encoding("breaking_units.lp"), *others))
-        self._any = bool(theirs)
-        self._local = all(rule.local for rule in rules.rules if rule.source in shrinking)
+        other_files = program.files[len(ENCODING_FILES) :]
+        self._program = program._replace(files=(question_encoding("breaking_units.lp"), *other_files))
+        self._has_user_rules = bool(weights)
+        self._all_local = all(rule.local for rule in rules.rules if rule.source in shrinking)
         self.found_limits: list[Limit] = []
-        if self._any:
+        if self._has_user_rules:
             sums = (
                 sum_limit for sum_limit in rules.limits(problem, settings.begun) if not sum_limit.at_least
             )
@@ -57,24 +60,25 @@ class OwnLimits:
                 ({u: Fraction(n) for u, n in sum_limit.weights.items() if n}, sum_limit.bound)
                 for sum_limit in sums
             ]
-            stated = [*covered]
+            covered_limits = [*covered]
             self.found_limits = [
                 (amounts, Fraction(max_sum))
                 for amounts, max_sum in limits
                 if not any(
-                    m <= max_sum and all(a.get(u, 0) >= n for u, n in amounts.items()) for a, m in stated
+                    m <= max_sum and all(a.get(u, 0) >= n for u, n in amounts.items())
+                    for a, m in covered_limits
                 )
             ]
 
-    def exceeded(self, units: frozenset[int]) -> Limit | None:
+    def exceeded_limit(self, units: frozenset[int]) -> Limit | None:
         """Return a limit that units exceed, and record it; ``None`` where they keep to the rules.
 
-        Raises ``KeyboardInterrupt`` where time is up.
+        It is found by clingo. Raises ``KeyboardInterrupt`` where time is up.
         """
-        if not self._any:
+        if not self._has_user_rules:
             return None
         network = self._problem.network
-        seen = units if self._local else units.union(reach(self._problem).units)
+        seen = units if self._all_local else units.union(reach(self._problem).units)
         question = Prepared(
             self._problem,
             (Objective.UNITS,),
@@ -83,13 +87,16 @@ class OwnLimits:
             self._program,
             tuple(sorted(seen)),
         )
-        ended = question.run(write_given(list(map(network.unit_number, sorted(units)))))
-        if ended.units is None:
-            if not ended.exhausted:
+        result = question.run(write_given(list(map(network.unit_number, sorted(units)))))
+        if result.units is None:
+            if not result.exhausted:
                 self._deadline.check()
                 raise KeyboardInterrupt
             return None
-        fewest = {network.unit_of_number(number) for number in ended.units}
-        limit: Limit = ({unit: Fraction(1) for unit in sorted(units & fewest)}, Fraction(len(fewest) - 1))
+        breaking_units = {network.unit_of_number(number) for number in result.units}
+        limit: Limit = (
+            {unit: Fraction(1) for unit in sorted(units & breaking_units)},
+            Fraction(len(breaking_units) - 1),
+        )
         self.found_limits.append(limit)
         return limit

@@ -47,51 +47,62 @@ def with_own_rules(covered: Coverage, problem: Problem, settings: Settings) -> C
     else:
         ruled = covered.ruled(problem)
         required = {frozenset(makers) for makers in ruled.makers.values()}
-        gone = (u for u in range(len(problem.network)) if u not in ruled.removed and applied.removed(u))
-        claims += ([[unit], []] for unit in gone)
+        removed = (u for u in range(len(problem.network)) if u not in ruled.removed and applied.removed(u))
+        claims += ([[unit], []] for unit in removed)
         claims += ([[], sorted(units)] for units in applied.required if units not in required)
     constraints = [find_constraint(constraint) for constraint in settings.constraints]
-    own: dict[str, Any] = {
+    own_rule: dict[str, Any] = {
         "rule": OWN,
         "claims": claims,
         "limits": [],
         "constants": sorted(set(settings.constants)),
         "files": [
-            _file(constraint) for constraint in dict.fromkeys(constraints) if not _is_library(constraint)
+            _text_with_digest(constraint)
+            for constraint in dict.fromkeys(constraints)
+            if not _is_library(constraint)
         ],
-        "library": sorted({_written(constraint) for constraint in constraints if _is_library(constraint)}),
+        "library": sorted(
+            {_library_name(constraint) for constraint in constraints if _is_library(constraint)}
+        ),
     }
-    theirs = frozenset(constraint for constraint in constraints if not _is_library(constraint))
+    user_constraints = frozenset(constraint for constraint in constraints if not _is_library(constraint))
     stated = [(limit.amounts, limit.max_sum) for limit in covered.ruled(problem).limits.values()]
-    limits = OwnLimits(problem, settings, rules, theirs, stated)
-    return Coverage(tuple(sorted((*covered.rules, own), key=canonical)), limits=limits)
+    limits = OwnLimits(problem, settings, rules, user_constraints, stated)
+    return Coverage(tuple(sorted((*covered.rules, own_rule), key=canonical)), limits=limits)
 
 
 def check_with_clingo(
-    content: Mapping[str, Any], own: Rule, problem: Problem, deadline: Deadline | None = None
+    content: Mapping[str, Any], own_rule: Rule, problem: Problem, deadline: Deadline | None = None
 ) -> None:
     """Check with clingo the claims that a certificate of a problem takes on trust.
 
-    Clingo searches for a tree that keeps to the rules and violates a claim, and checks that the certificate's
-    tree keeps to the rules. Raises :class:`RefusedError` where a claim is false or clingo cannot run, and
-    :class:`LimitError` where it does not finish.
+    Clingo searches for a tree that keeps to the rules and violates a claim. It also checks that the
+    certificate's tree keeps to the rules. Raises :class:`RefusedError` where a claim is false or clingo
+    cannot run, and :class:`LimitError` where it does not finish.
     """
-    texts = [RuleText(file["text"]) for file in own["files"]]
-    constraints = (*texts, *map(named_constraint, own["library"]))
-    settings = Settings(constraints, constants=tuple(own["constants"]), reductions=NONE, deadline=deadline)
-    bodies = [_claim(*claim) for claim in own["claims"]] + [_beyond(*limit) for limit in own["limits"]]
+    texts = [RuleText(file["text"]) for file in own_rule["files"]]
+    constraints = (*texts, *map(named_constraint, own_rule["library"]))
+    settings = Settings(
+        constraints, constants=tuple(own_rule["constants"]), reductions=NONE, deadline=deadline
+    )
+    bodies = [_violated_claim(*claim) for claim in own_rule["claims"]] + [
+        _exceeded_limit(*limit) for limit in own_rule["limits"]
+    ]
     wrong = "".join(f"_wrong :- {body}.\n" for body in bodies)
-    if wrong and _some_tree(content, problem, settings, f"{wrong}:- not _wrong.\n"):
+    if wrong and _has_tree(content, problem, settings, f"{wrong}:- not _wrong.\n"):
         raise RefusedError("what is taken on trust is not true: clingo finds a tree without it")
     if content["tree"] is not None:
         chosen = set(content["tree"])
         fixed = (f":- {'not ' * (u in chosen)}use({u}).\n" for u in range(len(problem.network)))
-        if not _some_tree(content, problem, settings, "".join(fixed)):
+        if not _has_tree(content, problem, settings, "".join(fixed)):
             raise RefusedError("the tree does not keep to the rules: clingo says so")
 
 
-def _some_tree(content: Mapping[str, Any], problem: Problem, settings: Settings, rules: str) -> bool:
-    """Return whether clingo finds a tree of executable units that keeps to the additional ``rules``."""
+def _has_tree(content: Mapping[str, Any], problem: Problem, settings: Settings, rules: str) -> bool:
+    """Return whether clingo finds a tree of executable units that keeps to the additional ``rules``.
+
+    Raises :class:`RefusedError` where clingo cannot run, and :class:`LimitError` where it does not finish.
+    """
     ours = set(Objective)
     objectives = tuple(Objective(name) for name in content["objective"] if name in ours)
     try:
@@ -103,12 +114,16 @@ def _some_tree(content: Mapping[str, Any], problem: Problem, settings: Settings,
     return outcome.status is not Status.INFEASIBLE
 
 
-def _claim(used: list[int], without: list[int]) -> str:
+def _violated_claim(used: list[int], without: list[int]) -> str:
+    """Return the body of a clingo rule that holds where a claim is violated.
+
+    The claim is that no tree has all ``used`` units and none of ``without``.
+    """
     literals = [*(f"use({unit})" for unit in used), *(f"not use({unit})" for unit in without)]
     return ", ".join(literals) or "#true"
 
 
-def _beyond(amounts: Mapping[str, Sequence[int]], max_sum: int) -> str:
+def _exceeded_limit(amounts: Mapping[str, Sequence[int]], max_sum: int) -> str:
     """Return a clingo aggregate that is true where a limit is exceeded.
 
     Raises :class:`LimitError` for sums too large for clingo.
@@ -120,18 +135,20 @@ def _beyond(amounts: Mapping[str, Sequence[int]], max_sum: int) -> str:
 
 
 def _is_library(constraint: Constraint) -> bool:
+    """Return whether a constraint is ready-made."""
     return isinstance(constraint, LibraryUse) or (isinstance(constraint, Path) and is_own(constraint))
 
 
-def _written(constraint: Constraint) -> str:
+def _library_name(constraint: Constraint) -> str:
+    """Return the name of a ready-made constraint, with its values if these were given with it."""
     return constraint.stem if isinstance(constraint, Path) else str(constraint)
 
 
-def _file(constraint: Constraint) -> dict[str, str]:
-    """Return the text of rules with its digest; a file that includes others is expanded."""
+def _text_with_digest(constraint: Constraint) -> dict[str, str]:
+    """Return the name, the digest and the text of rules; a file that includes others is expanded."""
     if isinstance(constraint, Path):
-        alone = len(included_files(constraint)) == 1
-        text = constraint.read_text("utf-8") if alone else read_encoding(constraint).text
+        is_alone = len(included_files(constraint)) == 1
+        text = constraint.read_text("utf-8") if is_alone else read_encoding(constraint).text
     else:
         text = str(constraint)
     sha = hashlib.sha256(text.encode()).hexdigest()

@@ -8,8 +8,8 @@ from fractions import Fraction
 from operator import add
 from typing import Any
 
-from foon_asp.certificate.arrays import written
-from foon_asp.certificate.certificate import Certificate, Claimed, subject_of, write
+from foon_asp.certificate.arrays import fraction_text
+from foon_asp.certificate.certificate import Certificate, Claimed, subject_of, write_certificate
 from foon_asp.certificate.coverage import NOTHING, Coverage
 from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, minus_log
 from foon_asp.network import ObjectNode
@@ -44,7 +44,7 @@ _HALF = Fraction(1, 2)
 
 
 def covered_for_plans(covered: Coverage) -> Coverage:
-    """Return the coverage with the rules that certificates of plans cannot check moved to ``not_covered``."""
+    """Return the coverage for plans: rules that their certificates cannot check go to ``not_covered``."""
     rules = tuple(rule for rule in covered.rules if rule["rule"] in PLAN_RULES)
     others = {verifier.canonical(rule) for rule in covered.rules if rule not in rules and rule["rule"] != OWN}
     return Coverage(rules, tuple(sorted({*covered.not_covered, *others})))
@@ -59,13 +59,13 @@ def certify_plan(
 ) -> Certificate | None:
     """Certify that a plan is optimal, by as many of the first objectives as are proved, or certify a bound.
 
-    ``plan`` lists unit ids in the order of execution. Return ``None`` where nothing is proved before time is
-    up, and where an objective needs rates of units that differ from those of their motions. An objective that
-    needs rates is not proved if a rate is 0.
+    ``plan`` lists unit ids in the order of execution. Returns ``None`` where nothing is proved before time is
+    up. An objective that needs rates is not proved if a rate is 0. Units may have rates that differ from
+    those of their motions; then the result is ``None`` if an objective needs rates, or if rules are covered.
     """
     if problem.own_rates and (covered.rules or any(o.row.needs is OptionalData.RATES for o in objectives)):
         return None
-    question = _Question(problem, covered_for_plans(covered), plan, expired)
+    question = _PlanQuestion(problem, covered_for_plans(covered), plan, expired)
     certified: list[Objective] = []
     for objective in objectives:
         if objective.row.needs is OptionalData.RATES and not all(
@@ -77,14 +77,14 @@ def certify_plan(
             break
         proof, least = proved
         if least is not None:
-            return question.write("bound", [objective], [proof], plan, [least])
+            return question.write_certificate("bound", [objective], [proof], plan, [least])
         certified.append(objective)
         question.proofs.append(proof)
         if expired():
             break
     if not certified:
         return None
-    return question.write("optimal", certified, question.proofs, plan)
+    return question.write_certificate("optimal", certified, question.proofs, plan)
 
 
 def certify_no_plan(
@@ -93,12 +93,12 @@ def certify_no_plan(
     """Return a certificate that there is no plan; ``None`` where that is not proved before time is up."""
     if covered.rules and problem.own_rates:
         return None
-    question = _Question(problem, covered_for_plans(covered), (), expired)
+    question = _PlanQuestion(problem, covered_for_plans(covered), (), expired)
     proof = question.prove_none()
-    return None if proof is None else question.write("infeasible", (), [proof])
+    return None if proof is None else question.write_certificate("infeasible", (), [proof])
 
 
-class _Question:
+class _PlanQuestion:
     """A question about plans as arrays; its actions are the relevant units, by their position among them.
 
     It collects the cuts, balances and rounded conditions that proofs use, and then writes the certificate.
@@ -118,8 +118,8 @@ class _Question:
         required = tuple(frozenset(ruled.makers[goal]) for goal in ruled.goals)
         initial = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
         restriction = Restriction(ruled.removed.__contains__, required)
-        self._lasting = replace(problem, kitchen=initial, restriction=restriction)
-        self._reached = reached = reach(self._lasting)
+        self._simplified = replace(problem, kitchen=initial, restriction=restriction)
+        self._reached = reached = reach(self._simplified)
         self._units = sorted(reached.units if required else units_relevant_to_plans(problem, reached))
         self._limits: list[tuple[int, SumLimit, int]] = []  # place of the rule, the sum and its scale
         for rule_number, limit in ruled.limits.items():
@@ -133,16 +133,17 @@ class _Question:
     # --- finding
 
     def prove(self, objective: Objective, before: Sequence[Objective]) -> tuple[Any, Vector | None] | None:
-        """Return a proof that no plan as good by earlier objectives costs less than the incumbent.
+        """Return the JSON of a proof that no plan costs less than the incumbent by an objective, and a bound.
 
-        For the first objective, a smaller bound may be proved instead. The second value is then this bound,
-        and otherwise ``None``. Return ``None`` if nothing is proved.
+        Only plans as good by the objectives ``before`` count. For the first objective, a smaller bound may be
+        proved instead. The second value is then this bound, and otherwise ``None``. The proof is empty where
+        the incumbent costs nothing. Returns ``None`` if nothing is proved.
         """
-        kept = [self._level(earlier) for earlier in before]
-        if any(level is None for level in kept):
+        earlier_levels = [self._level(earlier) for earlier in before]
+        if any(level is None for level in earlier_levels):
             return None
-        levels = [level for level, _ in filter(None, kept)]
-        scales = [scale for _, scale in filter(None, kept)]
+        levels = [level for level, _ in filter(None, earlier_levels)]
+        scales = [scale for _, scale in filter(None, earlier_levels)]
         claim = self._claim(objective)
         if claim.least is None or not claim.order.sign(claim.least):
             return {}, None  # nothing costs less than nothing
@@ -154,11 +155,14 @@ class _Question:
         proof, least, columns = proved
         if least != claim.least and before:
             return None
-        stated = _Stated(self, claim.order if multiplies(objective) else None, levels, scales, columns)
-        return stated.proof(proof), None if least == claim.least else least
+        writer = _ProofWriter(self, claim.order if multiplies(objective) else None, levels, scales, columns)
+        return writer.proof(proof), None if least == claim.least else least
 
     def prove_none(self) -> Any | None:
-        """Return a proof that there is no plan; ``None`` where none is found."""
+        """Return the JSON of a proof that there is no plan; ``None`` where none is found.
+
+        The proof is empty where a rule excludes every plan.
+        """
         problem, ruled = self._problem, self._ruled
         if ruled.never:
             return {}
@@ -166,46 +170,50 @@ class _Question:
         reached = set(self._reached.units)
         goals += [goal for goal in ruled.goals if reached.isdisjoint(ruled.makers[goal])]
         if goals:  # a cut that nothing crosses
-            return {"weights": [[self.cut((goals[0],)), "1"]]}
+            return {"weights": [[self.cut_number((goals[0],)), "1"]]}
         order = Lexicographic([None])
         nothing = [order.zero] * len(self._units)
         claim = Claim(order, nothing, order.zero, None, None, [None] * len(nothing))
-        tree = first_tree(self._lasting, self._reached) or ()
+        tree = first_tree(self._simplified, self._reached) or ()
         prover = self._prover([a for a, unit in enumerate(self._units) if unit in tree])
         proved = prover.prove_claim(claim, Measure([0] * len(nothing)), ())
-        return None if proved is None else _Stated(self, None, (), (), proved[2]).proof(proved[0])
+        return None if proved is None else _ProofWriter(self, None, (), (), proved[2]).proof(proved[0])
 
     def _prover(self, derivation: Sequence[int]) -> PlanProver:
         """Return a prover of the question, with the limits and required sets of rules."""
         flows: Flows = flows_of(self._problem, self._units)
         limits = [limit for _, limit, _ in self._limits]
         prover = PlanProver(flows, (), limits, derivation, expired=self._expired)
-        ruled, places = self._ruled, {unit: a for a, unit in enumerate(self._units)}
-        makers = {goal: tuple(places[u] for u in ruled.makers[goal] if u in places) for goal in ruled.goals}
+        ruled, actions_by_unit = self._ruled, {unit: a for a, unit in enumerate(self._units)}
+        makers = {
+            goal: tuple(actions_by_unit[u] for u in ruled.makers[goal] if u in actions_by_unit)
+            for goal in ruled.goals
+        }
         prover.require([Landmark(members, objects=(goal,)) for goal, members in makers.items()])
         return prover
 
-    def _figures(self, objective: Objective) -> list[Fraction]:
+    def _unit_costs(self, objective: Objective) -> list[Fraction]:
+        """Return the cost of each relevant unit by an objective, or its rate."""
         return list(map(Fraction, self._problem.figures(objective, self._units)))
 
     def _claim(self, objective: Objective) -> Claim:
-        """Return the claim that no plan costs less than the incumbent."""
-        problem, figures = self._problem, self._figures(objective)
+        """Return the claim that no plan costs less than the incumbent by an objective."""
+        problem, figures = self._problem, self._unit_costs(objective)
         if multiplies(objective):
             rates = sorted({rate for rate in figures if rate != 1}) or [_HALF]
             order = Lexicographic([rates])
             counts = Counter(problem.rate(unit) for unit in self._plan)
             least = tuple(Fraction(counts[rate]) for rate in rates)
             costs = [tuple(Fraction(rate == own_rate) for own_rate in rates) for rate in figures]
-            whole = order.approximate(least)[0]
+            plan_cost = order.approximate(least)[0]
             float_costs = (order.approximate(cost)[0] for cost in costs)
-            caps = [math.floor(whole / cost + 1e-6) if cost else None for cost in float_costs]
+            caps = [math.floor(plan_cost / cost + 1e-6) if cost else None for cost in float_costs]
             return Claim(order, costs, order.zero, least, None, caps)
         cost = Fraction(problem.costs(self._plan).measure(objective))
         parts = None
         if objective not in problem.measures:
-            every = problem.figures(objective, range(len(problem.network)))
-            parts = math.lcm(*(Fraction(figure).denominator for figure in every))
+            all_unit_costs = problem.figures(objective, range(len(problem.network)))
+            parts = math.lcm(*(Fraction(figure).denominator for figure in all_unit_costs))
         caps = [math.ceil(cost / figure) - 1 if figure else None for figure in figures]
         order = Lexicographic([None])
         return Claim(order, [(f,) for f in figures], (Fraction(objective.row.item),), (cost,), parts, caps)
@@ -213,12 +221,13 @@ class _Question:
     def _level(self, objective: Objective) -> tuple[Level, int] | None:
         """Return the level of the incumbent by an objective, in integers, and the scale of the integers.
 
-        ``None`` where the integers would be too long.
+        A level says that a plan costs no more than the incumbent. ``None`` where the integers would be too
+        long.
         """
-        figures = self._figures(objective)
+        figures = self._unit_costs(objective)
         if multiplies(objective):
-            costs = [_fine(rate, up=False) for rate in figures]
-            max_cost = sum(_minus_log(self._problem.rate(unit), up=True) for unit in self._plan)
+            costs = [_scaled_minus_log(rate, up=False) for rate in figures]
+            max_cost = sum(_minus_log_bound(self._problem.rate(unit), up=True) for unit in self._plan)
             return Level(Measure(costs), Fraction(0), math.ceil(LOGARITHM_SCALE * max_cost)), LOGARITHM_SCALE
         cost = Fraction(self._problem.costs(self._plan).measure(objective))
         scale = math.lcm(cost.denominator, *(figure.denominator for figure in figures))
@@ -229,70 +238,79 @@ class _Question:
 
     # --- writing
 
-    def cut(self, objects: Iterable[int]) -> int:
-        """Return the number of a cut, which is added to the certificate."""
+    def cut_number(self, objects: Iterable[int]) -> int:
+        """Return the number of a cut in the certificate, to which it is added if it is new."""
         return self._cuts.setdefault(tuple(sorted(set(objects))), len(self._cuts))
 
-    def balance(self, o: int) -> int:
+    def use_balance(self, o: int) -> int:
         """Record that the proof uses the balance of an object, and return the object."""
         self._balanced.add(o)
         return o
 
-    def rounded(self, condition: Rounded) -> int:
-        """Return the number of a rounded condition, which is added to the certificate after its parts."""
+    def rounded_number(self, condition: Rounded) -> int:
+        """Return the number of a rounded condition in the certificate.
+
+        A new one is added, after the conditions that it is made of.
+        """
         number = next((i for i, other in enumerate(self._rounded) if other is condition), None)
         if number is not None:
             return number
         by_kind: dict[str, dict[int, Fraction]] = {}
         for of_sum, weight in condition.weights:
-            kind, at, scale = self.of_counts(of_sum)
+            kind, index, scale = self.count_reference(of_sum)
             weights = by_kind.setdefault(kind, {})
-            weights[at] = weights.get(at, Fraction(0)) + weight * scale
+            weights[index] = weights.get(index, Fraction(0)) + weight * scale
         self._rounded.append(condition)
         self._rounded_stated.append(
             {
-                kind: [[at, written(weight)] for at, weight in sorted(weights.items())]
+                kind: [[index, fraction_text(weight)] for index, weight in sorted(weights.items())]
                 for kind, weights in sorted(by_kind.items())
             }
         )
         return len(self._rounded) - 1
 
-    def of_counts(self, condition: Condition) -> tuple[str, int, Fraction]:
-        """Return kind and number of a condition on counts alone, and the factor to scale its weight by."""
+    def count_reference(self, condition: Condition) -> tuple[str, int, Fraction]:
+        """Return how the certificate refers to a condition on counts alone, as a kind and a number.
+
+        The third value is the factor by which the weight of the condition is multiplied. The condition is
+        recorded as used.
+        """
         if isinstance(condition, Balance):
-            return "balance", self.balance(condition.object), Fraction(1)
+            return "balance", self.use_balance(condition.object), Fraction(1)
         if isinstance(condition, Sum):
-            number, scale = self.limit(condition.limit)
+            number, scale = self.limit_and_scale(condition.limit)
             return "limits", number, Fraction(scale)
         assert isinstance(condition, Rounded)
-        return "rounded", self.rounded(condition), condition.scale
+        return "rounded", self.rounded_number(condition), condition.scale
 
     def unit(self, action: int) -> int:
-        """Return the unit of an action."""
+        """Return the id of the unit that an action is."""
         return self._units[action]
 
-    def limit(self, number: int) -> tuple[int, int]:
+    def limit_and_scale(self, number: int) -> tuple[int, int]:
         """Return the number of a limit in the certificate, and the scale by which its sum was multiplied."""
         rule_number, _, scale = self._limits[number]
         return rule_number, scale
 
-    def _unreached(self) -> list[int]:
+    def _unreachable_nodes(self) -> list[int]:
         """Return unreachable nodes, which prove that no plan executes certain irrelevant units.
 
-        These are the units that could cross a cut or achieve a balanced node, and the achievers of the
-        returned nodes. Each has one of the returned nodes as a precondition.
+        Each of these units has one of the returned nodes as a precondition. They are the units that could
+        cross a cut or achieve a balanced node, and the achievers of the returned nodes.
         """
         flows, units, removed = self._problem.flows, set(self._units), self._ruled.removed
-        touched = {o for cut in self._cuts for o in cut} | self._balanced
-        own = self._ruled.makers
-        touched -= self._problem.endless  # of which only taking them crosses a cut
-        makers = (own[o] if o in own else self._achievers(o) for o in sorted(touched))
+        proof_nodes = {o for cut in self._cuts for o in cut} | self._balanced
+        makers_by_rule = self._ruled.makers
+        proof_nodes -= self._problem.endless  # of which only taking them crosses a cut
+        makers = (
+            makers_by_rule[o] if o in makers_by_rule else self._achievers(o) for o in sorted(proof_nodes)
+        )
         waiting = [u for units_of in makers for u in units_of if u not in units and u not in removed]
         unreached: set[int] = set()
         while waiting:
-            asks = flows[waiting.pop()].asks
-            if unreached.isdisjoint(asks):
-                lacking = next(o for o in asks if not self._reached.available[o])
+            preconditions = flows[waiting.pop()].asks
+            if unreached.isdisjoint(preconditions):
+                lacking = next(o for o in preconditions if not self._reached.available[o])
                 unreached.add(lacking)
                 waiting += (unit for unit in self._achievers(lacking) if unit not in removed)
         return sorted(unreached)
@@ -301,8 +319,11 @@ class _Question:
         """Return all units that add a node."""
         return [unit for unit in self._problem.makers[o] if o in self._problem.flows[unit].adds]
 
-    def _amounts(self) -> list[list[Any]]:
-        """Return the amounts of all units of the data."""
+    def _amounts_json(self) -> list[list[Any]]:
+        """Return the JSON of the amounts of all units of the data: a unit, its inputs and its outputs.
+
+        Units are left out if no amounts are stated for them.
+        """
         network = self._problem.network
         by_id = ((network.unit_id(unit), sides) for unit, sides in self._problem.amounts.items())
         return [
@@ -311,7 +332,7 @@ class _Question:
             if any(sides)
         ]
 
-    def write(
+    def write_certificate(
         self,
         claim: str,
         objectives: Sequence[Objective],
@@ -319,7 +340,7 @@ class _Question:
         plan: Sequence[int] | None = None,
         bound: Sequence[Vector] | None = None,
     ) -> Certificate | None:
-        """Write a certificate that is verified; ``None`` where that is beyond the limits."""
+        """Return a verified certificate; ``None`` where it is beyond the limits of the verifier."""
         problem = self._problem
         items, network = problem.items, problem.network
         assert items is not None
@@ -333,10 +354,10 @@ class _Question:
         stated_nodes = ((o, stays) for o, stays in nodes if o is not None)
         try:
             order = None if bound is None else self._claim(objectives[0]).order
-            stated = None if bound is None else [weight_text(vector, order) for vector in bound]
+            stated = None if bound is None else [weight_json(vector, order) for vector in bound]
         except verifier.LimitError:
             return None
-        return write(
+        return write_certificate(
             PLAN,
             problem,
             Claimed(claim, tuple(objectives), plan, stated),
@@ -348,19 +369,24 @@ class _Question:
                 "stock": [list(pair) for pair in stock],
                 "stays": [list(pair) for pair in (*sorted(stated_labels), *sorted(stated_nodes))],
                 "wanted": [[o, n] for o in sorted(problem.goals) if (n := problem.wanted(o)) > 1],
-                "amounts": self._amounts(),
+                "amounts": self._amounts_json(),
             },
             rounded=self._rounded_stated,
-            unreached=self._unreached(),
+            unreached=self._unreachable_nodes(),
         )
 
 
-class _Stated:
-    """Writer of proofs by counts as JSON."""
+class _ProofWriter:
+    """Writer of proofs by counts as JSON.
+
+    ``order``: the order of costs by an objective that multiplies rates, else ``None``.
+    ``levels``, ``scales``: the levels of earlier objectives, and the scales of their integers.
+    ``columns``: the item of each column that is not a unit.
+    """
 
     def __init__(
         self,
-        question: _Question,
+        question: _PlanQuestion,
         order: Lexicographic | None,
         levels: Sequence[Level],
         scales: Sequence[int],
@@ -370,7 +396,7 @@ class _Stated:
         self._levels = [(level, scale) for level, scale in zip(levels, scales, strict=True)]
 
     def proof(self, proof: CountProof) -> Any:
-        """Return the JSON of a proof."""
+        """Return the JSON of a proof, with its branches."""
         if isinstance(proof, Split):
             item = self._columns.get(proof.column)
             branch = {"unit": self._question.unit(proof.column)} if item is None else {"item": item}
@@ -378,48 +404,55 @@ class _Stated:
             return {"branch": branch, "most": proof.max_count, "up_to": up_to, "above": above}
         by_kind: dict[str, dict[tuple[int, ...], Vector]] = {}
         for condition, weight in proof.weights:
-            kind, key, scale = self._key(condition)
+            kind, key, scale = self._reference(condition)
             scaled = tuple(scale * coordinate for coordinate in weight)
             previous = by_kind.setdefault(kind, {}).get(key)
             by_kind[kind][key] = scaled if previous is None else tuple(map(add, previous, scaled))
         return {
-            kind: [[*key, weight_text(weight, self._order)] for key, weight in sorted(weights.items())]
+            kind: [[*key, weight_json(weight, self._order)] for key, weight in sorted(weights.items())]
             for kind, weights in by_kind.items()
         }
 
-    def _key(self, condition: Condition) -> tuple[str, tuple[int, ...], int | Fraction]:
-        """Return the kind and key of a condition in a certificate, and the factor of its weight there."""
+    def _reference(self, condition: Condition) -> tuple[str, tuple[int, ...], int | Fraction]:
+        """Return how the certificate refers to a condition, as a kind and a key.
+
+        The third value is the factor by which the weight of the condition is multiplied.
+        """
         question = self._question
         if isinstance(condition, Landmark):
-            cut = question.cut(condition.objects)
+            cut = question.cut_number(condition.objects)
             if condition.action is None:
                 return "weights", (cut,), 1
             return "before", (cut, question.unit(condition.action)), 1
         if isinstance(condition, Supply):
-            key = question.balance(condition.object), question.unit(condition.action)
+            key = question.use_balance(condition.object), question.unit(condition.action)
             return "supply", key, 1
         if isinstance(condition, (Balance, Sum, Rounded)):
-            kind, number, factor = question.of_counts(condition)
+            kind, number, factor = question.count_reference(condition)
             return kind, (number,), factor
         index = next(index for index, (level, _) in enumerate(self._levels) if level is condition)
         return "levels", (index,), self._levels[index][1]
 
 
-def weight_text(weight: Vector, order: Lexicographic | None) -> str | dict[str, str]:
-    """Return the JSON of a weight by an objective: a number, or the exponents of rates."""
+def weight_json(weight: Vector, order: Lexicographic | None) -> str | dict[str, str]:
+    """Return the JSON of a weight by an objective: a number as text, or the exponents by rate."""
     rates = None if order is None else order.levels[0]
     if rates is None:
-        return written(weight[0])
-    return {str(rate): written(e) for rate, e in zip(rates, weight, strict=True) if e}
+        return fraction_text(weight[0])
+    return {str(rate): fraction_text(e) for rate, e in zip(rates, weight, strict=True) if e}
 
 
-def _minus_log(rate: Fraction, up: bool) -> Fraction:
-    """Return an upper or lower bound of ``-log(rate)``, in 60 digits."""
+def _minus_log_bound(rate: Fraction, up: bool) -> Fraction:
+    """Return a bound of ``-log(rate)`` in 60 digits: an upper one if ``up``, else a lower one."""
     if rate == 1:
         return Fraction(0)
-    about, off = minus_log(rate, 60)
-    return about + off if up else about - off
+    approximation, error = minus_log(rate, 60)
+    return approximation + error if up else approximation - error
 
 
-def _fine(rate: Fraction, up: bool) -> int:
-    return math.floor(LOGARITHM_SCALE * _minus_log(rate, up))
+def _scaled_minus_log(rate: Fraction, up: bool) -> int:
+    """Return a bound of ``-log(rate)`` as an integer, scaled by ``LOGARITHM_SCALE`` and rounded down.
+
+    It is an upper bound, before rounding, if ``up``, else a lower one.
+    """
+    return math.floor(LOGARITHM_SCALE * _minus_log_bound(rate, up))

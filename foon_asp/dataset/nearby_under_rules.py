@@ -183,7 +183,7 @@ class _Search:
             subproblem = relaxed_bound.subproblem
             if subproblem is None:
                 return None
-            units = subproblem.units_within(subproblem.costs.of(costs), lambda: deadline.passed)
+            units = subproblem.units_within(subproblem.costs.combined_cost(costs), lambda: deadline.passed)
             deadline.check()
             open_nodes = nearby.open_to(units)
             if not open_nodes:

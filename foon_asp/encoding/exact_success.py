@@ -13,7 +13,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.errors import UserError
-from foon_asp.hypergraph.coprime_base import coprime_base, powers
+from foon_asp.hypergraph.coprime_base import coprime_base, factor_exponents
 from foon_asp.problem import Problem
 from foon_asp.problem.number import INT32_MAX
 
@@ -128,6 +128,8 @@ def _exponents(rates: Collection[Fraction]) -> dict[Fraction, dict[int, int]]:
     numbers = {factor: number for number, factor in enumerate(base)}
     exponents: dict[Fraction, dict[int, int]] = {}
     for rate in rates:
-        up, down = (powers(number, base) for number in rate.as_integer_ratio())  # no factor is in both
+        up, down = (
+            factor_exponents(number, base) for number in rate.as_integer_ratio()
+        )  # no factor is in both
         exponents[rate] = {numbers[f]: e for f, e in up.items()} | {numbers[f]: -e for f, e in down.items()}
     return exponents

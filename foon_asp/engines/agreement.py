@@ -1,4 +1,4 @@
-"""Cross-check of an answer by all second engines, and the comparison of their trees and costs with it."""
+"""Cross-check of an answer by all second engines: their trees and costs are compared with it."""
 
 import math
 import time
@@ -16,13 +16,13 @@ from foon_asp.engines.engine import (
     EngineAnswer,
     NotCheckedError,
     check_tree,
-    differing,
+    difference_error,
 )
 from foon_asp.engines.offered_engine import offered_engine
 from foon_asp.offered.offer import find_offers, offers_by_name
 from foon_asp.problem import Costs, Objective, levels, multiplies
 
-_EXTRA = "it is not installed (pip install 'foon-asp[cross-check]')"
+_NOT_INSTALLED = "it is not installed (pip install 'foon-asp[cross-check]')"
 
 
 ENTRY_POINTS: Final = "foon_asp.engines"
@@ -34,7 +34,7 @@ ENGINES: Final = (
 
 
 def find_engines() -> tuple[Engine, ...]:
-    """Return all engines besides bare clingo, the built-in ones first, then those of installed packages.
+    """Return all engines except bare clingo, the built-in ones first, then those of installed packages.
 
     Raises :class:`UserError` where a package offers an engine by a name that another one has.
     """
@@ -66,13 +66,14 @@ def cross_check(
 ) -> list[Check]:
     """Have every engine check an answer, each for at most ``seconds``; return a verdict of each.
 
-    Without ``seconds``, the remaining time of the question is divided among the engines; without a time
-    limit, each has a minute. Bare clingo checks answers under any rules. The other ``engines`` check answers
-    only if all rules are built-in or forbid single units. After ctrl-C, no other engine is asked.
+    Without ``seconds``, the remaining time of the question is divided among the engines. Without a time
+    limit, each has a minute. Bare clingo comes first, and checks answers under any rules. The other
+    ``engines`` check answers only if all rules are built-in or forbid single units, and no items are used up.
+    Answers that are not proved are not checked. After ctrl-C, no other engine is asked.
 
-    Raises :class:`DisagreementError` for the first engine whose answer differs. If the engine is of another
-    package, this error is raised only if the engine's tree is valid and better than ours; otherwise that
-    engine is wrong.
+    Raises :class:`DisagreementError` for the first engine whose answer differs. For an engine of another
+    package, this error is raised only if the engine's tree is valid and better than ours. Otherwise that
+    engine is wrong, and its claim is in :attr:`Check.refuted`.
     """
     if seconds is None:
         remaining = claim.settings.begun.left
@@ -93,7 +94,11 @@ def cross_check(
                 raise NotCheckedError("nothing is proved, so there is nothing to check")
             # an engine that does not stop by itself is stopped a little later
             with Deadline(seconds + 0.1).watched("asking another engine"):
-                objectives = _ask_clingo(claim, seconds) if engine is None else _ask(engine, claim, seconds)
+                objectives = (
+                    _check_by_clingo(claim, seconds)
+                    if engine is None
+                    else _check_by_engine(engine, claim, seconds)
+                )
         except NotCheckedError as error:
             reason = str(error)
         except LimitError:
@@ -108,26 +113,30 @@ def cross_check(
     return checks
 
 
-def _ask_clingo(claim: Asked, seconds: float) -> tuple[Objective, ...]:
-    """Return the objectives by which bare clingo agrees."""
+def _check_by_clingo(claim: Asked, seconds: float) -> tuple[Objective, ...]:
+    """Return the objectives by which bare clingo agrees; none if there is no tree.
+
+    Raises as :func:`check_with_bare_clingo` or, for plans, :func:`check_plan_with_bare_clingo`.
+    """
     if claim.outcome.problem.items is not None:
         return bare_plans.check_plan_with_bare_clingo(claim, seconds)
     bare_clingo.check_with_bare_clingo(claim, seconds)
     return () if claim.outcome.units is None else levels(claim.outcome.objectives)
 
 
-def _ask(engine: Engine, claim: Asked, seconds: float) -> tuple[Objective, ...]:
+def _check_by_engine(engine: Engine, claim: Asked, seconds: float) -> tuple[Objective, ...]:
     """Return the objectives by which an engine other than clingo agrees, under rules that forbid units.
 
-    Raises :class:`NotCheckedError` under other rules, and :class:`DisagreementError` as :func:`agree`.
+    Raises :class:`NotCheckedError` under other rules and where the engine is not installed. Raises
+    :class:`DisagreementError` as :func:`agree` does, and where the engine's tree has a forbidden unit.
     """
     problem, covered = claim.outcome.problem, coverage(claim.settings)
-    unsupported = [*covered.beyond(), *(name.partition(" ")[0] for name in covered.not_covered)]
+    unsupported = [*covered.rules_beyond_removal(), *(name.partition(" ")[0] for name in covered.not_covered)]
     if unsupported := [*unsupported, *(file.name for file in claim.soft)]:
         raise NotCheckedError(f"it knows no rules such as {', '.join(unsupported)}")
     if not engine.installed():
-        raise NotCheckedError(_EXTRA)
-    forbidden = covered.forbids(problem)
+        raise NotCheckedError(_NOT_INSTALLED)
+    forbidden = covered.forbidden_units(problem)
     answer = engine.solve(problem, levels(claim.outcome.objectives), forbidden, seconds)
     if not forbidden.isdisjoint(answer.units or ()):
         raise DisagreementError(f"the tree of {answer.engine} has a unit that the rules forbid", answer)
@@ -139,10 +148,11 @@ def agree(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
 
     Costs are computed anew from the units, as rational numbers. An engine that works in floats may call a
     tree optimal although its cost differs from ours by less than the engine's precision. Then neither this
-    objective nor any less important one counts as checked.
+    objective nor any less important one counts as checked. The result is empty if both say that there is no
+    tree.
 
-    Raises :class:`DisagreementError` where both answers cannot be right, and :class:`NotCheckedError` where
-    the engine's answer implies nothing about ours.
+    Raises :class:`DisagreementError` where both answers cannot be right. Raises :class:`NotCheckedError`
+    where the engine's answer implies nothing about ours.
     """
     if not answer.finished:
         raise NotCheckedError("it found no answer in time")
@@ -159,8 +169,8 @@ def agree(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
     for objective in answer.objectives:
         ours, theirs = outcome.costs.measure(objective), costs.measure(objective)
         if ours != theirs:
-            difference = differing(str(objective), ours, theirs, answer, multiplies(objective))
-            if difference.ours or not _is_close(objective, outcome.costs, costs):
+            difference = difference_error(str(objective), ours, theirs, answer, multiplies(objective))
+            if difference.ours or not _is_within_float_error(objective, outcome.costs, costs):
                 raise difference
             break  # it optimized the less important objectives over other trees
         agreed.append(objective)
@@ -169,12 +179,12 @@ def agree(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
     return tuple(agreed)
 
 
-def _is_close(objective: Objective, ours: Costs, theirs: Costs) -> bool:
+def _is_within_float_error(objective: Objective, ours: Costs, theirs: Costs) -> bool:
     """Return whether an engine that computes in floats may not distinguish the costs of two trees.
 
     Costs count as equal if their relative difference is at most two millionths for each unit, since an engine
-    may round logarithms to millionths. A greater tolerance would hide wrong answers; a smaller one would
-    report rounding as a bug.
+    may round logarithms to millionths. A greater tolerance would hide wrong answers. A smaller one would
+    report rounding as a bug. Costs in whole numbers are never close.
     """
     our_cost, their_cost = Fraction(ours.measure(objective)), Fraction(theirs.measure(objective))
     tolerance = 2e-6 * (1 + ours.units + theirs.units)

@@ -2,7 +2,7 @@
 
 clingo reads constraints, soft files, constants and encodings unchanged. The problem is not reduced, and
 nothing is reused from earlier questions. clingo searches with other options than ours and does not know our
-answer. The answers are compared in exact numbers: the costs that clingo adds up have to be the costs of its
+answer. The answers are compared in exact numbers. The costs that clingo adds up have to be the costs of its
 units, its tree has to execute in our simulation, and our tree has to keep to the rules in clingo.
 
 Objectives with fractions, such as ``success``, have rounded weights in the facts, so clingo's optimum may not
@@ -33,7 +33,7 @@ from foon_asp.engines.engine import (
     EngineAnswer,
     NotCheckedError,
     check_tree,
-    differing,
+    difference_error,
 )
 from foon_asp.problem import Costs, Objective, levels, multiplies
 
@@ -49,18 +49,22 @@ _USED = re.compile(r"(?:use|times)\((\d+)(?:,(\d+))?\)")
 
 
 def check_with_bare_clingo(claim: Asked, seconds: float) -> None:
-    """Compare an answer with clingo's own.
+    """Compare an answer with clingo's own; return if they agree.
 
-    Raises :class:`DisagreementError` where both cannot be right, and :class:`NotCheckedError` where clingo
+    Raises :class:`DisagreementError` where both cannot be right. Raises :class:`NotCheckedError` where clingo
     did not finish within ``seconds``, or its answer implies nothing about ours.
     """
     outcome = claim.outcome
     program = bare_program(outcome.problem, outcome.objectives, claim.settings, claim.soft)
-    _Check(claim, program, Clingo(program, seconds, claim.settings.begun.memory)).check()
+    _Comparison(claim, program, Clingo(program, seconds, claim.settings.begun.memory)).check()
 
 
 class ClingoAnswer(NamedTuple):
-    """An answer of clingo: how often each unit is used, by number, and the costs as clingo adds them up."""
+    """An answer of clingo.
+
+    ``times``: how often each unit is used, by its public number.
+    ``costs``: the costs as clingo adds them up, the most important first.
+    """
 
     times: dict[int, int]
     costs: tuple[int, ...]
@@ -69,8 +73,8 @@ class ClingoAnswer(NamedTuple):
 class Clingo:
     """Runs of clingo on one program.
 
-    ``seconds`` limits the time of all runs together. ``memory`` limits the memory of each run, in bytes; the
-    limit is 4 GB at most.
+    ``seconds`` limits the time of all runs together. ``memory`` limits the memory of each run, in bytes.
+    Without it, the limit is 4 GB; a higher limit is lowered to 4 GB.
     """
 
     def __init__(self, program: BareProgram, seconds: float, memory: int | None) -> None:
@@ -80,11 +84,12 @@ class Clingo:
         max_memory = 4 * 2**30
         self._memory = max_memory if memory is None else min(memory, max_memory)
 
-    def best(self, extra_facts: str = "", with_second_opinion: bool = True) -> ClingoAnswer | None:
+    def best_answer(self, extra_facts: str = "", with_second_opinion: bool = True) -> ClingoAnswer | None:
         """Return an optimal answer, or ``None`` where no answer exists.
 
-        ``extra_facts`` go to the second-opinion encoding if ``with_second_opinion``, else to the program
-        itself.
+        ``extra_facts`` are facts for the second-opinion encoding, which is then loaded. If
+        ``with_second_opinion`` is false, they are facts for the program itself. Raises
+        :class:`NotCheckedError` where clingo does not finish.
         """
         options = ("--opt-mode=opt", "--models=0", "--quiet=1")
         result, _, answers = self._run(extra_facts, options, bool(extra_facts) and with_second_opinion)
@@ -94,10 +99,11 @@ class Clingo:
             raise NotCheckedError(f"clingo ended with {result!r}")
         return answers[-1]
 
-    def all_kinds(self, extra_facts: str, bounds: Sequence[int]) -> list[ClingoAnswer]:
+    def answers_by_kind(self, extra_facts: str, bounds: Sequence[int]) -> list[ClingoAnswer]:
         """Return one answer of each kind with costs up to ``bounds``.
 
         Answers are of one kind if they have the same number of units of each cost by the rounded objective.
+        Raises :class:`NotCheckedError` for more than ``MAX_KINDS`` kinds, and where clingo does not finish.
         """
         mode = ",".join(["--opt-mode=enum", *map(str, bounds)])
         options = (mode, f"--models={MAX_KINDS + 1}", "--project=project")
@@ -133,7 +139,7 @@ class Clingo:
             start_new_session=True,  # ctrl-C is for us, who then stop the process
         ) as process:
             try:
-                _limit(process.pid, remaining, self._memory)
+                _limit_process(process.pid, remaining, self._memory)
                 text = (program.text + extra_facts).encode("utf-8", "surrogatepass")
                 out, err = process.communicate(text, remaining)
             except subprocess.TimeoutExpired:
@@ -157,7 +163,10 @@ class Clingo:
 
 
 def _read_witness(witness: dict[str, Any]) -> ClingoAnswer:
-    """Return the answer in a witness of clingo's JSON; other atoms that a user's files show are ignored."""
+    """Return the answer in a witness of clingo's JSON.
+
+    Other atoms that a user's files show are ignored.
+    """
     times: dict[int, int] = {}
     for used in filter(None, map(_USED.fullmatch, witness["Value"])):
         if used[2] or int(used[1]) not in times:  # plans show times(U,N) and use(U)
@@ -165,10 +174,11 @@ def _read_witness(witness: dict[str, Any]) -> ClingoAnswer:
     return ClingoAnswer(times, tuple(witness.get("Costs", ())))
 
 
-class _Check:
+class _Comparison:
     """The comparison of our answer with clingo's.
 
-    ``weights`` are the rounded costs in the facts: for each objective with fractions, by number of the unit.
+    ``weights`` are the rounded costs in the facts: for each objective with fractions, by public number of the
+    unit.
     """
 
     def __init__(self, claim: Asked, program: BareProgram, clingo: Clingo) -> None:
@@ -186,7 +196,7 @@ class _Check:
 
     def check(self) -> None:
         """Compare the answers; raise :class:`DisagreementError` or :class:`NotCheckedError`."""
-        theirs = self.clingo.best()
+        theirs = self.clingo.best_answer()
         costs = self.outcome.costs
         if theirs is None or costs is None:
             if theirs is not None or costs is not None:
@@ -195,27 +205,27 @@ class _Check:
                     f"we say {we_say} tree exists, clingo says {clingo_says} tree exists", theirs
                 )
             return
-        ours = self._our_answer(theirs)
-        rounded = [objective for objective in self.weights if not self._is_to_scale(objective)]
+        ours = self._check_our_tree(theirs)
+        rounded = [objective for objective in self.weights if not self._has_exact_weights(objective)]
         if not (self._has_standard_costs(theirs) and self._has_standard_costs(ours)):
-            self._compare_as_added_up(ours, theirs)
+            self._require_same_sums(ours, theirs)
         elif len(rounded) > 1:
             raise NotCheckedError(f"{' and '.join(rounded)} are both rounded in the facts")
         elif rounded:
             self._compare_exactly(theirs, ours, costs, rounded[0])
         else:
-            self._compare(theirs, self.levels)
+            self._require_same_costs(theirs, self.levels)
 
-    def _our_answer(self, theirs: ClingoAnswer) -> ClingoAnswer:
-        """Return our tree with the costs that clingo adds up.
+    def _check_our_tree(self, theirs: ClingoAnswer) -> ClingoAnswer:
+        """Return our tree as an answer of clingo, with the costs that clingo adds up.
 
-        Raises :class:`DisagreementError`, which shows ``theirs``, where our tree breaks clingo's rules or its
-        costs are wrong.
+        Raises :class:`DisagreementError` where our tree breaks clingo's rules or its costs are wrong. The
+        error has clingo's own answer ``theirs`` or, for a wrong penalty, this answer.
         """
         units = check_tree(self.problem, EngineAnswer("foon-asp", self.levels, self.outcome.units, True))
         if self.problem.costs(units) != self.outcome.costs:
             raise self._disagreement("the costs of our tree are not those of its units", theirs)
-        ours = self.clingo.best(write_given(list(map(self.problem.network.unit_number, units))))
+        ours = self.clingo.best_answer(write_given(list(map(self.problem.network.unit_number, units))))
         if ours is None:
             raise self._disagreement("clingo says that our tree breaks the rules", theirs)
         penalty = ours.costs[0] if self.claim.soft else None
@@ -228,9 +238,10 @@ class _Check:
     def _has_standard_costs(self, answer: ClingoAnswer) -> bool:
         """Return whether clingo adds up the costs of the units; a replaced encoding may add other numbers.
 
-        The penalty of soft constraints is not compared.
+        Raises :class:`DisagreementError` where clingo adds other numbers without a replaced encoding. The
+        penalty of soft constraints is not compared.
         """
-        costs = self.problem.costs(self._executable(answer))
+        costs = self.problem.costs(self._executable_order(answer))
         figures = [
             sum(self.weights[objective].get(number, 0) for number in answer.times)
             if objective in self.weights
@@ -242,8 +253,12 @@ class _Check:
             raise self._disagreement(f"clingo adds up the costs {added_up}, its units cost {figures}", answer)
         return added_up == figures
 
-    def _compare_as_added_up(self, ours: ClingoAnswer, theirs: ClingoAnswer) -> None:
-        """Raise where the costs of two trees differ under replaced encodings, as clingo adds them up."""
+    def _require_same_sums(self, ours: ClingoAnswer, theirs: ClingoAnswer) -> None:
+        """Raise :class:`DisagreementError` where the sums of clingo differ for two trees.
+
+        The encodings are replaced, so that the sums may not be our costs. Raises :class:`NotCheckedError` if
+        an objective has fractions.
+        """
         if self.weights:
             names = " and ".join(self.weights)
             raise NotCheckedError(f"the replaced encodings do not measure {names} as it is measured here")
@@ -254,30 +269,33 @@ class _Check:
                 theirs,
             )
 
-    def _compare(self, answer: ClingoAnswer, objectives: Iterable[Objective]) -> None:
+    def _require_same_costs(self, answer: ClingoAnswer, objectives: Iterable[Objective]) -> None:
         """Raise :class:`DisagreementError` where the penalty, or an objective, differs from our tree."""
-        compared = self._answer(answer)
+        compared = self._engine_answer(answer)
         if self.claim.soft and self.claim.penalty != answer.costs[0]:
-            raise differing("penalty", self.claim.penalty or 0, answer.costs[0], compared)
+            raise difference_error("penalty", self.claim.penalty or 0, answer.costs[0], compared)
         assert self.outcome.costs is not None
         costs = self.problem.costs(compared.units or ())
         for objective in objectives:
             ours, theirs = self.outcome.costs.measure(objective), costs.measure(objective)
             if ours != theirs:
-                raise differing(str(objective), ours, theirs, compared, multiplies(objective))
+                raise difference_error(str(objective), ours, theirs, compared, multiplies(objective))
 
-    def _is_to_scale(self, objective: Objective) -> bool:
-        """Return whether the weights are the costs of units times one factor, and none is rounded."""
+    def _has_exact_weights(self, objective: Objective) -> bool:
+        """Return whether the weights are the costs of units times one factor, so that none is rounded.
+
+        Where rates multiply, they are exact only if all rates are 1.
+        """
         weights = self.weights[objective]
-        pairs = set(zip(self._figures(weights, objective), weights.values(), strict=True))
+        pairs = set(zip(self._unit_costs(weights, objective), weights.values(), strict=True))
         if multiplies(objective):
             return all(figure == 1 for figure, _ in pairs)
         ratios = {weight / figure for figure, weight in pairs if figure}
         return len(ratios) <= 1 and all(figure or not weight for figure, weight in pairs)
 
-    def _figures(self, numbers: Iterable[int], objective: Objective) -> list[Fraction]:
-        """Return the cost of each unit by an objective, or its rate."""
-        return [Fraction(self.problem.figure(objective, unit)) for unit in map(self._unit, numbers)]
+    def _unit_costs(self, numbers: Iterable[int], objective: Objective) -> list[Fraction]:
+        """Return the cost of each unit by an objective, or its rate; units are given by public number."""
+        return [Fraction(self.problem.figure(objective, unit)) for unit in map(self._unit_id, numbers)]
 
     def _compare_exactly(
         self, theirs: ClingoAnswer, ours: ClingoAnswer, costs: Costs, rounded: Objective
@@ -289,104 +307,120 @@ class _Check:
         kinds that are as good as our tree, clingo minimizes the less important objectives.
         """
         index = self.levels.index(rounded)
-        before, after, weights = self.levels[:index], self.levels[index:], self.weights[rounded]
-        self._compare(theirs, before)
-        if self._key(theirs, self.levels) < costs.key(self.levels):
-            self._compare(theirs, self.levels)  # best by weights, and better than ours in exact numbers
-        our_figures = self._figures(ours.times, rounded)
+        more_important, from_rounded = self.levels[:index], self.levels[index:]
+        weights = self.weights[rounded]
+        self._require_same_costs(theirs, more_important)
+        # theirs is the best by weights: is it better than ours in exact numbers?
+        if self._cost_key(theirs, self.levels) < costs.key(self.levels):
+            self._require_same_costs(theirs, self.levels)
+        our_figures = self._unit_costs(ours.times, rounded)
         classes: dict[Fraction, list[int]] = {}
-        for number, figure in zip(weights, self._figures(weights, rounded), strict=True):
+        for number, figure in zip(weights, self._unit_costs(weights, rounded), strict=True):
             classes.setdefault(figure, []).append(number)
         pairs = {(figure, weights[number]) for figure, numbers in classes.items() for number in numbers}
-        max_weight = greatest_weight(pairs, our_figures, multiplies(rounded))
+        max_weight = tree_weight_bound(pairs, our_figures, multiplies(rounded))
         classes.pop(Fraction(int(multiplies(rounded))), None)  # units without a cost do not change the sum
-        lightest = [min(map(weights.__getitem__, numbers)) for numbers in classes.values()]
+        least_weights = [min(map(weights.__getitem__, numbers)) for numbers in classes.values()]
         max_counts = [
-            min(len(numbers), max_weight // light) if light else len(numbers)
-            for numbers, light in zip(classes.values(), lightest, strict=True)
+            min(len(numbers), max_weight // least_weight) if least_weight else len(numbers)
+            for numbers, least_weight in zip(classes.values(), least_weights, strict=True)
         ]
         class_facts = write_same_rates(list(classes.values()))
         bounds = [*ours.costs[: index + bool(self.claim.soft)], max_weight]
-        equal: list[list[int]] = []
-        for answer in self.clingo.all_kinds(class_facts + write_most_alike(max_counts), bounds):
+        equal_kinds: list[list[int]] = []
+        for answer in self.clingo.answers_by_kind(class_facts + write_most_alike(max_counts), bounds):
             if not self._has_standard_costs(answer):
                 raise NotCheckedError("the replaced encodings measure some trees in another way")
-            self._compare(answer, before)
-            if self._key(answer, (rounded,)) < costs.key([rounded]):
-                self._compare(answer, [rounded])
-            elif self._key(answer, (rounded,)) == costs.key([rounded]):
-                equal.append(_counts(classes, self._figures(answer.times, rounded)))
-        if _counts(classes, our_figures) not in equal:  # our tree is within the bound itself
+            self._require_same_costs(answer, more_important)
+            if self._cost_key(answer, (rounded,)) < costs.key([rounded]):
+                self._require_same_costs(answer, [rounded])
+            elif self._cost_key(answer, (rounded,)) == costs.key([rounded]):
+                equal_kinds.append(_count_each(classes, self._unit_costs(answer.times, rounded)))
+        if _count_each(classes, our_figures) not in equal_kinds:  # our tree is within the bound itself
             raise self._disagreement("our tree is not among those that clingo finds within the bound", theirs)
-        if len(after) == 1:
+        if len(from_rounded) == 1:
             return
         candidates: list[ClingoAnswer] = []
-        for counts in equal:
-            candidate = self.clingo.best(class_facts + write_exactly_alike(counts))
+        for counts in equal_kinds:
+            candidate = self.clingo.best_answer(class_facts + write_exactly_alike(counts))
             if candidate is None:
                 raise NotCheckedError("clingo loses a kind of tree that it found")
-            self._executable(candidate)
+            self._executable_order(candidate)
             candidates.append(candidate)
-        self._compare(min(candidates, key=lambda answer: self._key(answer, after)), self.levels)
+        self._require_same_costs(
+            min(candidates, key=lambda answer: self._cost_key(answer, from_rounded)), self.levels
+        )
 
-    def _executable(self, answer: ClingoAnswer) -> tuple[int, ...]:
-        """Return the units of an answer in an executable order; raises where none exists."""
+    def _executable_order(self, answer: ClingoAnswer) -> tuple[int, ...]:
+        """Return the units of an answer in an executable order, by id.
+
+        Raises :class:`DisagreementError` where none exists; under replaced encodings,
+        :class:`NotCheckedError`.
+        """
         try:
-            return check_tree(self.problem, self._answer(answer))
+            return check_tree(self.problem, self._engine_answer(answer))
         except DisagreementError as error:
             if self.claim.settings.replaced is None:
                 raise
             raise NotCheckedError(f"{error}, as the replaced encodings allow") from None
 
-    def _key(self, answer: ClingoAnswer, objectives: tuple[Objective, ...]) -> tuple[int | Fraction, ...]:
-        return self.problem.costs(map(self._unit, answer.times)).key(objectives)
+    def _cost_key(
+        self, answer: ClingoAnswer, objectives: tuple[Objective, ...]
+    ) -> tuple[int | Fraction, ...]:
+        """Return the costs of an answer by these objectives, as a key that is smaller for better trees."""
+        return self.problem.costs(map(self._unit_id, answer.times)).key(objectives)
 
-    def _unit(self, number: int) -> int:
-        """Return the id of the unit with a public number; raise if there is no such unit."""
+    def _unit_id(self, number: int) -> int:
+        """Return the id of the unit with a public number; raises if there is no such unit."""
         unit = self.problem.network.unit_of_number(number)
         if unit is None:
             raise self._disagreement(f"clingo uses a unit number {number}, which there is not", None)
         return unit
 
-    def _answer(self, answer: ClingoAnswer | None) -> EngineAnswer:
-        units = None if answer is None else tuple(map(self._unit, sorted(answer.times)))
+    def _engine_answer(self, answer: ClingoAnswer | None) -> EngineAnswer:
+        """Return an answer of clingo as the answer of an engine; ``None`` stands for no tree."""
+        units = None if answer is None else tuple(map(self._unit_id, sorted(answer.times)))
         return EngineAnswer(BARE_CLINGO, self.levels, units, True)
 
     def _disagreement(self, message: str, answer: ClingoAnswer | None) -> DisagreementError:
-        return DisagreementError(message, self._answer(answer))
+        """Return a disagreement with an answer of clingo; ``None`` stands for no tree."""
+        return DisagreementError(message, self._engine_answer(answer))
 
 
-def _counts(classes: Iterable[Fraction], figures: Iterable[Fraction]) -> list[int]:
+def _count_each(classes: Iterable[Fraction], figures: Iterable[Fraction]) -> list[int]:
     """Return for each class how many of the figures are equal to it."""
     counted = Counter(figures)
     return [counted[figure] for figure in classes]
 
 
-def greatest_weight(
+def tree_weight_bound(
     weights: Collection[tuple[Fraction, int]], our_costs: Collection[Fraction], multiplies: bool = True
 ) -> int:
     """Return an upper bound on the sum of weights of a tree that is at least as good as ours.
 
-    ``weights`` are the distinct pairs of a unit's cost and its weight; ``our_costs`` are the costs of our
+    ``weights`` are the distinct pairs of a unit's cost and its weight. ``our_costs`` are the costs of our
     units. Where the objective ``multiplies``, costs are rates. The weights may have been rounded in any way.
 
     Let L(c) = c for a cost, L(p) = -ln p for a rate, and S the maximum of w / L(c) over all units with a
-    cost. Then w <= S * L(c) for every unit, so the weights of any tree T add up to at most S * L(T), where
+    cost. Then w <= S * L(c) for every unit. So the weights of any tree T add up to at most S * L(T), where
     L(T) is the sum over its units. A tree as good as ours has an L(T) of at most that of our tree.
 
-    Raises :class:`NotCheckedError` for a unit without a cost that has a weight, since no such S exists then,
-    and for rates without a logarithm.
+    Raises :class:`NotCheckedError` for a unit without a cost that has a weight, since no such S exists then.
+    Raises it for rates of 0, too, which have no logarithm.
     """
     all_costs = {*our_costs, *(cost for cost, _ in weights)}
-    bounds = {cost: _minus_log(cost) if multiplies else (cost, cost) for cost in all_costs}
+    bounds = {cost: _minus_log_interval(cost) if multiplies else (cost, cost) for cost in all_costs}
     if any(weight and bounds[cost][0] <= 0 for cost, weight in weights):
         raise NotCheckedError("a unit that costs nothing has a weight")
     ratios = (weight / bounds[cost][0] for cost, weight in weights if bounds[cost][0])
     return math.floor(max(ratios, default=Fraction(0)) * sum(bounds[cost][1] for cost in our_costs))
 
 
-def _minus_log(rate: Fraction) -> tuple[Fraction, Fraction]:
-    """Return an interval that contains -ln of a rate; both ends are above 0 where the rate is below 1."""
+def _minus_log_interval(rate: Fraction) -> tuple[Fraction, Fraction]:
+    """Return an interval that contains -ln of a rate; both ends are above 0 where the rate is below 1.
+
+    Raises :class:`NotCheckedError` for a rate of 0.
+    """
     if rate <= 0:
         raise NotCheckedError("a success rate of 0 has no logarithm")
     failure = 1 - rate
@@ -394,19 +428,23 @@ def _minus_log(rate: Fraction) -> tuple[Fraction, Fraction]:
         return failure, failure / rate
     context = Context(prec=100)  # digits, of which at most 50 cancel in the difference of two logarithms
 
-    def enclosed(number: int) -> tuple[Fraction, Fraction]:
+    def logarithm_interval(number: int) -> tuple[Fraction, Fraction]:
         """Return an interval that contains the logarithm of an integer."""
         logarithm = context.ln(Decimal(number))  # correctly rounded: the exact one is between its neighbours
         if not logarithm:
             return Fraction(0), Fraction(0)
         return Fraction(context.next_minus(logarithm)), Fraction(context.next_plus(logarithm))
 
-    (low, high), (lower, higher) = enclosed(rate.numerator), enclosed(rate.denominator)
-    return lower - high, higher - low
+    numerator_low, numerator_high = logarithm_interval(rate.numerator)
+    denominator_low, denominator_high = logarithm_interval(rate.denominator)
+    return denominator_low - numerator_high, denominator_high - numerator_low
 
 
-def _limit(process: int, seconds: float, memory: int) -> None:
-    """Limit the memory (bytes) and the time of a process, if the system can; grounding may not end."""
+def _limit_process(process: int, seconds: float, memory: int) -> None:
+    """Limit the memory (bytes) and the processor time of a process, if the system can.
+
+    This stops a grounding that does not end.
+    """
     with contextlib.suppress(ImportError, AttributeError, OSError, ValueError):
         import resource  # noqa: PLC0415 (not everywhere)
 

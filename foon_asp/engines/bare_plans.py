@@ -18,10 +18,11 @@ from foon_asp.proof.replay import replay_for
 
 
 def check_plan_with_bare_clingo(claim: Asked, seconds: float) -> tuple[Objective, ...]:
-    """Compare a plan with clingo's own; return the objectives by which they agree, all in whole numbers.
+    """Compare a plan with clingo's own; return the objectives by which they agree.
 
-    Raises :class:`DisagreementError` where both cannot be right. Raises :class:`NotCheckedError` where
-    clingo's answer implies nothing about ours, or did not come within ``seconds``.
+    These are the first objectives, as far as they are whole numbers. Raises :class:`DisagreementError` where
+    both cannot be right. Raises :class:`NotCheckedError` where clingo's answer implies nothing about ours, or
+    did not come within ``seconds``.
     """
     outcome, problem = claim.outcome, claim.outcome.problem
     if outcome.units is None or outcome.costs is None or outcome.status is not Status.OPTIMAL:
@@ -38,12 +39,14 @@ def check_plan_with_bare_clingo(claim: Asked, seconds: float) -> tuple[Objective
     clingo = Clingo(program, seconds, claim.settings.begun.memory)
     ours = tuple(int(outcome.costs.measure(objective)) for objective in whole)
     counts = {number: outcome.units.count(unit) for unit, (number, _) in caps.items()}
-    our_plan = clingo.best(write_times({number: (n, n) for number, n in counts.items()}), False)
+    our_plan = clingo.best_answer(write_times({number: (n, n) for number, n in counts.items()}), False)
     answer = EngineAnswer(BARE_CLINGO, whole, outcome.units, True)
     if our_plan is None or our_plan.costs != ours or sum(counts.values()) != len(outcome.units):
         costs = None if our_plan is None else our_plan.costs
         raise DisagreementError(f"our plan costs {list(ours)}, clingo says {costs}", answer)
-    theirs = clingo.best(write_times({number: (0, max_times) for number, max_times in caps.values()}), False)
+    theirs = clingo.best_answer(
+        write_times({number: (0, max_times) for number, max_times in caps.values()}), False
+    )
     if theirs is None:
         raise DisagreementError("we say a plan exists, clingo says no plan exists", answer)
     units = [unit for unit, (number, _) in caps.items() for _ in range(theirs.times.get(number, 0))]

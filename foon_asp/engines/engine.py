@@ -12,10 +12,12 @@ from foon_asp.rules.passed_constraint import Constraint
 
 
 class Asked(NamedTuple):
-    """An answer to be checked: the outcome, and the settings under which it was found.
+    """An answer to be checked.
 
-    ``soft`` are the weights of soft constraints. ``penalty`` is the claimed sum of the weights of the soft
-    constraints that the tree of the outcome violates; ``None`` without soft constraints.
+    ``outcome``, ``settings``: the answer, and the settings under which it was found.
+    ``soft``: the weights of soft constraints.
+    ``penalty``: the claimed sum of the weights of the soft constraints that the tree of the outcome violates;
+    ``None`` without soft constraints.
     """
 
     outcome: Outcome
@@ -27,9 +29,10 @@ class Asked(NamedTuple):
 class EngineAnswer(NamedTuple):
     """The answer of an engine.
 
-    ``units`` is a tree that the engine claims to be optimal by ``objectives`` (the first objectives of the
-    question, at least one), or ``None`` where it claims that no tree exists. ``finished`` is false where the
-    engine stopped before an answer.
+    ``objectives``: the first objectives of the question, at least one, by which the engine optimized.
+    ``units``: a tree that the engine claims to be optimal by them, as unit ids; ``None`` where it claims that
+    no tree exists.
+    ``finished``: false where the engine stopped before an answer.
     """
 
     engine: str
@@ -61,8 +64,8 @@ class Solve(Protocol):
 class Engine(NamedTuple):
     """A second engine, which supports no constraints except forbidden units.
 
-    ``installed`` tells whether it can run, and ``solve`` runs it. ``package`` is the distribution that offers
-    it; ``None`` for a built-in engine.
+    ``installed`` returns whether it can run, and ``solve`` runs it. ``package`` is the distribution that
+    offers it; ``None`` for a built-in engine.
     """
 
     name: str
@@ -83,14 +86,17 @@ class DisagreementError(Exception):
         self.answer, self.ours = answer, ours
 
 
-def differing(
+def difference_error(
     measure: str,
     ours: int | Fraction,
     theirs: int | Fraction,
     answer: EngineAnswer,
     more_is_better: bool = False,
 ) -> DisagreementError:
-    """Return the error that two trees claimed to be optimal have different costs by an objective."""
+    """Return the error that two trees, both claimed to be optimal, have different costs by ``measure``.
+
+    The error says that ours is wrong if their cost is better: smaller or, if ``more_is_better``, greater.
+    """
     better = theirs > ours if more_is_better else theirs < ours
     verdict = "ours is not the best" if better else f"{answer.engine} calls a worse one the best"
     message = f"by {measure} our tree has {ours}, the one of {answer.engine} {theirs}; {verdict}"
@@ -113,7 +119,12 @@ def check_tree(problem: Problem, answer: EngineAnswer) -> tuple[int, ...]:
 
 
 class Scope(NamedTuple):
-    """The relevant part of a problem: units that the goals can need, object nodes and goals to be made."""
+    """The relevant part of a problem.
+
+    ``units``: the units that the goals can need, by id.
+    ``objects``: the ids of the object nodes that have to be made.
+    ``goals``: the ids of the goals among them.
+    """
 
     units: list[int]
     objects: list[int]
@@ -121,9 +132,9 @@ class Scope(NamedTuple):
 
 
 def scope_of(problem: Problem, forbidden: frozenset[int]) -> Scope:
-    """Return the units, nodes and goals that backward reachability from the goals visits.
+    """Return the relevant part of a problem, by backward reachability from the goals.
 
-    It passes through all units that are not forbidden.
+    It passes through all units that are not forbidden. Kitchen items do not have to be made.
     """
     allowed = frozenset(range(len(problem.network))) - forbidden
     units, objects = search_backward(problem.goals, problem.makers, problem.needs, problem.kitchen, allowed)
@@ -133,7 +144,7 @@ def scope_of(problem: Problem, forbidden: frozenset[int]) -> Scope:
 def cost(problem: Problem, objective: Objective, unit: int) -> float:
     """Return the cost of a unit by an objective other than ``kitchen``; of ``success``, -ln of its rate.
 
-    Raises :class:`NotCheckedError` for a cost that floats cannot add up with others.
+    Raises :class:`NotCheckedError` for a cost above 10^9, beside which floats lose small costs.
     """
     if multiplies(objective):
         rate = problem.rate(unit)
@@ -145,5 +156,5 @@ def cost(problem: Problem, objective: Objective, unit: int) -> float:
 
 
 def kitchen_items(problem: Problem, units: Iterable[int]) -> list[int]:
-    """Return the kitchen items that are preconditions of units, by id, in order."""
+    """Return the kitchen items that are preconditions of units, by id, ascending."""
     return sorted({o for unit in units for o in problem.needs[unit] if o in problem.kitchen})

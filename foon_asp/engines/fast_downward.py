@@ -24,7 +24,7 @@ _UNSOLVABLE = ("Completely explored state space", "Initial state is a dead end",
 
 
 def driver() -> Path | None:
-    """Return the program that starts Fast Downward, or ``None`` where it is not installed."""
+    """Return the path of the program that starts Fast Downward; ``None`` where it is not installed."""
     spec = importlib.util.find_spec("up_fast_downward")
     if spec is None or spec.origin is None:
         return None
@@ -42,7 +42,8 @@ def solve_with_fast_downward(
 ) -> EngineAnswer:
     """Search for an optimal tree by the first objective alone, as :class:`Solve` does.
 
-    Fractions and logarithms of rates are rounded to millionths.
+    Fractions and logarithms of rates are rounded to millionths. Raises :class:`BugError` where Fast Downward
+    is not installed or fails.
     """
     program = driver()
     if program is None:
@@ -51,7 +52,7 @@ def solve_with_fast_downward(
         return EngineAnswer(FAST_DOWNWARD, objectives[:1], (), True)
     with tempfile.TemporaryDirectory() as name:
         task, plan = Path(name, "task.sas"), Path(name, "plan")
-        task.write_text(_task(problem, objectives[0], forbidden), encoding="ascii")
+        task.write_text(_task_text(problem, objectives[0], forbidden), encoding="ascii")
         limits = f"--overall-time-limit={max(1, round(seconds))}", f"--overall-memory-limit={_MEMORY_LIMIT}"
         arguments = "--plan-file", str(plan), str(task), "--search", "astar(lmcut())"
         command = [sys.executable, str(program), *limits, *arguments]
@@ -70,17 +71,17 @@ def solve_with_fast_downward(
     return EngineAnswer(FAST_DOWNWARD, objectives[:1], units, finished)
 
 
-def _task(problem: Problem, objective: Objective, forbidden: frozenset[int]) -> str:
+def _task_text(problem: Problem, objective: Objective, forbidden: frozenset[int]) -> str:
     """Return the planning task as text, in the format of Fast Downward's translator.
 
-    Each node that has to be made, or taken at a cost, is a binary variable, which is 0 once the node is
+    Each node that has to be made, or taken at a cost, is a binary variable. It is 0 once the node is
     available. Raises :class:`NotCheckedError` where costs are too large for Fast Downward.
     """
     scope = scope_of(problem, forbidden)
     items = kitchen_items(problem, scope.units) if objective.row.item else []
     variables = {o: variable for variable, o in enumerate([*scope.objects, *items])}
     scale = 1 if objective.row.whole else 10**6  # it adds integers: a finer one overflows
-    operators = [_operator(f"take {o}", [], [variables[o]], 1) for o in items]
+    operators = [_operator_text(f"take {o}", [], [variables[o]], 1) for o in items]
     total = len(items)
     for unit in scope.units:
         preconditions = [o for o in problem.needs[unit] if o in variables]
@@ -90,7 +91,7 @@ def _task(problem: Problem, objective: Objective, forbidden: frozenset[int]) -> 
             weight = round(scale * cost(problem, objective, unit))
             total += weight
             facts = [variables[o] for o in preconditions], [variables[o] for o in added]
-            operators.append(_operator(f"use {unit}", *facts, weight))
+            operators.append(_operator_text(f"use {unit}", *facts, weight))
     if total > INT32_MAX:
         raise NotCheckedError("the costs add up to more than its whole numbers hold")
     return _TASK.format(
@@ -132,8 +133,8 @@ begin_goal
 """
 
 
-def _operator(name: str, preconditions: list[int], add_effects: list[int], weight: int) -> str:
-    """Return the text of an operator; preconditions and effects are variables that are, or become, 0."""
+def _operator_text(name: str, preconditions: list[int], add_effects: list[int], weight: int) -> str:
+    """Return the text of an operator: its preconditions are variables that are 0, its effects become 0."""
     conditions = "".join(f"{variable} 0\n" for variable in preconditions)
     effects = "".join(f"0 {variable} -1 0\n" for variable in add_effects)
     return (

@@ -2,8 +2,10 @@
 
 A binary variable for every unit says that it is used. A binary variable for every unit and each node that it
 makes says that the unit is the achiever of this node. A continuous variable is the level of every node that
-has to be made. Each precondition of a used unit has an achiever, and an achieved node is on a higher level
-than the preconditions of its achiever, so that no node supports itself.
+has to be made.
+
+Each precondition of a used unit has an achiever. An achieved node is on a higher level than the preconditions
+of its achiever, so that no node supports itself.
 """
 
 import time
@@ -78,10 +80,10 @@ class _Program:
             require(total(achievers[goal]) >= 1)
 
     def minimize(self, objective: Objective, seconds: float) -> str:
-        """Minimize one objective; return ``optimal``, ``infeasible`` or ``stopped``."""
+        """Minimize one objective; return ``optimal``, ``infeasible`` or, out of time, ``stopped``."""
         highs, statuses = self._highs, self._library.HighsModelStatus
         highs.setOptionValue("time_limit", float(highs.getRunTime() + seconds))
-        highs.minimize(highs.qsum(weight * variable for variable, weight in self._costs(objective)))
+        highs.minimize(highs.qsum(weight * variable for variable, weight in self._variable_costs(objective)))
         status = highs.getModelStatus()
         if status == statuses.kOptimal:
             return "optimal"
@@ -92,8 +94,11 @@ class _Program:
         raise BugError(f"HiGHS ends with {status}")
 
     def fix(self, objective: Objective) -> None:
-        """Add the row that no solution is worse by an objective than the current one."""
-        values, costs = self._highs.getSolution().col_value, self._costs(objective)
+        """Add a row, so that later solutions are no worse by an objective than the current one.
+
+        A small tolerance is added for the floats of HiGHS.
+        """
+        values, costs = self._highs.getSolution().col_value, self._variable_costs(objective)
         max_cost = sum(weight * round(values[variable.index]) for variable, weight in costs)
         max_cost += (
             0.5 if objective.row.whole else 1e-6
@@ -104,12 +109,12 @@ class _Program:
         self._highs.addRow(-self._library.kHighsInf, max_cost, len(costs), columns, weights)
 
     def units(self) -> tuple[int, ...]:
-        """Return the units that the current solution uses."""
+        """Return the ids of the units that the current solution uses."""
         values = self._highs.getSolution().col_value
         return tuple(unit for unit, used in self._use.items() if values[used.index] > 0.5)
 
-    def _costs(self, objective: Objective) -> list[tuple[Any, float]]:
-        """Return the variables that have a cost by an objective, with their costs."""
+    def _variable_costs(self, objective: Objective) -> list[tuple[Any, float]]:
+        """Return pairs of a variable that has a cost by an objective, and this cost."""
         if objective.row.item:
             return [(variable, 1.0) for variable in self._take.values()]
         return [(used, cost(self._problem, objective, unit)) for unit, used in self._use.items()]

@@ -1,4 +1,4 @@
-"""Engines that other packages offer: run in a process of their own, and their answers are validated."""
+"""Engines that other packages offer. They run in a process of their own, and their answers are validated."""
 
 import functools
 from typing import Any
@@ -17,10 +17,10 @@ _NOT_CHECKED = f"{NotCheckedError.__module__}.{NotCheckedError.__name__}"
 
 def offered_engine(offer: Offer) -> Engine:
     """Return the engine that a package offers."""
-    return Engine(offer.name, lambda: True, functools.partial(_solve, offer), offer.package)
+    return Engine(offer.name, lambda: True, functools.partial(_run_offered, offer), offer.package)
 
 
-def _solve(
+def _run_offered(
     offer: Offer,
     problem: Problem,
     objectives: tuple[Objective, ...],
@@ -30,7 +30,7 @@ def _solve(
     """Run an offered engine, as :class:`Solve` does.
 
     ``finished`` is false in the answer if the engine was stopped at the end of its time. Raises
-    :class:`NotCheckedError` where the engine raises it, and :class:`UserError` where the engine raises
+    :class:`NotCheckedError` where the engine raises it. Raises :class:`UserError` where the engine raises
     another error or returns no valid answer.
     """
     try:
@@ -41,10 +41,12 @@ def _solve(
         if _NOT_CHECKED in reply.classes:
             raise NotCheckedError(escaped(reply.message))
         raise offer.raised_error(reply)
-    return _validated(offer, problem, objectives, reply)
+    return _validate_reply(offer, problem, objectives, reply)
 
 
-def _validated(offer: Offer, problem: Problem, objectives: tuple[Objective, ...], reply: Any) -> EngineAnswer:
+def _validate_reply(
+    offer: Offer, problem: Problem, objectives: tuple[Objective, ...], reply: Any
+) -> EngineAnswer:
     """Return the answer in a reply; raises :class:`UserError` where it is not a valid one."""
     try:
         _, optimized, units, finished = msgspec.convert(reply, tuple[Any, list[Any], Any, bool])

@@ -30,6 +30,7 @@ else:  # not for type checkers, which then know each name
     _MODULES |= dict.fromkeys(("ALL", "NONE", "SAFE", "Reduction", "parse_reductions"), "reductions")
 
     def __getattr__(name: str) -> object:
+        """Return an exported name; its module is imported at the first access."""
         if name not in _MODULES:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
         return getattr(importlib.import_module(f"foon_asp.hypergraph.{_MODULES[name]}"), name)

@@ -3,8 +3,10 @@
 At each node of the search tree, some actions are used and some are forbidden. The preconditions of used
 actions are targets, too, and used actions cost nothing more. Cuts that an LP solution violates are added as
 in :mod:`foon_asp.hypergraph.cost_partition`. A cut is valid at every node at which it contains a target, so
-all nodes share their cuts. Integers alone close a node: a cost partition, rounded so that the weights on each
-action add up to at most its cost, or a cut with an empty landmark. The floats of HiGHS only guide the search.
+all nodes share their cuts.
+
+Integers alone close a node. It is closed by a cost partition, rounded so that the weights on each action add
+up to at most its cost, or by a cut with an empty landmark. The floats of HiGHS only guide the search.
 """
 
 import math
@@ -15,7 +17,7 @@ from heapq import heappop, heappush
 from typing import Any
 
 from foon_asp.hypergraph import tuning
-from foon_asp.hypergraph.cost_partition import stalled
+from foon_asp.hypergraph.cost_partition import has_stalled
 from foon_asp.hypergraph.covering import TOLERANCE, UnsolvedError
 from foon_asp.hypergraph.cut import Cut, Cutter
 from foon_asp.hypergraph.hypergraph import Hypergraph
@@ -26,17 +28,21 @@ Guess = Callable[[Mapping[int, float], Collection[int]], Iterable[Collection[int
 
 
 class TooLongError(Exception):
-    """A proof takes too much time or lists too many objects and actions."""
+    """A proof takes too much time, or lists too many objects and actions."""
 
 
 @dataclass(slots=True, eq=False)
 class _Node:
     """A node of the search tree: the derivations with all ``used`` and no ``forbidden`` actions.
 
-    Actions are columns of the relaxation. ``bound`` is a lower bound on the cost of the derivations, in
-    :data:`PARTS` of 1; ``weights`` are the pairs of row and weight that prove it. ``hopeless`` is a cut with
-    an empty landmark, if the node has no derivation. Derivations with an action of ``above_cutoff`` are no
-    better than the incumbent. After branching on ``action``, the children are ``without`` and ``using``.
+    Actions are given as columns of the relaxation.
+
+    ``bound``: a lower bound on the cost of these derivations, as an integer: :data:`PARTS` is a cost of 1.
+    ``weights``: pairs of row and weight that prove the bound.
+    ``hopeless``: a cut with an empty landmark if the node has no derivation, else ``None``.
+    ``above_cutoff``: actions whose derivations are no better than the incumbent.
+    ``action``: the action branched on; ``None`` before branching.
+    ``without``, ``using``: the children that forbid and use this action.
     """
 
     used: frozenset[int]
@@ -59,7 +65,7 @@ class Branching:
     actions.
     ``incumbent``: the best derivation found, ``None`` before the first.
     ``bound``: a lower bound on the cost of derivations that are better than the incumbent.
-    ``closed``: whether all nodes are closed. Then the incumbent is optimal or, without an incumbent, all
+    ``closed``: whether all nodes are closed. Then the incumbent is optimal. Without an incumbent, all
     derivations cost at least ``total``.
     ``effort``: the remaining budget of a search, in actions looked at.
     """
@@ -80,9 +86,9 @@ class Branching:
         self._relaxation = LandmarkRelaxation(graph, targets, actions, cost)
         self._actions, self._costs = self._relaxation.actions, self._relaxation.costs
         self._graph, self._targets = self._relaxation.graph, self._relaxation.targets
-        self._relative, self._covering = self._relaxation.relative, self._relaxation.covering
-        self._unit = math.gcd(*self._costs) or 1  # costs of derivations are multiples of it
-        self._parts = self._relaxation.in_parts()
+        self._relative_costs, self._covering = self._relaxation.relative_costs, self._relaxation.covering
+        self._common_divisor = math.gcd(*self._costs) or 1  # costs of derivations are multiples of it
+        self._costs_in_parts = self._relaxation.costs_in_parts()
         self._total, self._guess = total, guess
         self.incumbent: frozenset[int] | None = None
         self.bound, self.closed = 0, False
@@ -92,34 +98,34 @@ class Branching:
         self._length_budget: float = math.inf  # objects and actions that the proof may still list
         self._expired: Callable[[], bool] = lambda: False
         self._root = _Node(frozenset(), frozenset(), 0, [])
-        self._relaxation.add_known(cuts)
+        self._relaxation.add_whole_cuts(cuts)
 
     def search(self, effort: int, expired: Callable[[], bool]) -> Iterator[None]:
         """Branch, best bound first, until no node is open or ``effort`` actions were looked at.
 
         Yields after each new incumbent or bound, and once all nodes are closed. ``expired`` returns whether
-        time is up.
+        time is up. The search also ends where time is up and where HiGHS fails; then ``closed`` stays false.
         """
         self.effort = effort
         waiting = [(0, 0, 0, self._root)]
-        number = 0
+        node_number = 0
         try:
             while waiting:
                 bound, depth, _, node = waiting[0]
-                before = self.bound, self._total
+                previous = self.bound, self._total
                 self.bound = max(self.bound, min(-(-bound // PARTS), self._total))
-                stopped = self._stopped(expired)
-                if not stopped and not self._closes(bound):
-                    stopped = not self._solve(node, number, expired)
-                if (self.bound, self._total) != before:
+                stopped = self._must_stop(expired)
+                if not stopped and not self._is_above_cutoff(bound):
+                    stopped = not self._close_or_branch(node, node_number, expired)
+                if (self.bound, self._total) != previous:
                     yield
                 if stopped:
                     return
                 heappop(waiting)
                 for child in (node.using, node.without):
                     if child is not None:
-                        number += 1
-                        heappush(waiting, (child.bound, depth - 1, number, child))
+                        node_number += 1
+                        heappush(waiting, (child.bound, depth - 1, node_number, child))
         except UnsolvedError:
             return
         self.closed = True
@@ -128,191 +134,222 @@ class Branching:
     def proof(self, max_length: float = math.inf, expired: Callable[[], bool] = lambda: False) -> Proof:
         """Return the proof of a search that closed all nodes.
 
-        Raises :class:`TooLongError` if ``expired`` says that time is up, or if the proof would list more than
+        Raises :class:`TooLongError` if ``expired`` returns true, or if the proof would list more than
         ``max_length`` objects and landmark actions.
         """
         self._length_budget, self._expired = max_length, expired
-        return self._proof(self._root)[0]
+        return self._proof_of(self._root)[0]
 
     def cases(self) -> Cases:
-        """Return the case split: the tree of actions branched on, without actions fixed by reduced cost."""
-        return self._cases(self._root)
+        """Return the case split of the whole search: the actions branched on, as nested cases.
 
-    def _cases(self, node: _Node) -> Cases:
+        Actions fixed by reduced cost are not listed.
+        """
+        return self._cases_below(self._root)
+
+    def _cases_below(self, node: _Node) -> Cases:
+        """Return the case split at a node; ``None`` where it was closed without branching."""
         if node.hopeless or node.without is None or node.using is None or node.action is None:
             return None
-        return self._actions[node.action], self._cases(node.without), self._cases(node.using)
+        return self._actions[node.action], self._cases_below(node.without), self._cases_below(node.using)
 
-    def _stopped(self, expired: Callable[[], bool]) -> bool:
+    def _must_stop(self, expired: Callable[[], bool]) -> bool:
+        """Return whether the effort is used up or time is up."""
         return self.effort <= 0 or expired()
 
-    def _closes(self, bound: int) -> bool:
+    def _is_above_cutoff(self, bound: int) -> bool:
         """Return whether a bound, in parts, excludes every derivation that is better than the incumbent."""
-        return bound > self._below() * PARTS
+        return bound > self._cutoff() * PARTS
 
-    def _below(self) -> int:
-        """Return the cutoff: the greatest cost that a derivation better than the incumbent can have."""
-        return (self._total - 1) // self._unit * self._unit
+    def _cutoff(self) -> int:
+        """Return the greatest cost that a derivation better than the incumbent can have.
 
-    def _go_to(self, node: _Node, targets: set[int]) -> None:
-        """Set the bounds of columns and rows of the relaxation for a node with these targets."""
+        All costs are multiples of their common divisor, and so is the cutoff.
+        """
+        return (self._total - 1) // self._common_divisor * self._common_divisor
+
+    def _set_bounds(self, node: _Node, targets: set[int]) -> None:
+        """Set the bounds of columns and rows of the relaxation for a node with these targets.
+
+        Used actions are fixed at 1 and forbidden ones at 0. Rows of cuts without a target are made redundant.
+        """
         used, forbidden = self._relaxed_at
         for action in (used ^ node.used) | (forbidden ^ node.forbidden):
             upper = 0.0 if action in node.forbidden else 1.0 if action in node.used else math.inf
-            self._covering.bound(action, float(action in node.used), upper)
+            self._covering.set_bounds(action, float(action in node.used), upper)
         self._relaxed_at = node.used, node.forbidden
         for row, cut in enumerate(self._relaxation.cuts):
             active = not cut.isdisjoint(targets)
             if active != self._active.get(row, True):
                 self._active[row] = active
-                self._covering.demand(row, float(active))
+                self._covering.set_row_minimum(row, float(active))
 
-    def _solve(self, node: _Node, number: int, expired: Callable[[], bool]) -> bool:
-        """Close a node or branch on it; return ``False`` if time or effort ran out before that."""
+    def _close_or_branch(self, node: _Node, node_number: int, expired: Callable[[], bool]) -> bool:
+        """Solve the relaxation at a node, and close the node or give it two children.
+
+        ``node_number`` is 0 for the root, which gets more rounds of cuts. Returns ``False`` if time or effort
+        ran out before that.
+        """
         targets = set(self._targets).union(*(self._graph.needs[a] for a in node.used))
         self.effort -= len(self._actions)
         cutter = Cutter(self._graph, targets, node.forbidden)
         if cutter.hopeless is not None:
             node.hopeless = cutter.hopeless
             return True
-        self._go_to(node, targets)
-        free = self._np.ones(len(self._actions), dtype=bool)
-        free[list(node.used | node.forbidden)] = False
+        self._set_bounds(node, targets)
+        undecided = self._np.ones(len(self._actions), dtype=bool)
+        undecided[list(node.used | node.forbidden)] = False
         values: list[float] = []
         while True:
-            relaxed = self._covering.solve(expired)
-            shares = self._np.array(relaxed.x)
-            values.append(relaxed.value)
-            self._weigh(node)
-            if self._closes(node.bound):
+            solution = self._covering.solve(expired)
+            lp_values = self._np.array(solution.x)
+            values.append(solution.value)
+            self._raise_bound(node)
+            if self._is_above_cutoff(node.bound):
                 return True
-            if self._stopped(expired):
+            if self._must_stop(expired):
                 return False
-            halves = self._np.flatnonzero(free & (shares > TOLERANCE) & (shares < 1 - TOLERANCE))
-            if not len(halves):
-                chosen = self._rounded_derivation(cutter, shares, node)
+            fractional = self._np.flatnonzero(
+                undecided & (lp_values > TOLERANCE) & (lp_values < 1 - TOLERANCE)
+            )
+            if not len(fractional):
+                chosen = self._rounded_derivation(cutter, lp_values, node)
                 if not chosen:
                     continue
-                if self._closes(node.bound):
+                if self._is_above_cutoff(node.bound):
                     return True
-                halves = self._np.array(
+                fractional = self._np.array(
                     sorted(chosen - node.used)
                 )  # rounding left a gap that floats do not close
                 break
-            if number:
-                ends = len(values) > tuning.RELAXATION.node_rounds
+            if node_number:
+                is_last_round = len(values) > tuning.RELAXATION.node_rounds
             else:
-                ends = stalled(values, self._total / self._relaxation.dearest - relaxed.value)
-            if ends or not self._separate(cutter, shares, node, expired):
+                is_last_round = has_stalled(
+                    values, self._total / self._relaxation.greatest_cost - solution.value
+                )
+            if is_last_round or not self._separate(cutter, lp_values, node, expired):
                 break
-        if number % tuning.RELAXATION.guess_interval == 0:
-            self._try_guesses(shares, node)
-            if self._closes(node.bound):
+        if node_number % tuning.RELAXATION.guess_interval == 0:
+            self._try_guesses(lp_values, node)
+            if self._is_above_cutoff(node.bound):
                 return True
         reduced_costs = self._reduced_costs(node)
-        gap = self._below() * PARTS - node.bound
+        gap = self._cutoff() * PARTS - node.bound
         above_cutoff = self._np.flatnonzero(reduced_costs > gap).tolist()
         node.above_cutoff = frozenset(above_cutoff) - node.used - node.forbidden
-        scores = self._np.minimum(shares, 1.001 - shares)[halves] * (self._relative[halves] + 0.05)
-        action = int(halves[scores.argmax()])
+        scores = self._np.minimum(lp_values, 1.001 - lp_values)[fractional] * (
+            self._relative_costs[fractional] + 0.05
+        )
+        action = int(fractional[scores.argmax()])
         node.above_cutoff -= {action}
         node.action = action
         forbidden = node.forbidden | node.above_cutoff
         node.without = _Node(node.used, forbidden | {action}, node.bound, node.weights)
-        paid = node.bound + int(reduced_costs[action])
-        node.using = _Node(node.used | {action}, forbidden, paid, node.weights)
+        using_bound = node.bound + int(reduced_costs[action])
+        node.using = _Node(node.used | {action}, forbidden, using_bound, node.weights)
         return True
 
-    def _rounded_derivation(self, cutter: Cutter, shares: Any, node: _Node) -> set[int]:
-        """Record the rounded LP solution as a derivation and return its columns.
+    def _rounded_derivation(self, cutter: Cutter, lp_values: Any, node: _Node) -> set[int]:
+        """Record the rounded LP solution as a derivation, and return its columns.
 
         If it does not reach all targets, add a cut that it violates, and return the empty set.
         """
-        chosen = node.used.union(self._np.flatnonzero(shares > 0.5).tolist()) - node.forbidden
+        chosen = node.used.union(self._np.flatnonzero(lp_values > 0.5).tolist()) - node.forbidden
         self.effort -= len(cutter.actions)
         cut = cutter.cut(chosen, cutter.actions)
         if cut is not None:
-            self._relaxation.add(frozenset(cut.objects))
+            self._relaxation.add_cut(frozenset(cut.objects))
             return set()
-        self._record({self._actions[a] for a in chosen})
+        self._record_derivation({self._actions[a] for a in chosen})
         return set(chosen)
 
-    def _record(self, actions: set[int]) -> None:
-        """Make a derivation the incumbent if it is better."""
+    def _record_derivation(self, actions: set[int]) -> None:
+        """Make a derivation, a set of actions, the incumbent if it is better."""
         total = sum(self._costs[i] for i, a in enumerate(self._actions) if a in actions)
         if total < self._total:
             self._total, self.incumbent = total, frozenset(actions)
 
-    def _try_guesses(self, shares: Any, node: _Node) -> None:
-        """Replace the incumbent by better derivations that the heuristic proposes."""
+    def _try_guesses(self, lp_values: Any, node: _Node) -> None:
+        """Replace the incumbent by better derivations that the primal heuristic proposes."""
         self.effort -= 2 * len(self._actions)
-        solution = dict(zip(self._actions, shares.tolist(), strict=True))
+        solution = dict(zip(self._actions, lp_values.tolist(), strict=True))
         for derivation in self._guess(solution, {self._actions[a] for a in node.forbidden}):
             if set(derivation) <= solution.keys():
-                self._record(set(derivation))
+                self._record_derivation(set(derivation))
 
-    def _separate(self, cutter: Cutter, shares: Any, node: _Node, expired: Callable[[], bool]) -> bool:
+    def _separate(self, cutter: Cutter, lp_values: Any, node: _Node, expired: Callable[[], bool]) -> bool:
         """Add disjoint cuts that an LP solution violates; return whether any was added."""
         budget = min(self.effort, tuning.RELAXATION.cuts * len(cutter.actions))
-        added, looks = self._relaxation.separate([cutter], node.used, shares.copy(), budget, expired)
+        added, looks = self._relaxation.separate([cutter], node.used, lp_values.copy(), budget, expired)
         self.effort -= looks
         return added > 0
 
-    def _weigh(self, node: _Node) -> None:
-        """Round the LP dual to weights of rows; the node takes them if they raise its bound."""
-        reduced_costs = self._parts.copy()
-        paid = sum(self._costs[a] for a in node.used) * PARTS
+    def _raise_bound(self, node: _Node) -> None:
+        """Round the LP duals to weights of rows, and store them in the node if they raise its bound.
+
+        The first weights are stored in any case.
+        """
+        reduced_costs = self._costs_in_parts.copy()
+        used_cost = sum(self._costs[a] for a in node.used) * PARTS
         reduced_costs[list(node.used)] = 0
         reduced_costs[list(node.forbidden)] = sum(self._costs) * PARTS  # more than cuts can take
         dual_values = (
-            (row, w) for row, w in enumerate(self._covering.weights()) if self._active.get(row, True)
+            (row, w) for row, w in enumerate(self._covering.duals()) if self._active.get(row, True)
         )
-        weights = self._relaxation.shared_out(dual_values, reduced_costs)
-        bound = paid + sum(weights.values())
+        weights = self._relaxation.feasible_weights(dual_values, reduced_costs)
+        bound = used_cost + sum(weights.values())
         if bound > node.bound or not node.weights:
             node.bound = max(bound, node.bound)
             node.weights = [(row, weight) for row, weight in weights.items() if weight]
 
     def _reduced_costs(self, node: _Node) -> Any:
-        """Return each action's cost (in parts) minus the weights of the node's open cuts with the action.
+        """Return an array of the reduced cost of each action at a node, in parts.
 
-        A cut is open if its landmark has no used action.
+        It is the cost minus the weights of the node's open cuts with the action. A cut is open if its
+        landmark has no used action.
         """
-        reduced_costs = self._parts.copy()
-        for row, weight in self._carrying(node):
+        reduced_costs = self._costs_in_parts.copy()
+        for row, weight in self._open_cuts(node):
             reduced_costs[self._relaxation.rows[row]] -= weight
         return reduced_costs
 
-    def _carrying(self, node: _Node) -> Iterator[tuple[int, int]]:
-        """Yield the rows of open cuts and their weights, without rows that a used action satisfies."""
+    def _open_cuts(self, node: _Node) -> Iterator[tuple[int, int]]:
+        """Yield row and weight of each weighted cut of a node that no used action satisfies."""
         for row, weight in node.weights:
             if node.used.isdisjoint(self._relaxation.rows[row].tolist()):
                 yield row, weight
 
-    def _proof(self, node: _Node) -> tuple[Proof, set[int]]:
+    def _proof_of(self, node: _Node) -> tuple[Proof, set[int]]:
         """Return the proof of a closed node, and the columns of forbidden actions that it relies on."""
         if node.hopeless is not None:
             cut = frozenset(node.hopeless.objects)
-            return Hopeless(self._stated(cut, node)), {*self._relaxation.members(cut)} & node.forbidden
+            return Hopeless(self._cut_in_whole_graph(cut, node)), {
+                *self._relaxation.landmark_of(cut)
+            } & node.forbidden
         if node.without is None or node.using is None or node.action is None:
-            return self._packing(node)
-        proof, barred = self._proof(node.without)
-        using, barred_too = self._proof(node.using)
+            return self._packing_of(node)
+        proof, relied_on = self._proof_of(node.without)
+        using, relied_on_using = self._proof_of(node.using)
         proof = Branch(self._actions[node.action], proof, using)
-        barred = (barred - {node.action}) | barred_too
-        fixed = sorted(barred & node.above_cutoff)
+        relied_on = (relied_on - {node.action}) | relied_on_using
+        fixed = sorted(relied_on & node.above_cutoff)
         if not fixed:
-            return proof, barred
-        packing, overloaded = self._packing(node)
+            return proof, relied_on
+        packing, overloaded = self._packing_of(node)
         proof = CostFixing(tuple(self._actions[a] for a in fixed), packing, proof)
-        return proof, (barred - node.above_cutoff) | overloaded
+        return proof, (relied_on - node.above_cutoff) | overloaded
 
-    def _packing(self, node: _Node) -> tuple[Packing, set[int]]:
-        """Return the cost partition of a node, and the columns of forbidden actions that it overloads."""
+    def _packing_of(self, node: _Node) -> tuple[Packing, set[int]]:
+        """Return the cost partition of a node, and the columns of forbidden actions that it overloads.
+
+        An overloaded action carries more weight than it costs. Raises :class:`TooLongError` where the whole
+        proof becomes too long, or time is up.
+        """
         weights: list[tuple[Cut, tuple[Fraction]]] = []
         self._length_budget -= 5000  # which limits the depth of the branching, too
-        for row, weight in self._carrying(node):
-            cut = self._stated(self._relaxation.cuts[row], node)
+        for row, weight in self._open_cuts(node):
+            cut = self._cut_in_whole_graph(self._relaxation.cuts[row], node)
             self._length_budget -= len(cut.objects) + len(cut.members)
             if self._length_budget < 0 or self._expired():
                 raise TooLongError
@@ -320,13 +357,13 @@ class Branching:
         overloaded = set(self._np.flatnonzero(self._reduced_costs(node) < 0).tolist())
         return Packing(tuple(weights)), overloaded & node.forbidden
 
-    def _stated(self, cut: frozenset[int], node: _Node) -> Cut:
+    def _cut_in_whole_graph(self, cut: frozenset[int], node: _Node) -> Cut:
         """Return a cut by its numbers in the whole graph, without landmark actions that a node forbids."""
-        crossing = (self._actions[a] for a in self._relaxation.members(cut) if a not in node.forbidden)
-        return Cut(tuple(sorted(self._relaxation.whole(cut))), tuple(sorted(crossing)))
+        crossing = (self._actions[a] for a in self._relaxation.landmark_of(cut) if a not in node.forbidden)
+        return Cut(tuple(sorted(self._relaxation.whole_cut(cut))), tuple(sorted(crossing)))
 
 
-def branched(
+def prove_by_branching(
     graph: Hypergraph,
     targets: Iterable[int],
     actions: Collection[int],
@@ -337,9 +374,9 @@ def branched(
 ) -> Proof | None:
     """Return a proof that no derivation costs less than ``total``; ``None`` where that takes too long.
 
-    Arguments are those of :class:`Branching`. Bounds of the proof exceed ``total - 1``, which suffices since
-    costs are whole numbers. The proof is also ``None`` where a derivation costs less, where an action costs
-    nothing, and where all costs have a common divisor above 1.
+    Arguments are those of :class:`Branching`. Costs are whole numbers, so it suffices that bounds of the
+    proof exceed ``total - 1``. The proof is also ``None`` where a derivation costs less, where an action
+    costs nothing, and where all costs have a common divisor above 1.
     """
     costs = [cost(action) for action in actions]
     if math.gcd(*costs) != 1 or 0 in costs:

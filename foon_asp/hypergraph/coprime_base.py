@@ -1,8 +1,8 @@
 """Coprime bases: factors of numbers, by which products of powers of the numbers can be compared.
 
 Pairwise coprime numbers above 1 are *independent*: a product of rational powers of them is 1 only if all
-exponents are 0. So when every rate is written as a product of powers of such numbers, equal products have
-equal exponents. A coprime base is computed by greatest common divisors alone, without prime factors.
+exponents are 0. Write every rate as a product of powers of such numbers. Then equal products have equal
+exponents. A coprime base is computed by greatest common divisors alone, without prime factors.
 """
 
 import math
@@ -11,26 +11,32 @@ from fractions import Fraction
 
 
 def coprime_base(numbers: Iterable[int]) -> list[int]:
-    """Return pairwise coprime numbers above 1 such that each given number is a product of their powers."""
+    """Return pairwise coprime numbers above 1 such that each given number is a product of their powers.
+
+    For 4 and 6, these are 2 and 3. The given numbers are positive.
+    """
     base: list[int] = []
-    waiting = sorted(set(numbers))
-    while waiting:
-        number = waiting.pop()
+    remaining = sorted(set(numbers))
+    while remaining:
+        number = remaining.pop()
         if number == 1:
             continue
         for i, other in enumerate(base):
-            common = math.gcd(number, other)
-            if common > 1:
+            divisor = math.gcd(number, other)
+            if divisor > 1:
                 del base[i]
-                waiting += [common, *Fraction(number, other).as_integer_ratio()]
+                remaining += [divisor, *Fraction(number, other).as_integer_ratio()]
                 break
         else:
             base.append(number)
     return base
 
 
-def powers(number: int, base: Sequence[int]) -> dict[int, int]:
-    """Return the exponents of a number by factor of its coprime base, without exponents of 0."""
+def factor_exponents(number: int, base: Sequence[int]) -> dict[int, int]:
+    """Return the exponent of each factor of a coprime base in a number, without exponents of 0.
+
+    ``{2: 3, 3: 2}`` for 72 and the base ``[2, 3, 5]``. The number has no other factors.
+    """
     exponents: dict[int, int] = {}
     for factor in base:
         while number % factor == 0:

@@ -1,9 +1,11 @@
 """Optimal cost partitioning over landmark cuts: the dual of the hitting set relaxation.
 
 Greedy weights of cuts depend on the order of the cuts. Here all cuts are weighed at once, and cuts that the
-LP solution violates are added until none is found (Bonet and Helmert 2010; Katz and Domshlak 2010 for cost
-partitioning). The floats of HiGHS are rounded to integers such that the weights on each action add up to at
-most its cost. So the bound is valid whatever the floats were.
+LP solution violates are added until none is found. See Bonet and Helmert (2010), and Katz and Domshlak (2010)
+for cost partitioning.
+
+The floats of HiGHS are rounded to integers such that the weights on each action add up to at most its cost.
+So the bound is valid whatever the floats were.
 """
 
 import math
@@ -13,43 +15,47 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.hypergraph import tuning
-from foon_asp.hypergraph.covering import ROUGH_TOLERANCE, UnsolvedError, Weighed
+from foon_asp.hypergraph.covering import ROUGH_TOLERANCE, LpSolution, UnsolvedError
 from foon_asp.hypergraph.cut import Cutter
 from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.landmark_relaxation import PARTS, LandmarkRelaxation
 
 
-class SharedCosts(NamedTuple):
-    """A cost partition over cuts, in :data:`PARTS` of 1.
+class CostPartition(NamedTuple):
+    """A cost partition over cuts. Its costs are integers: :data:`PARTS` is a cost of 1.
 
     ``bound``: a lower bound on the cost of derivations by the actions of the relaxation.
     ``reduced_costs``: the reduced cost of each action.
-    ``cuts``: the objects of each cut, and its weight.
-    ``shares``: the LP value of each action.
-    ``tight``: the cuts that the LP solution satisfies with equality; the next relaxation begins with them.
+    ``cuts``: pairs of a cut, given by its objects, and its weight.
+    ``lp_values``: the LP value of each action.
+    ``tight``: the cuts that the LP solution satisfies with equality. The next relaxation begins with them.
     """
 
     bound: int
     reduced_costs: dict[int, int]
     cuts: list[tuple[frozenset[int], int]]
-    shares: dict[int, float]
+    lp_values: dict[int, float]
     tight: Sequence[frozenset[int]] = ()
 
 
-def quotient(a: int, b: int) -> float:
-    """Return ``a / b``, or infinity where no float is so large."""
+def float_quotient(a: int, b: int) -> float:
+    """Return ``a / b`` as a float; infinity where no float is so large."""
     try:
         return a / b
     except OverflowError:
         return math.inf
 
 
-def stalled(values: Sequence[float], lacks: float) -> bool:
-    """Return whether the last few of the LP ``values`` closed hardly any of the remaining gap ``lacks``."""
+def has_stalled(values: Sequence[float], remaining_gap: float) -> bool:
+    """Return whether the last few of the LP ``values`` closed hardly any of the remaining gap.
+
+    Compares the last value with the one ``tuning.RELAXATION.stalled_solutions`` before; ``False`` if there is
+    none.
+    """
     return (
         len(values) > tuning.RELAXATION.stalled_solutions
         and values[-1] - values[-1 - tuning.RELAXATION.stalled_solutions]
-        < tuning.RELAXATION.stalled_growth * lacks
+        < tuning.RELAXATION.stalled_growth * remaining_gap
     )
 
 
@@ -74,109 +80,116 @@ class CostPartitioning:
         self._cutter = Cutter(relaxation.graph, relaxation.targets)
         self._random = random.Random(0)
         self._single_target_cutters, self._other_targets_cutters = (
-            ([], []) if self._cutter.hopeless else self._by_target(relaxation.graph)
+            ([], []) if self._cutter.hopeless else self._make_cutters(relaxation.graph)
         )
         self._interior_point = True  # faster, until it is not exact enough
         self._values: list[float] = []
-        self._last: Weighed | None = None
+        self._last: LpSolution | None = None
         self.converged = False
         if not self._cutter.hopeless:
-            relaxation.add_known(known_cuts)
+            relaxation.add_whole_cuts(known_cuts)
 
-    def advance(self, enough: int, max_solutions: float = math.inf) -> SharedCosts | None:
-        """Solve the LP and add violated cuts, until the bound is ``enough``, ``max_solutions`` times at most.
+    def advance(self, sufficient_bound: int, max_solutions: float = math.inf) -> CostPartition | None:
+        """Solve the LP and add violated cuts in turn; return the cost partition of the last solution.
 
-        Returns the cost partition of the last solution; ``None`` where the targets cannot be reached or are
-        all initial, and where HiGHS fails.
+        Ends when the bound is ``sufficient_bound``, after ``max_solutions`` solutions, or when
+        :attr:`converged` becomes true. ``None`` where the targets cannot be reached or are all initial, and
+        where HiGHS fails.
         """
         if self._cutter.hopeless or not self._cutter.targets:
             self.converged = True
             return None
-        above = 100 * enough - 99  # hundredths: costs are whole, and so are bounds
+        sufficient_hundredths = 100 * sufficient_bound - 99  # hundredths: costs are whole, and so are bounds
         solutions = 0
         while self._last is None or not self._expired():
-            relaxed = self._solved()
-            if relaxed is None:
+            solution = self._solve_lp()
+            if solution is None:
                 break
-            self._last = relaxed
-            self._values.append(relaxed.value)
+            self._last = solution
+            self._values.append(solution.value)
             solutions += 1
-            lacks = quotient(above, 100 * self._relaxation.dearest) - relaxed.value
-            ends = lacks <= 0 or stalled(self._values, lacks)
-            if ends or not self._separate(relaxed.x):
-                if self._interior_point and not ends:
+            remaining_gap = (
+                float_quotient(sufficient_hundredths, 100 * self._relaxation.greatest_cost) - solution.value
+            )
+            is_last_round = remaining_gap <= 0 or has_stalled(self._values, remaining_gap)
+            if is_last_round or not self._separate(solution.x):
+                if self._interior_point and not is_last_round:
                     self._interior_point = False
                     continue
-                shared = self._shared(relaxed)
-                lost = Fraction(relaxed.value) * self._relaxation.dearest - Fraction(shared.bound, PARTS)
-                if not self._interior_point or lost < Fraction(1, 100):
+                partition = self._rounded_partition(solution)
+                cost = Fraction(solution.value) * self._relaxation.greatest_cost
+                rounding_loss = cost - Fraction(partition.bound, PARTS)
+                if not self._interior_point or rounding_loss < Fraction(1, 100):
                     self.converged = True
-                    return shared
+                    return partition
                 self._interior_point = False
             elif solutions >= max_solutions:
-                return self._shared(relaxed)
+                return self._rounded_partition(solution)
         self.converged = True
-        return None if self._last is None else self._shared(self._last)
+        return None if self._last is None else self._rounded_partition(self._last)
 
-    def _solved(self) -> Weighed | None:
-        """Return an LP solution; ``None`` where HiGHS finds none before time is up."""
+    def _solve_lp(self) -> LpSolution | None:
+        """Return an LP solution; ``None`` where HiGHS finds none before time is up.
+
+        It is an interior point. After the first failure, it is a basic solution.
+        """
         if self._interior_point:
-            relaxed = self._relaxation.covering.interior_point(self._expired)
-            if relaxed is not None:
-                return relaxed
+            solution = self._relaxation.covering.interior_point(self._expired)
+            if solution is not None:
+                return solution
             self._interior_point = False
         try:
-            solved = self._relaxation.covering.solve(self._expired)
+            basic = self._relaxation.covering.solve(self._expired)
         except UnsolvedError:
             return None
-        return Weighed(solved.value, solved.x, self._relaxation.covering.weights())
+        return LpSolution(basic.value, basic.x, self._relaxation.covering.duals())
 
     def _separate(self, x: list[float]) -> bool:
         """Add disjoint cuts that an LP solution violates; return whether any was added."""
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
         relaxation = self._relaxation
-        shares = np.where(relaxation.relative > 0, x, 1.0)
+        lp_values = np.where(relaxation.relative_costs > 0, x, 1.0)
         self._random.shuffle(self._single_target_cutters)
         cutters = (*self._single_target_cutters, *self._other_targets_cutters)
         budget = tuning.RELAXATION.cuts * len(relaxation.actions)
-        added, _ = relaxation.separate(cutters, (), shares, budget, self._expired)
+        added, _ = relaxation.separate(cutters, (), lp_values, budget, self._expired)
         return added > 0
 
-    def _by_target(self, graph: Hypergraph) -> tuple[list[Cutter], list[Cutter]]:
+    def _make_cutters(self, graph: Hypergraph) -> tuple[list[Cutter], list[Cutter]]:
         """Return cutters for single targets with few relevant actions, and a cutter for all other targets.
 
         The second list is empty if there are no other targets.
         """
         count, targets = len(self._relaxation.actions), self._cutter.targets
-        alone: list[Cutter] = []
-        others: list[int] = []
+        single_target_cutters: list[Cutter] = []
+        other_targets: list[int] = []
         effort = tuning.RELAXATION.cuts * count if len(targets) > 1 else 0
-        everything = bytearray(b"\1") * graph.size
+        all_reachable = bytearray(b"\1") * graph.size
         for target in targets:
             if effort > 0:
-                cutter = Cutter(graph, [target], reachable=everything)
+                cutter = Cutter(graph, [target], reachable=all_reachable)
                 effort -= len(cutter.actions)
                 if 2 * len(cutter.actions) <= count:
-                    alone.append(cutter)
+                    single_target_cutters.append(cutter)
                     continue
-            others.append(target)
-        together = [Cutter(graph, others, reachable=everything)] if others else []
-        return alone, together
+            other_targets.append(target)
+        other_cutters = [Cutter(graph, other_targets, reachable=all_reachable)] if other_targets else []
+        return single_target_cutters, other_cutters
 
-    def _shared(self, solved: Weighed) -> SharedCosts:
-        """Return the cost partition by the rounded dual values of an LP solution."""
+    def _rounded_partition(self, solution: LpSolution) -> CostPartition:
+        """Return the cost partition by the duals of an LP solution, rounded to integers."""
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
-        relaxation, shares = self._relaxation, np.array(solved.x)
-        capacity, rows = relaxation.in_parts(), relaxation.rows
-        dual_values = [*solved.weights] + [0.0] * (len(rows) - len(solved.weights))  # for rows added since
-        weights = relaxation.shared_out(enumerate(dual_values), capacity)
-        whole, cuts, tight = relaxation.whole, relaxation.cuts, 1 + ROUGH_TOLERANCE
-        return SharedCosts(
+        relaxation, lp_values = self._relaxation, np.array(solution.x)
+        capacity, rows = relaxation.costs_in_parts(), relaxation.rows
+        dual_values = [*solution.duals] + [0.0] * (len(rows) - len(solution.duals))  # for rows added since
+        weights = relaxation.feasible_weights(enumerate(dual_values), capacity)
+        whole, cuts, tight = relaxation.whole_cut, relaxation.cuts, 1 + ROUGH_TOLERANCE
+        return CostPartition(
             sum(weights.values()),
             dict(zip(relaxation.actions, capacity.tolist(), strict=True)),
             [(whole(cuts[row]), weight) for row, weight in weights.items() if weight],
-            dict(zip(relaxation.actions, solved.x, strict=True)),
-            [whole(cut) for cut, row in zip(cuts, rows, strict=True) if shares[row].sum() < tight],
+            dict(zip(relaxation.actions, solution.x, strict=True)),
+            [whole(cut) for cut, row in zip(cuts, rows, strict=True) if lp_values[row].sum() < tight],
         )

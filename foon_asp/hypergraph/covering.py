@@ -35,11 +35,11 @@ class UnsolvedError(BugError):
     """HiGHS ended a covering problem without a solution."""
 
 
-class Relaxed(NamedTuple):
-    """A basic optimal solution: its value, the values ``x`` of the columns, and its basis.
+class BasicSolution(NamedTuple):
+    """A basic optimal solution: its cost ``value``, the values ``x`` of the columns, and its basis.
 
-    ``columns`` are the basic columns, and ``rows`` are as many rows that are tight by the basis. The square
-    matrix of the rows and columns determines the solution and the dual values.
+    ``columns`` are the numbers of the basic columns, and ``rows`` those of as many tight rows. The square
+    matrix of these rows and columns determines the solution and the duals.
     """
 
     value: float
@@ -48,60 +48,65 @@ class Relaxed(NamedTuple):
     rows: list[int]
 
 
-class Weighed(NamedTuple):
-    """An optimal solution, basic or not: its value, the values ``x`` of columns, the duals of rows."""
+class LpSolution(NamedTuple):
+    """An optimal solution, basic or not.
+
+    ``value`` is its cost, ``x`` are the values of the columns, and ``duals`` those of the rows.
+    """
 
     value: float
     x: list[float]
-    weights: list[float]
+    duals: list[float]
 
 
 class Covering:
     """A linear program: minimize the sum of ``costs[c] * x[c]`` where each row adds up to at least 1.
 
-    No ``x[c]`` is below 0. A limit is another kind of row: the sum of ``amounts[c] * x[c]`` is at most
-    ``max_amount``. Rows can be added between solutions; HiGHS then continues from the last solution.
+    No ``x[c]`` is below 0. A row adds up the values of some columns. A limit is another kind of row: the sum
+    of ``amounts[c] * x[c]`` is at most ``max_amount``. Rows can be added between solutions. HiGHS then
+    continues from the last solution.
     """
 
     def __init__(self, costs: Sequence[float]) -> None:
         highspy, np = libraries()
         self._library, self._array = highspy, np.array
         self._highs = silent_highs()
-        self._set(_OPTIONS)
+        self._set_options(_OPTIONS)
         self._at_vertex = True  # whether the last solution, if any, is basic
         count = len(costs)
         self._highs.addVars(count, np.zeros(count), np.full(count, highspy.kHighsInf))
         self._highs.changeColsCost(count, np.arange(count, dtype=np.int32), np.array(costs, dtype=float))
 
-    def add(self, row: Sequence[int]) -> None:
-        """Add a row: the values of the columns add up to at least 1."""
+    def add_row(self, row: Sequence[int]) -> None:
+        """Add a row, given by its columns: their values add up to at least 1."""
         np_row = self._array(row, dtype="int32")
         ones = self._array([1.0] * len(row))
         self._highs.addRow(1.0, self._library.kHighsInf, len(row), np_row, ones)
 
-    def limit(self, amounts: Mapping[int, Fraction], max_amount: Fraction) -> None:
-        """Add a limit: the sum of amounts times values is at most ``max_amount``; amounts may be negative."""
+    def add_limit(self, amounts: Mapping[int, Fraction], max_amount: Fraction) -> None:
+        """Add a limit: the sum of amounts times values is at most ``max_amount``. Amounts may be negative."""
         columns = self._array(list(amounts), dtype="int32")
         takes = self._array([-float(amount) for amount in amounts.values()])
         self._highs.addRow(-float(max_amount), self._library.kHighsInf, len(amounts), columns, takes)
 
-    def bound(self, column: int, lower: float, upper: float) -> None:
+    def set_bounds(self, column: int, lower: float, upper: float) -> None:
         """Set the lower and the upper bound of the value of a column."""
         self._highs.changeColBounds(column, lower, upper)
 
-    def demand(self, row: int, lower: float) -> None:
-        """Set the least sum of the values in a row; 0 makes the row redundant."""
+    def set_row_minimum(self, row: int, lower: float) -> None:
+        """Set the least sum of the values in a row, at first 1. With 0, the row is redundant."""
         self._highs.changeRowBounds(row, lower, self._library.kHighsInf)
 
-    def _set(self, options: dict[str, bool | str | float]) -> None:
+    def _set_options(self, options: dict[str, bool | str | float]) -> None:
+        """Set options of HiGHS."""
         for option, value in options.items():
             self._highs.setOptionValue(option, value)
 
-    def interior_point(self, expired: Callable[[], bool] = lambda: False) -> Weighed | None:
+    def interior_point(self, expired: Callable[[], bool] = lambda: False) -> LpSolution | None:
         """Return an interior-point solution: less exact than a basic one, but faster with many rows.
 
-        ``None`` where HiGHS does not converge in time: within ``tuning.RELAXATION.run_seconds`` and before
-        ``expired``.
+        ``None`` where HiGHS does not converge within ``tuning.RELAXATION.run_seconds``, or before ``expired``
+        returns true.
         """
         self._at_vertex = False
         self._run(_INTERIOR_POINT, expired)
@@ -109,13 +114,14 @@ class Covering:
             return None
         solution = self._highs.getSolution()
         value = float(self._highs.getObjectiveValue())
-        return Weighed(value, list(solution.col_value), list(solution.row_dual))
+        return LpSolution(value, list(solution.col_value), list(solution.row_dual))
 
     def _run(self, options: dict[str, bool | str | float], expired: Callable[[], bool]) -> None:
-        self._set(options | {"time_limit": self._highs.getRunTime() + tuning.RELAXATION.run_seconds})
+        """Run HiGHS with these options, for at most ``tuning.RELAXATION.run_seconds``."""
+        self._set_options(options | {"time_limit": self._highs.getRunTime() + tuning.RELAXATION.run_seconds})
         run(self._highs, expired)
 
-    def solve(self, expired: Callable[[], bool] = lambda: False) -> Relaxed:
+    def solve(self, expired: Callable[[], bool] = lambda: False) -> BasicSolution:
         """Return a basic optimal solution; where time is up, the basic solution reached by then.
 
         ``expired`` returns whether time is up. Raises :class:`UnsolvedError` where HiGHS fails for another
@@ -125,20 +131,20 @@ class Covering:
         if not self._at_vertex:  # steps of the simplex algorithm would start from nothing
             self._at_vertex = True
             self._run(_VERTEX, expired)
-            self._set(_OPTIONS)
+            self._set_options(_OPTIONS)
         ended = run(highs, expired)
         status = self._library.HighsModelStatus
         if ended and highs.getModelStatus() not in {status.kOptimal, status.kModelEmpty}:
             raise UnsolvedError(f"HiGHS ends a covering problem with {highs.getModelStatus()}")
         basis, solution = highs.getBasis(), highs.getSolution()
         basic = self._library.HighsBasisStatus.kBasic
-        return Relaxed(
+        return BasicSolution(
             float(highs.getObjectiveValue()),
             list(solution.col_value),
             [c for c, status in enumerate(basis.col_status) if status == basic],
             [r for r, status in enumerate(basis.row_status) if status != basic],
         )
 
-    def weights(self) -> list[float]:
-        """Return the dual value of each row in the last solution."""
+    def duals(self) -> list[float]:
+        """Return the dual of each row in the last solution."""
         return list(self._highs.getSolution().row_dual)

@@ -1,9 +1,10 @@
 """Disjunctive action landmarks from cuts: every derivation of the targets uses one of their actions.
 
 Take a set of objects that contains a target and no initial object. In any derivation, the first action that
-achieves an object of the set needs no object of the set. So every derivation has an action that achieves an
-object of the set and needs none: these actions are a *landmark*, and the set is its *cut*. Bonet and Helmert
-(2010) bound delete-free plans by hitting sets of landmarks of this kind.
+achieves an object of the set needs no object of the set. Actions that achieve an object of the set and need
+none *cross* the set. So every derivation has a crossing action. The crossing actions are a *landmark*, and
+the set is its *cut*. Bonet and Helmert (2010) bound delete-free plans by hitting sets of landmarks of this
+kind.
 """
 
 import math
@@ -15,7 +16,11 @@ from foon_asp.hypergraph.hypergraph import Hypergraph
 
 
 class Cut(NamedTuple):
-    """A cut (``objects``) and its landmark (``members``): numbers of objects and of actions, ascending."""
+    """A cut and its landmark.
+
+    ``objects``: the numbers of its objects, ascending.
+    ``members``: the numbers of the landmark actions, ascending.
+    """
 
     objects: tuple[int, ...]
     members: tuple[int, ...]
@@ -29,7 +34,8 @@ class Cutter:
     ``hopeless``: a cut with an empty landmark if a target cannot be reached, else ``None``.
 
     Landmarks contain every crossing action that is not forbidden. Construction takes time linear in the size
-    of the hypergraph or, if the ``reachable`` objects are given, in the size of the relevant part.
+    of the hypergraph. If the ``reachable`` objects are given, as flags, the time is linear in the size of the
+    relevant part.
     """
 
     def __init__(
@@ -46,27 +52,27 @@ class Cutter:
         self._reachable = reachable
         self.actions: list[int] = []
         self.hopeless: Cut | None = None
-        lost = [o for o in self.targets if not reachable[o]]
-        if lost:
-            self.hopeless = self._shrink(lost[0], set(), reachable, {})
+        unreachable = [o for o in self.targets if not reachable[o]]
+        if unreachable:
+            self.hopeless = self._grow_small_cut(unreachable[0], set(), reachable, {})
             return
         # relevant objects are numbered anew: a large network has few of them
         self._numbers: dict[int, int] = {}
         stack = list(self.targets)
         for o in stack:
             self._numbers[o] = len(self._numbers)
-        chosen: set[int] = set()
+        relevant: set[int] = set()
         while stack:
             for action in graph.makers[stack.pop()]:
-                if action in chosen or action in forbidden:
+                if action in relevant or action in forbidden:
                     continue
                 if all(reachable[o] for o in graph.needs[action]):
-                    chosen.add(action)
+                    relevant.add(action)
                     for o in graph.needs[action]:
                         if not graph.at_start[o] and o not in self._numbers:
                             self._numbers[o] = len(self._numbers)
                             stack.append(o)
-        self.actions = sorted(chosen)
+        self.actions = sorted(relevant)
         self._positions = {action: i for i, action in enumerate(self.actions)}
         numbers = self._numbers
         self._gives = [[numbers[o] for o in set(graph.gives[a]) if o in numbers] for a in self.actions]
@@ -80,68 +86,72 @@ class Cutter:
 
     def reached_by(self, actions: Collection[int]) -> bool:
         """Return whether these actions alone reach all targets."""
-        return _Growth(self, self._missing).admit_all(
+        return _Growth(self, self._missing).reaches_targets_with(
             self._positions[a] for a in actions if a in self._positions
         )
 
     def cut(self, keep: Iterable[int], order: Iterable[int]) -> Cut | None:
-        """Return a cut with a small landmark: no action of ``keep``, and rather actions late in ``order``.
+        """Return a cut with a small landmark, which has no action of ``keep``.
 
         Grows a set of actions that does not reach the targets, first by ``keep`` and then along ``order``. An
-        action with which it would reach the targets is refused; the landmark consists of refused actions.
-        ``None`` where ``keep`` alone reaches the targets. ``order`` should contain all :attr:`actions`, since
-        no other action can be in the landmark.
+        action with which the targets would be reached is refused. The landmark consists of refused actions,
+        so actions late in ``order`` are preferred. ``order`` should contain all :attr:`actions`, since no
+        other action can be in the landmark. ``None`` where ``keep`` alone reaches the targets.
         """
         growth = _Growth(self, self._missing)
         positions = self._positions
-        if growth.admit_all(positions[a] for a in keep if a in positions):
+        if growth.reaches_targets_with(positions[a] for a in keep if a in positions):
             return None
-        refused = {self.actions[i] for i in growth.refuse([positions[a] for a in order])}
+        refused = {self.actions[i] for i in growth.admit([positions[a] for a in order])}
         reached = bytearray(self._reachable)
         for o in [o for o, is_reached in zip(self._numbers, growth.reached, strict=True) if not is_reached]:
             reached[o] = False
-        first = next(o for o in self.targets if not reached[o])
-        return self._shrink(first, refused, reached, self._consumer_counts)
+        target = next(o for o in self.targets if not reached[o])
+        return self._grow_small_cut(target, refused, reached, self._consumer_counts)
 
-    def among(self, actions: Iterable[int]) -> tuple[int, ...] | None:
+    def without_forbidden(self, actions: Iterable[int]) -> tuple[int, ...] | None:
         """Return the given actions that are not forbidden; ``None`` if one is not in :attr:`actions`."""
         remaining = tuple(a for a in actions if a not in self._forbidden)
         return remaining if self._positions.keys() >= set(remaining) else None
 
-    def widened(self, objects: Iterable[int]) -> Cut:
+    def widen(self, objects: Iterable[int]) -> Cut:
         """Return the cut of some objects, with unreachable objects added to keep its landmark small.
 
-        An action that cannot run needs an unreachable object. Once this object is in the cut, the action does
-        not cross the cut. So a cut found among the actions that can run keeps its landmark.
+        Initial objects are left out. An action that cannot run needs an unreachable object. Once this object
+        is in the cut, the action does not cross the cut. So a cut found among actions that can run keeps its
+        landmark.
         """
         graph, reachable = self._graph, self._reachable
         inside = {o for o in objects if not graph.at_start[o]}
-        return self._closed(inside, lambda a: next((o for o in graph.needs[a] if not reachable[o]), None))
+        return self._extend_to_cut(
+            inside, lambda a: next((o for o in graph.needs[a] if not reachable[o]), None)
+        )
 
-    def _shrink(
+    def _grow_small_cut(
         self, target: int, members: set[int], reached: bytearray, consumer_counts: Mapping[int, float]
     ) -> Cut:
-        """Return a small cut, grown backwards from the unreached ``target``.
+        """Return a small cut of an unreached target, grown backwards; its landmark is within ``members``.
 
-        If an action outside ``members`` achieves an object of the cut, one of its unreached preconditions is
-        added to the cut, so that the action does not cross the cut. The precondition with the most consumers
-        is added, since it helps against other actions, too; objects without an entry in ``consumer_counts``
-        come first.
+        If another action crosses the cut, one of its unreached preconditions is added to the cut. Then the
+        action no longer crosses it. The precondition with the most consumers is chosen, since it helps
+        against other actions, too. ``consumer_counts`` are the numbers of consumers; objects that it lacks
+        are chosen first.
         """
 
         def most_consumed(action: int) -> int | None:
+            """Return the precondition to add against a crossing action; ``None`` if it is in ``members``."""
             if action in members:
                 return None
             lacking = (o for o in self._graph.needs[action] if not reached[o])
             return max(lacking, key=lambda o: (consumer_counts.get(o, math.inf), -o))
 
-        return self._closed({target}, most_consumed)
+        return self._extend_to_cut({target}, most_consumed)
 
-    def _closed(self, inside: set[int], needed: Callable[[int], int | None]) -> Cut:
-        """Return the cut of the objects ``inside``, extended until crossing actions need nothing more.
+    def _extend_to_cut(self, inside: set[int], needed: Callable[[int], int | None]) -> Cut:
+        """Extend the set ``inside`` in place, and return it as a cut with its landmark.
 
-        For each crossing action, ``needed`` returns a precondition to add to the cut; ``None`` leaves the
-        action in the landmark.
+        For each crossing action, ``needed`` returns a precondition to add. If it returns ``None``, the action
+        stays in the landmark.
         """
         graph, forbidden = self._graph, self._forbidden
         stack = list(inside)
@@ -160,7 +170,10 @@ class Cutter:
 
 
 class _Growth:
-    """A set of actions, grown one by one, that never reaches all targets."""
+    """A set of actions, grown one by one, that never reaches all targets.
+
+    ``reached``: a flag for each object that the admitted actions reach, by its number in the cutter.
+    """
 
     def __init__(self, cutter: Cutter, missing: list[int]) -> None:
         self._gives, self._consumers = cutter._gives, cutter._consumers
@@ -173,64 +186,68 @@ class _Growth:
         self._unreached = len(cutter.targets)  # targets have the first numbers
         self._targets = len(cutter.targets)
 
-    def admit_all(self, actions: Iterable[int]) -> bool:
-        """Admit actions; return ``True`` if they reach all targets: then the growth must not go on."""
-        return not self._unreached or bool(self.refuse(actions, max_refused=1))
+    def reaches_targets_with(self, actions: Iterable[int]) -> bool:
+        """Admit actions until all targets would be reached; return whether that happened.
 
-    def refuse(self, actions: Iterable[int], max_refused: int = sys.maxsize) -> list[int]:
-        """Admit actions one by one; refuse and return those with which all targets would be reached.
+        After ``True``, the growth must not be used.
+        """
+        return not self._unreached or bool(self.admit(actions, max_refused=1))
 
-        Ends after ``max_refused`` refusals. If an object alone suffices to reach all targets, that is found
-        out once; afterwards, actions that achieve the object are refused at once.
+    def admit(self, actions: Iterable[int], max_refused: int = sys.maxsize) -> list[int]:
+        """Admit actions one by one, and return the refused ones.
+
+        An action is refused if all targets would be reached with it. Ends after ``max_refused`` refusals.
+        Decisive objects are recorded: each of them alone suffices to reach all targets. So later actions that
+        achieve a decisive object are refused at once.
         """
         waiting, missing, gives = self._waiting, self._missing, self._gives
-        reached, decisive, spread = self.reached, self._decisive, self._spread
+        reached, decisive, reach_from = self.reached, self._decisive, self._reach_from
         refused: list[int] = []
         for action in actions:
             if missing[action]:
                 waiting[action] = True
                 continue
-            new = [o for o in gives[action] if not reached[o]]
-            if not new:
+            newly_reached = [o for o in gives[action] if not reached[o]]
+            if not newly_reached:
                 continue
-            for o in new:
+            for o in newly_reached:
                 if decisive[o]:
                     break
             else:
-                if spread(new) is not None:
+                if reach_from(newly_reached) is not None:
                     continue
-                self._learn(new)
+                self._record_decisive(newly_reached)
             refused.append(action)
             if len(refused) == max_refused:
                 break
         return refused
 
-    def _learn(self, refused: list[int]) -> None:
+    def _record_decisive(self, refused: list[int]) -> None:
         """If one of the ``refused`` objects alone suffices to reach all targets, record it as decisive."""
         for o in refused:
             unreached = self._unreached
-            new = None if len(refused) == 1 else self._spread([o])
-            if new is None:
+            newly_reached = None if len(refused) == 1 else self._reach_from([o])
+            if newly_reached is None:
                 self._decisive[o] = True
                 return
-            self._undo(new)
+            self._unreach(newly_reached)
             self._unreached = unreached
 
-    def _spread(self, objects: list[int]) -> list[int] | None:
-        """Mark objects, and all that admitted actions make of them, as reached; return the new ones.
+    def _reach_from(self, objects: list[int]) -> list[int] | None:
+        """Mark objects as reached, and all objects that admitted actions make of them; return the new ones.
 
         If all targets would be reached, nothing changes, and ``None`` is returned.
         """
         waiting, missing, reached = self._waiting, self._missing, self.reached
         consumers, gives, decisive, targets = self._consumers, self._gives, self._decisive, self._targets
         unreached = self._unreached
-        new: list[int] = []
+        newly_reached: list[int] = []
         for batch in (stack := [objects]):  # grows while it is walked through
             for o in batch:
                 if reached[o]:
                     continue
                 reached[o] = True
-                new.append(o)
+                newly_reached.append(o)
                 if o < targets:
                     unreached -= 1
                 for consumer in consumers[o]:
@@ -238,15 +255,15 @@ class _Growth:
                     if not lacking and waiting[consumer]:
                         stack.append(gives[consumer])
                 if not unreached or decisive[o]:
-                    self._undo(new)
+                    self._unreach(newly_reached)
                     return None
         self._unreached = unreached
-        return new
+        return newly_reached
 
-    def _undo(self, new: list[int]) -> None:
-        """Mark objects as not reached again."""
+    def _unreach(self, newly_reached: list[int]) -> None:
+        """Mark objects as unreached again, and correct the counts of missing preconditions."""
         missing, reached = self._missing, self.reached
-        for o in new:
+        for o in newly_reached:
             reached[o] = False
             for consumer in self._consumers[o]:
                 missing[consumer] += 1

@@ -6,13 +6,13 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from foon_asp.hypergraph.goal_graph import GoalGraph
 
 
-def undominated(graph: GoalGraph, actions: Collection[int], cost: Callable[[int], int]) -> set[int]:
+def undominated_actions(graph: GoalGraph, actions: Collection[int], cost: Callable[[int], int]) -> set[int]:
     """Return the actions that no other action dominates.
 
-    Action A dominates action B if the preconditions of A are a subset of B's, A has all effects of B,
-    and A costs no more. Then A can replace B in any tree, and the tree costs no more: ``cost`` covers the
-    whole list of objectives. Effects that no action or goal needs do not count. Of actions that dominate each
-    other, one stays.
+    Action A dominates action B if three things hold. The preconditions of A are a subset of B's, A has all
+    effects of B, and A costs no more. Then A can replace B in any tree, and the tree costs no more, since
+    ``cost`` covers the whole list of objectives. Effects that no action or goal needs do not count; an action
+    without other effects is left out. Of actions that dominate each other, one stays.
     """
     start = graph.start
     needed = {a: frozenset(o for o in graph.needs[a] if o not in start) for a in actions}
@@ -20,19 +20,19 @@ def undominated(graph: GoalGraph, actions: Collection[int], cost: Callable[[int]
     effects = {a: frozenset(o for o in graph.gives[a] if o in wanted) for a in actions}
     remaining = set(actions)
     consumers = Counter(o for needs in needed.values() for o in needs)
-    made = Counter(o for gives in effects.values() for o in gives)
-    rare = {o: i for i, o in enumerate(sorted(consumers, key=lambda o: (consumers[o], o)))}
-    ordered = {a: sorted(needed[a], key=rare.__getitem__) for a in actions}
+    achiever_counts = Counter(o for gives in effects.values() for o in gives)
+    rarity = {o: i for i, o in enumerate(sorted(consumers, key=lambda o: (consumers[o], o)))}
+    ordered = {a: sorted(needed[a], key=rarity.__getitem__) for a in actions}
     by_preconditions = _PreconditionTrie(ordered, effects)
-    made_by = {o: (made[o], o) for o in made}.__getitem__
+    achiever_count = {o: (achiever_counts[o], o) for o in achiever_counts}.__getitem__
     prices = {a: cost(a) for a in actions}
     for action in sorted(actions, key=lambda a: (prices[a], -a), reverse=True):
         gives, price = effects[action], prices[action]
         if not gives:
             remaining.discard(action)
             continue
-        rarest = min(gives, key=made_by)
-        for other in by_preconditions.with_subset(ordered[action], rarest):
+        rarest = min(gives, key=achiever_count)
+        for other in by_preconditions.achievers_with_subset(ordered[action], rarest):
             if other != action and prices[other] <= price and other in remaining and gives <= effects[other]:
                 remaining.discard(action)
                 break
@@ -42,7 +42,7 @@ def undominated(graph: GoalGraph, actions: Collection[int], cost: Callable[[int]
 class _PreconditionTrie:
     """A set-trie (Savnik 2013) of actions by their preconditions, rare preconditions first.
 
-    The actions of each node are indexed by effect.
+    At each node, the actions are indexed by effect.
     """
 
     def __init__(self, ordered: Mapping[int, Sequence[int]], effects: Mapping[int, frozenset[int]]) -> None:
@@ -55,7 +55,7 @@ class _PreconditionTrie:
             for o in effects[action]:
                 self._achievers.setdefault((node, o), []).append(action)
 
-    def with_subset(self, needs: Sequence[int], effect: int) -> Iterator[int]:
+    def achievers_with_subset(self, needs: Sequence[int], effect: int) -> Iterator[int]:
         """Yield the achievers of ``effect`` whose preconditions are a subset of ``needs``."""
         children, achievers = self._children, self._achievers
         nodes = [0]  # reached by subsets of the preconditions so far

@@ -7,7 +7,7 @@ from decimal import ROUND_CEILING, Context, Decimal
 from fractions import Fraction
 from itertools import pairwise
 
-from foon_asp.hypergraph.coprime_base import coprime_base, powers
+from foon_asp.hypergraph.coprime_base import coprime_base, factor_exponents
 from foon_asp.hypergraph.landmark_cuts import Cuts
 from foon_asp.hypergraph.lexicographic import Lexicographic
 from foon_asp.problem import Costs, Objective, Problem, multiplies
@@ -25,11 +25,14 @@ class TooFineError(Exception):
 class ExactCosts:
     """The cost of each action as one integer; sums of costs compare lexicographically.
 
-    An additive objective is scaled to integers and multiplied by more than the greatest sum of the objectives
-    after it. Where rates multiply, logarithms are added: each factor of a coprime base of the rates has a
-    logarithm rounded to forty digits, so equal products have equal sums. ``doubt`` is greater than all
-    rounding errors: sums that differ by more compare exactly. It is 0 where nothing is rounded. Raises
-    :class:`TooFineError` for rates that are 0 or have large denominators.
+    Call the object with an action for its cost. An additive objective is scaled to integers, and multiplied
+    by more than the greatest sum of the objectives after it.
+
+    Where rates multiply, logarithms are added. Each factor of a coprime base of the rates has a logarithm
+    rounded to forty digits, so equal products have equal sums. ``doubt`` is greater than all rounding errors:
+    sums that differ by more compare exactly. It is 0 where nothing is rounded.
+
+    Raises :class:`TooFineError` for rates that are 0 or have large denominators.
     """
 
     def __init__(self, problem: Problem, objectives: Sequence[Objective], actions: Collection[int]) -> None:
@@ -37,8 +40,10 @@ class ExactCosts:
         self._multiplied = frozenset(filter(multiplies, self._objectives))
         self._units = units = len(problem.network)
         chosen = (a for a in actions if a < units)
-        self._weights = _weights(problem.different_rates(chosen) if self._multiplied else set())
-        self._steps = {objective: self._step(objective, actions) for objective in self._objectives}
+        self._logarithms = _scaled_logarithms(problem.different_rates(chosen) if self._multiplied else set())
+        self._denominators = {
+            objective: self._common_denominator(objective, actions) for objective in self._objectives
+        }
         last_first = self._objectives[::-1]
         self._factors = {last_first[0]: 1}
         for after, objective in pairwise(last_first):
@@ -47,79 +52,88 @@ class ExactCosts:
         self._cache: dict[int, int] = {}
         self._actions = actions
         self._price: Callable[[int], int] | None = None
-        self._times = 1
+        self._multiplier = 1
         self._limit: int | None = None
 
-    def priced(
+    def with_price(
         self, counts: Callable[[int], int], price: int | Fraction, limit: int | None = None
     ) -> "ExactCosts":
         """Return these costs with ``price * counts(unit)`` added to the cost of each unit.
 
         If the price is a fraction, all costs are multiplied by its denominator. With a ``limit``, a search
-        ends as soon as a bound reaches the limit or a tree costs less.
+        ends as soon as a bound reaches the limit, or a tree costs less than it.
         """
         units, costs = self._units, copy(self)
-        whole, costs._times = Fraction(price).as_integer_ratio()
-        costs._cache, costs._limit, costs.doubt = {}, limit, self.doubt * costs._times
-        costs._price = lambda action: whole * counts(action) if action < units else 0
+        numerator, costs._multiplier = Fraction(price).as_integer_ratio()
+        costs._cache, costs._limit, costs.doubt = {}, limit, self.doubt * costs._multiplier
+        costs._price = lambda action: numerator * counts(action) if action < units else 0
         return costs
 
     @property
-    def limited(self) -> bool:
-        """Whether there is a limit, so that a search ends at the first tree below it."""
+    def has_limit(self) -> bool:
+        """Whether there is a limit, so that a search ends at the first tree that costs less."""
         return self._limit is not None
 
     @property
-    def beyond(self) -> int:
+    def strict_upper_bound(self) -> int:
         """A number above the cost of every set of actions."""
         first = self._objectives[0]
         return self._factors[first] * (1 + self._upper_bound(first, self._actions))
 
-    def _step(self, objective: Objective, actions: Collection[int]) -> int:
-        """Return the common denominator of the costs of actions by an objective."""
+    def _common_denominator(self, objective: Objective, actions: Collection[int]) -> int:
+        """Return the common denominator of the costs of actions by an objective.
+
+        It is 1 for an objective in whole numbers, and where rates multiply.
+        """
         if objective.row.whole or objective in self._multiplied:
             return 1
-        return math.lcm(*{cost.denominator for cost in self._costs(objective, actions)})
+        return math.lcm(*{cost.denominator for cost in self._unit_costs(objective, actions)})
 
     def _upper_bound(self, objective: Objective, actions: Collection[int]) -> int:
         """Return an upper bound on the scaled cost of a set of actions by one objective."""
         if objective is Objective.UNITS:
             return len(actions)
         if objective in self._multiplied:
-            return len(actions) * max(self._weights.values(), default=0)
-        steps = self._steps[objective]
+            return len(actions) * max(self._logarithms.values(), default=0)
+        steps = self._denominators[objective]
         items = sum(a >= self._units for a in actions)
-        return sum(int(cost * steps) for cost in self._costs(objective, actions)) + objective.row.item * items
+        return (
+            sum(int(cost * steps) for cost in self._unit_costs(objective, actions))
+            + objective.row.item * items
+        )
 
-    def _costs(self, objective: Objective, actions: Collection[int]) -> Iterable[int | Fraction]:
+    def _unit_costs(self, objective: Objective, actions: Collection[int]) -> Iterable[int | Fraction]:
+        """Return the costs by an objective of those actions that are units."""
         return self._problem.figures(objective, (a for a in actions if a < self._units))
 
     def __call__(self, action: int) -> int:
         """Return the cost of an action."""
         cost = self._cache.get(action)
         if cost is None:
-            cost = self._times * sum(self._figure(o, action) * factor for o, factor in self._factors.items())
+            cost = self._multiplier * sum(
+                self._figure(o, action) * factor for o, factor in self._factors.items()
+            )
             cost += self._price(action) if self._price else 0
             self._cache[action] = cost
         return cost
 
-    def first(self, total: int) -> int | Fraction:
-        """Turn a lower bound on total costs into a bound on the first objective.
+    def first_objective_bound(self, total: int) -> int | Fraction:
+        """Return a bound on the first objective, from a lower bound on total costs.
 
-        The result is an upper bound for success.
+        It is a lower bound in the unit of the objective; for success, an upper bound of at most 1.
         """
         figure = total // self._factors[self._objectives[0]]
         if self._objectives[0] not in self._multiplied:
-            return self.total(self._objectives[0], figure)
+            return self.unscale(self._objectives[0], figure)
         value = _FINE.next_plus(_FINE.exp(_FINE.divide(Decimal(_ROUNDED - figure), Decimal(_SCALE))))
         return min(Fraction(1), Fraction(_SHOWN.plus(value)))
 
-    def met(self, cuts: Cuts, tree: Collection[int]) -> bool:
+    def proves_optimal(self, cuts: Cuts, tree: Collection[int]) -> bool:
         """Return whether a cost partition proves this tree optimal, exactly.
 
-        With a limit, return whether the bound reaches the limit or the tree costs less. The weight of each
-        cut is the reduced cost of its cheapest action. Where rates multiply, weights and reduced costs are
-        recomputed exactly, as vectors of exponents of rates.
+        With a limit, return instead whether the bound reaches the limit or the tree costs less. The weight of
+        each cut is the reduced cost of its cheapest action. Where rates multiply, weights and reduced costs
+        are recomputed exactly, as vectors of exponents of rates. ``False`` where these become too large.
         """
         total = sum(map(self, tree))
         if self._limit is not None:
@@ -128,49 +142,56 @@ class ExactCosts:
             return cuts.bound >= total
         if self._price or cuts.bound + self.doubt < total:  # a price is no product of rates
             return False
-        rates = [rate for rate, weight in self._weights.items() if weight]
+        rates = [rate for rate, weight in self._logarithms.items() if weight]
         order = Lexicographic([rates if o in self._multiplied else None for o in self._objectives])
         coordinates = {rate: i for i, rate in enumerate(rates)}
         vectors = _Vectors(self, coordinates)
-        reduced_costs = {action: vectors.of(action) for action in cuts.reduced_costs}
-        proved = [0] * order.width
+        reduced_costs = {action: vectors.vector(action) for action in cuts.reduced_costs}
+        slack = [0] * order.width
         for cut in cuts.cuts:
             weight = tuple(reduced_costs[cut.cheapest])
-            if _large(weight) or order.sign(weight) < 0:
+            if _is_too_large(weight) or order.sign(weight) < 0:
                 return False
             for i, coordinate in enumerate(weight):
                 if coordinate:
-                    proved[i] += coordinate
+                    slack[i] += coordinate
                     for action in cut.members:
                         reduced_costs[action][i] -= coordinate
         if any(
-            _large(reduced_cost) or order.sign(reduced_cost) < 0 for reduced_cost in reduced_costs.values()
+            _is_too_large(reduced_cost) or order.sign(reduced_cost) < 0
+            for reduced_cost in reduced_costs.values()
         ):
             return False
         for action in tree:
-            for i, coordinate in enumerate(vectors.of(action)):
-                proved[i] -= coordinate
-        return not _large(proved) and order.sign(proved) >= 0
+            for i, coordinate in enumerate(vectors.vector(action)):
+                slack[i] -= coordinate
+        return not _is_too_large(slack) and order.sign(slack) >= 0
 
-    def of(self, costs: Costs) -> int:
-        """Return the cost of a tree from its costs by objective; rounding may make it too great."""
+    def combined_cost(self, costs: Costs) -> int:
+        """Return the cost of a tree as one integer, from its costs by objective.
+
+        Rounding may make it too great, but never too small.
+        """
         total = 0
         for objective, factor in self._factors.items():
             measure = Fraction(costs.measure(objective))
             if objective in self._multiplied:
                 figure = _logarithm(measure.denominator) - _logarithm(measure.numerator) + _ROUNDED
             else:
-                figure = math.ceil(measure * self._steps[objective])
+                figure = math.ceil(measure * self._denominators[objective])
             total += figure * factor
-        return total * self._times
+        return total * self._multiplier
 
     def figures(self, action: int) -> list[tuple[Objective, int]]:
-        """Return the scaled cost of an action by each objective; for ``success`` a rounded logarithm."""
+        """Return each objective with the scaled cost of an action by it.
+
+        For ``success``, this is a rounded logarithm.
+        """
         return [(objective, self._figure(objective, action)) for objective in self._objectives]
 
-    def total(self, objective: Objective, figure: int) -> int | Fraction:
-        """Return the cost by an additive objective for ``figure``, a sum of scaled costs."""
-        return figure if objective.row.whole else Fraction(figure, self._steps[objective])
+    def unscale(self, objective: Objective, figure: int) -> int | Fraction:
+        """Return a cost by an additive objective in its own unit; ``figure`` is a sum of scaled costs."""
+        return figure if objective.row.whole else Fraction(figure, self._denominators[objective])
 
     def is_logarithm(self, figure: int, product: Fraction) -> bool:
         """Return whether ``figure``, a sum of rounded logarithms, is ``-log(product)`` up to rounding."""
@@ -183,15 +204,18 @@ class ExactCosts:
         return self._problem.rate(action)
 
     def _figure(self, objective: Objective, action: int) -> int:
-        """Return the cost of an action by one objective: of a unit, or of a kitchen item."""
+        """Return the scaled cost by one objective of an action.
+
+        The action is a unit or takes a kitchen item.
+        """
         if action >= self._units:
             return objective.row.item
         if objective in self._multiplied:
-            return self._weights[self._problem.rate(action)]
-        return int(self._problem.figure(objective, action) * self._steps[objective])
+            return self._logarithms[self._problem.rate(action)]
+        return int(self._problem.figure(objective, action) * self._denominators[objective])
 
 
-def _large(vector: Sequence[int]) -> bool:
+def _is_too_large(vector: Sequence[int]) -> bool:
     """Return whether products of rates with these exponents take too long to be compared."""
     return sum(map(abs, vector)) > 50_000
 
@@ -202,22 +226,25 @@ class _Vectors:
     def __init__(self, costs: ExactCosts, coordinates: dict[Fraction, int]) -> None:
         self._costs, self._coordinates = costs, coordinates
 
-    def of(self, action: int) -> list[int]:
+    def vector(self, action: int) -> list[int]:
         """Return the cost of an action as a vector."""
         vector: list[int] = []
         for objective, figure in self._costs.figures(action):
             if multiplies(objective):
-                parts = [0] * len(self._coordinates)
+                exponents = [0] * len(self._coordinates)
                 if figure:
-                    parts[self._coordinates[self._costs.rate(action)]] = 1
-                vector += parts
+                    exponents[self._coordinates[self._costs.rate(action)]] = 1
+                vector += exponents
             else:
                 vector.append(figure)
         return vector
 
 
 class CoarseCosts:
-    """Costs by the first objective only, rounded down to small whole numbers, for estimates."""
+    """Costs by the first objective only, rounded down to small whole numbers, for estimates.
+
+    Call the object with an action for its cost.
+    """
 
     def __init__(self, problem: Problem, objective: Objective) -> None:
         self._problem, self._objective = problem, objective
@@ -225,7 +252,10 @@ class CoarseCosts:
         self._of_rates: dict[int | str, int] = {}  # by motion, or by unit with a rate of its own
 
     def __call__(self, action: int) -> int:
-        """Return the approximate cost of an action."""
+        """Return the approximate cost of an action.
+
+        Costs in fractions, and ``-ln`` of rates, are in thousandths, rounded down.
+        """
         problem = self._problem
         if action >= len(problem.network):
             return self._objective.row.item
@@ -233,21 +263,21 @@ class CoarseCosts:
             rated = action if action in problem.own_rates else problem.network.motions[action]
             cost = self._of_rates.get(rated)
             if cost is None:
-                cost = self._of_rates[rated] = _coarse(problem.rate(action))
+                cost = self._of_rates[rated] = _coarse_logarithm(problem.rate(action))
             return cost
         figure = problem.figure(self._objective, action)
         return int(figure if self._objective.row.whole else figure * 1000)
 
 
-def _coarse(rate: Fraction) -> int:
+def _coarse_logarithm(rate: Fraction) -> int:
     """Return ``-ln(rate)`` in thousandths; a rate of 0 counts as about ``10**-43``."""
     if not rate:
         return 100_000
     return int((math.log(rate.denominator) - math.log(rate.numerator)) * 1000)  # a float may not hold it
 
 
-def _weights(rates: set[Fraction]) -> dict[Fraction, int]:
-    """Return ``-log(rate)`` of each rate, scaled, as a sum of rounded logarithms of its coprime factors.
+def _scaled_logarithms(rates: set[Fraction]) -> dict[Fraction, int]:
+    """Return for each rate ``-log(rate)``, scaled: a sum of rounded logarithms of its coprime factors.
 
     Raises :class:`TooFineError` for rates that are 0 or have large denominators.
     """
@@ -257,11 +287,13 @@ def _weights(rates: set[Fraction]) -> dict[Fraction, int]:
     base = coprime_base(n for rate in rates for n in rate.as_integer_ratio())
     logarithms = {factor: _logarithm(factor) for factor in base}
 
-    def weight(number: int) -> int:
-        return sum(power * logarithms[f] for f, power in powers(number, base).items())
+    def logarithm_of(number: int) -> int:
+        """Return the logarithm of a number, as the sum over its factors."""
+        return sum(power * logarithms[f] for f, power in factor_exponents(number, base).items())
 
-    return {rate: weight(rate.denominator) - weight(rate.numerator) for rate in rates}
+    return {rate: logarithm_of(rate.denominator) - logarithm_of(rate.numerator) for rate in rates}
 
 
 def _logarithm(number: int) -> int:
+    """Return the natural logarithm of a number, multiplied by ``10**40``, as an integer."""
     return int(_FINE.multiply(_FINE.ln(Decimal(number)), Decimal(_SCALE)))

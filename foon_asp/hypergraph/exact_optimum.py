@@ -5,7 +5,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from foon_asp.hypergraph import tuning
-from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, times
+from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, multiply
 
 _ZERO, _ONE = Fraction(), Fraction(1)
 
@@ -14,18 +14,20 @@ Limit = tuple[Mapping[int, Fraction], Fraction]
 
 
 class ExactOptimum(NamedTuple):
-    """The optimum of a covering problem: the value of each column and the dual of each row, without zeros.
+    """The optimum of a covering problem, without zeros.
 
-    ``x`` has the values, ``weights`` the duals. ``value`` is the cost of the solution. By duality, it equals
-    the sum of the duals of the covering rows, minus the dual of each limit times its amount.
+    ``x``: the value of each column that is not 0.
+    ``duals``: the dual of each row that is not 0.
+    ``value``: the cost of the solution. By duality, it equals the sum of the duals of the covering rows,
+    minus the dual of each limit times its amount.
     """
 
     x: dict[int, Fraction]
-    weights: dict[int, Vector]
+    duals: dict[int, Vector]
     value: Vector
 
 
-class NowhereError(Exception):
+class UnusableBasisError(Exception):
     """A basis is singular, or its solution is infeasible."""
 
 
@@ -41,29 +43,30 @@ def exact_optimum(
 
     ``rows``: for each row, the columns that cover it.
     ``costs``: the cost of each column, none below 0.
+    ``order``: the order of the costs.
     ``columns``, ``tight``: the first basis, as columns and as many tight rows.
-    ``limits``: the amount that each column consumes, and the amount available. Limits are numbered as rows
-    before ``rows``.
+    ``limits``: pairs of the amount that each column consumes and the amount available. Limits are numbered as
+    rows before ``rows``.
 
     Each step solves the basis anew, and Bland's rule prevents cycling. ``None`` after too many steps, and
     where a basis is singular or infeasible.
     """
     basic_columns, tight_rows = set(columns), set(tight)
-    full = [{column: -amount for column, amount in amounts.items()} for amounts, _ in limits]
-    full += (dict.fromkeys(row, _ONE) for row in rows)
-    least = [-max_amount for _, max_amount in limits] + [_ONE] * len(rows)
+    all_rows = [{column: -amount for column, amount in amounts.items()} for amounts, _ in limits]
+    all_rows += (dict.fromkeys(row, _ONE) for row in rows)
+    row_minimums = [-max_amount for _, max_amount in limits] + [_ONE] * len(rows)
     try:
         for _ in range(tuning.PROOF.pivots):
-            basis = _Basis(full, least, costs, basic_columns, tight_rows)
-            entering = basis.entering(order)
-            if entering is None:
-                kept = {row: weight for row, weight in basis.weights.items() if order.sign(weight)}
-                shares = {column: share for column, share in basis.x.items() if share}
-                value = order.total(times(weight, least[row]) for row, weight in kept.items())
-                return ExactOptimum(shares, kept, value)
-            for number, is_row in (entering, basis.leaving(*entering)):
+            basis = _Basis(all_rows, row_minimums, costs, basic_columns, tight_rows)
+            entering_variable = basis.entering_variable(order)
+            if entering_variable is None:
+                kept = {row: weight for row, weight in basis.duals.items() if order.sign(weight)}
+                lp_values = {column: lp_value for column, lp_value in basis.x.items() if lp_value}
+                value = order.total(multiply(weight, row_minimums[row]) for row, weight in kept.items())
+                return ExactOptimum(lp_values, kept, value)
+            for number, is_row in (entering_variable, basis.leaving_variable(*entering_variable)):
                 (tight_rows if is_row else basic_columns).symmetric_difference_update({number})
-    except NowhereError:
+    except UnusableBasisError:
         pass
     return None
 
@@ -71,15 +74,17 @@ def exact_optimum(
 class _Basis:
     """A basis: columns and as many tight rows, with its primal and dual solution.
 
-    ``x`` are the values of the basic columns; with these, tight rows hold with equality. ``slack`` is the
-    slack of each row. ``weights`` are the duals of the tight rows; with these, basic columns have reduced
-    cost 0. Raises :class:`NowhereError` where the basis is singular, or a value or slack is negative.
+    ``x``: the values of the basic columns, by which tight rows hold with equality.
+    ``slack``: the slack of each row.
+    ``duals``: the duals of the tight rows, by which basic columns have reduced cost 0.
+
+    Raises :class:`UnusableBasisError` where the basis is singular, or a value or slack is negative.
     """
 
     def __init__(
         self,
         rows: Sequence[Mapping[int, Fraction]],
-        least: Sequence[Fraction],
+        row_minimums: Sequence[Fraction],
         costs: Sequence[Vector],
         columns: set[int],
         tight: set[int],
@@ -91,66 +96,72 @@ class _Basis:
             for column, value in entries.items():
                 transposed[column][row] = value
         self.x = {
-            c: share for c, (share,) in solve_exactly(self._matrix, {r: (least[r],) for r in tight}).items()
+            c: lp_value
+            for c, (lp_value,) in solve_exactly(self._matrix, {r: (row_minimums[r],) for r in tight}).items()
         }
-        self.weights = solve_exactly(transposed, {column: costs[column] for column in columns})
+        self.duals = solve_exactly(transposed, {column: costs[column] for column in columns})
         self.slack = [
-            sum((value * self.x[c] for c, value in row.items() if c in self.x), -least[r])
+            sum((value * self.x[c] for c, value in row.items() if c in self.x), -row_minimums[r])
             for r, row in enumerate(rows)
         ]
         if any(value < 0 for value in (*self.x.values(), *self.slack)):
-            raise NowhereError
+            raise UnusableBasisError
 
-    def entering(self, order: Lexicographic) -> tuple[int, bool] | None:
+    def entering_variable(self, order: Lexicographic) -> tuple[int, bool] | None:
         """Return the entering variable by Bland's rule, and whether it is the slack of a row.
 
         The first column of negative reduced cost enters, else the first row of negative dual. ``None`` at the
         optimum.
         """
         loads: dict[int, list[Vector]] = {}
-        for row, weight in self.weights.items():
+        for row, weight in self.duals.items():
             for column, value in self._rows[row].items():
                 if column not in self.x:  # basic columns have reduced cost 0
-                    loads.setdefault(column, []).append(times(weight, value))
+                    loads.setdefault(column, []).append(multiply(weight, value))
         for column in sorted(loads):
             if order.compare(order.total(loads[column]), self._costs[column]) > 0:
                 return column, False
-        return next(((row, True) for row in sorted(self.weights) if order.sign(self.weights[row]) < 0), None)
+        return next(((row, True) for row in sorted(self.duals) if order.sign(self.duals[row]) < 0), None)
 
-    def leaving(self, number: int, is_row: bool) -> tuple[int, bool]:
-        """Return the leaving column or row by the ratio test, and whether it is a row."""
-        gains = [
+    def leaving_variable(self, number: int, is_row: bool) -> tuple[int, bool]:
+        """Return the column or row that leaves when a variable enters, and whether it is a row.
+
+        It is found by the ratio test. The entering variable is column or row ``number``.
+        """
+        entering_coefficients = [
             Fraction(-(row == number)) if is_row else coefficients.get(number, _ZERO)
             for row, coefficients in enumerate(self._rows)
         ]
-        right = {row: (gains[row],) for row in self._matrix}
-        fall = {column: value for column, (value,) in solve_exactly(self._matrix, right).items()}
-        limits = [(self.x[c] / f, False, c) for c, f in fall.items() if f > 0]
-        for row, space in enumerate(self.slack):
-            lost = sum((value * fall[c] for c, value in self._rows[row].items() if c in fall), _ZERO)
-            lost -= gains[row]
-            if lost > 0:  # never in a tight row
-                limits.append((space / lost, True, row))
-        _, leaves_row, leaving = min(limits)  # there is one, as no cost is below 0
+        right_sides = {row: (entering_coefficients[row],) for row in self._matrix}
+        decreases = {column: value for column, (value,) in solve_exactly(self._matrix, right_sides).items()}
+        ratios = [(self.x[c] / f, False, c) for c, f in decreases.items() if f > 0]
+        for row, slack in enumerate(self.slack):
+            decrease = sum(
+                (value * decreases[c] for c, value in self._rows[row].items() if c in decreases), _ZERO
+            )
+            decrease -= entering_coefficients[row]
+            if decrease > 0:  # never in a tight row
+                ratios.append((slack / decrease, True, row))
+        _, leaves_row, leaving = min(ratios)  # there is one, as no cost is below 0
         return leaving, leaves_row
 
 
-def solve_exactly(matrix: Matrix, right: Mapping[int, Vector]) -> dict[int, Vector]:
+def solve_exactly(matrix: Matrix, right_sides: Mapping[int, Vector]) -> dict[int, Vector]:
     """Solve a sparse square system for several right-hand sides at once, by Gaussian elimination.
 
-    ``matrix[i]`` maps the unknowns of row i to coefficients; ``right[i]`` has its right-hand sides. The
-    shortest row is eliminated first, which keeps systems of cuts sparse. Returns for each unknown its values,
-    one per right-hand side. Raises :class:`NowhereError` where the system is singular.
+    ``matrix[i]`` maps the unknowns of row i to coefficients. ``right_sides[i]`` has the right-hand sides of
+    row i. Returns for each unknown its values, one per right-hand side. The shortest row is eliminated first,
+    which keeps systems of cuts sparse. Raises :class:`UnusableBasisError` where the system is singular.
     """
     rows = {number: dict(row) for number, row in matrix.items()}
-    right_sides = dict(right)
+    sides = dict(right_sides)
     waiting = set(rows)
     pivots: list[tuple[int, int, Fraction]] = []
     while waiting:
         number = min(waiting, key=lambda n: (len(rows[n]), n))
         row = rows[number]
         if not row:
-            raise NowhereError
+            raise UnusableBasisError
         unknown, pivot = row.popitem()
         pivots.append((number, unknown, pivot))
         waiting.remove(number)
@@ -162,15 +173,16 @@ def solve_exactly(matrix: Matrix, right: Mapping[int, Vector]) -> dict[int, Vect
                     other[u] = other.get(u, _ZERO) - factor * value
                     if not other[u]:
                         del other[u]
-                right_sides[rival] = _less(right_sides[rival], factor, right_sides[number])
+                sides[rival] = _subtract_multiple(sides[rival], factor, sides[number])
     solution: dict[int, Vector] = {}
     for number, unknown, pivot in reversed(pivots):
-        right_side = right_sides[number]
+        right_side = sides[number]
         for u, value in rows[number].items():
-            right_side = _less(right_side, value, solution[u])
+            right_side = _subtract_multiple(right_side, value, solution[u])
         solution[unknown] = tuple(numerator / pivot for numerator in right_side)
     return solution
 
 
-def _less(vector: Vector, factor: Fraction, other: Vector) -> Vector:
-    return tuple(b - factor * a for a, b in zip(other, vector, strict=True))
+def _subtract_multiple(vector: Vector, factor: Fraction, other: Vector) -> Vector:
+    """Return ``vector - factor * other``."""
+    return tuple(a - factor * b for a, b in zip(vector, other, strict=True))

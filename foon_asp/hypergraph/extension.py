@@ -1,38 +1,45 @@
-"""Extensions: units added to a tree for the goals, so that it has a unit of each required set."""
+"""Extensions: units added to a tree for the goals, so that it has a unit of each required set.
+
+The actions that these units need are a part of the extension.
+"""
 
 from collections.abc import Callable, Collection
 from dataclasses import replace
 
 from foon_asp.hypergraph.goal_graph import GoalGraph
-from foon_asp.hypergraph.h_values import derive
-from foon_asp.hypergraph.lazy_h_max import within_reach
+from foon_asp.hypergraph.h_values import compute_h_values
+from foon_asp.hypergraph.lazy_h_max import lazy_h_max_test
 from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
 from foon_asp.hypergraph.restricted_subproblem import restricted_subproblem
 
 _FIRST = 500  # actions nearest to the required sets, among which an extension is looked for
 
 
-def extended(
+def extend_tree(
     graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int], max_actions: int
 ) -> set[int] | None:
-    """Return a tree with a unit of each required set added, and the actions that derive the units by h_add.
+    """Return a tree with a unit of each required set added, and the actions that derive these units.
 
-    ``None`` where no extension is found among ``max_actions`` actions.
+    They are derived by h_add. ``None`` where no extension is found among ``max_actions`` actions.
     """
-    towards = _towards_required(graph)
-    price = _free(tree, cost)
+    required_graph = _graph_of_required(graph)
+    remaining_cost = _cost_without(tree, cost)
     candidates = {
         *tree,
-        *neighbourhood(towards, range(len(graph.needs)), price, sum(map(cost, tree)), enough=_FIRST),
+        *neighbourhood(
+            required_graph, range(len(graph.needs)), remaining_cost, sum(map(cost, tree)), enough=_FIRST
+        ),
     }
-    extension = derive(towards, candidates, price, h_add=True).tree(towards, towards.goals)
+    extension = compute_h_values(required_graph, candidates, remaining_cost, h_add=True).tree(
+        required_graph, required_graph.goals
+    )
     if extension is None:
-        narrowed = restricted_subproblem(towards, candidates, price, max_actions)
+        narrowed = restricted_subproblem(required_graph, candidates, remaining_cost, max_actions)
         extension = None if narrowed is None else narrowed[1]
     return None if extension is None else {*tree, *extension}
 
 
-def extensions(
+def actions_of_extensions(
     graph: GoalGraph,
     free: Collection[int],
     cost: Callable[[int], int],
@@ -42,31 +49,35 @@ def extensions(
     """Return a superset of the actions of extensions up to a cost of ``limit``; ``free`` ones cost nothing.
 
     An action is excluded if its derivation and its path to a required set cost more. All actions on the path
-    belong to the extension, so they count in full, while free actions of the derivation count as 0.
+    belong to the extension, so they count in full. Free actions of the derivation count as 0. Where time is
+    up, the superset is larger.
     """
-    towards, price = _towards_required(graph), _free(free, cost)
+    required_graph, remaining_cost = _graph_of_required(graph), _cost_without(free, cost)
     all_actions = range(len(graph.needs))
     remaining = neighbourhood(
-        towards,
+        required_graph,
         all_actions,
         cost,
         limit,
         min_reduced_cost=1,
-        reachable=within_reach(graph, all_actions, price),
+        reachable=lazy_h_max_test(graph, all_actions, remaining_cost),
     )
     while not expired():
-        derivations = derive(graph, remaining.union(free), price, h_add=False)
-        nearer = neighbourhood(towards, remaining, cost, limit, derivations.h_actions, min_reduced_cost=1)
-        if len(nearer) == len(remaining):
+        derivations = compute_h_values(graph, remaining.union(free), remaining_cost, h_add=False)
+        narrowed = neighbourhood(
+            required_graph, remaining, cost, limit, derivations.h_actions, min_reduced_cost=1
+        )
+        if len(narrowed) == len(remaining):
             break
-        remaining = nearer
+        remaining = narrowed
     return remaining
 
 
-def _towards_required(graph: GoalGraph) -> GoalGraph:
+def _graph_of_required(graph: GoalGraph) -> GoalGraph:
     """Return the graph with the required sets as its only goals."""
     return replace(graph, goals=tuple(graph.required), known_makers=graph.makers)
 
 
-def _free(free: Collection[int], cost: Callable[[int], int]) -> Callable[[int], int]:
+def _cost_without(free: Collection[int], cost: Callable[[int], int]) -> Callable[[int], int]:
+    """Return a cost function by which the ``free`` actions cost nothing."""
     return lambda action: 0 if action in free else cost(action)

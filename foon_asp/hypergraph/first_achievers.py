@@ -1,9 +1,9 @@
 """First achievers of objects, by fact landmarks (Imai and Fukunaga 2015).
 
-Object L is a *landmark* of object O if every derivation of O makes L. If an add effect of an action is a
-landmark of one of its preconditions, the effect was true before, so the action never achieves it first. Such
-add effects can be removed: the same derivations remain, and fewer actions cross a cut. For example, an action
-that only undoes another does not cross it.
+Object L is a *landmark* of object O if every derivation of O makes L. Suppose an add effect of an action is a
+landmark of one of its preconditions. Then the effect was true before, so the action never achieves it first.
+Such add effects can be removed: the same derivations remain, and fewer actions cross a cut. For example, an
+action that only undoes another does not cross it.
 """
 
 from collections import deque
@@ -18,79 +18,79 @@ _STEPS = 1000  # actions processed between two looks at the time
 class FirstAchievers:
     """A graph without the add effects that an action never achieves first, computed at construction.
 
-    All actions of the given graph can run. In large graphs, only landmarks among the first objects are
-    computed; where time is up, no add effect is removed.
+    ``graph`` is the result. All actions of the given graph can run. In large graphs, only landmarks among the
+    first objects are computed. Where time is up, no add effect is removed.
     """
 
     def __init__(self, graph: Hypergraph, expired: Callable[[], bool] = lambda: False) -> None:
-        self._plain = graph
-        tracked = (
+        self._given_graph = graph
+        tracked_count = (
             graph.size
             if graph.size**2 <= tuning.RELAXATION.landmark_bits
             else tuning.RELAXATION.landmark_bits // graph.size
         )
-        self._landmarks = _landmarks(graph, tracked, expired)
-        self._before = [self._of(needed) for needed in graph.needs]
+        self._landmarks = _landmarks(graph, tracked_count, expired)
+        self._landmarks_before = [self._landmarks_of(needed) for needed in graph.needs]
         self.graph = Hypergraph(
             graph.size,
             graph.needs,
             [
                 [o for o in effects if not before >> o & 1] if before else effects
-                for effects, before in zip(graph.gives, self._before, strict=True)
+                for effects, before in zip(graph.gives, self._landmarks_before, strict=True)
             ],
             graph.start,
         )
 
-    def _of(self, objects: Iterable[int]) -> int:
+    def _landmarks_of(self, objects: Iterable[int]) -> int:
         """Return the landmarks of some objects together, as a bit set."""
         made = 0
         for o in objects:
             made |= self._landmarks[o]
         return made
 
-    def members(self, cut: frozenset[int]) -> list[int]:
-        """Return the landmark of a cut: the first achievers of its objects."""
-        achievers, needs, before = self.graph.makers, self.graph.needs, self._before
-        inside = _bits(cut)
+    def landmark_of(self, cut: frozenset[int]) -> list[int]:
+        """Return the landmark of a cut, ascending: the crossing actions that can achieve an object first."""
+        achievers, needs, before = self.graph.makers, self.graph.needs, self._landmarks_before
+        inside = _bit_set(cut)
         return sorted(
             {a for o in cut for a in achievers[o] if not before[a] & inside and cut.isdisjoint(needs[a])}
         )
 
-    def widened(self, cut: frozenset[int]) -> frozenset[int]:
+    def widen(self, cut: frozenset[int]) -> frozenset[int]:
         """Return the cut of the given graph with the same landmark as this cut of :attr:`graph`.
 
-        If an action achieves an object of the cut, but never first, one of its preconditions has a landmark
-        in the cut. This precondition is added, so that the action does not cross the cut.
+        Suppose an action achieves an object of the cut, but never first. Then one of its preconditions has a
+        landmark in the cut. This precondition is added, so that the action does not cross the cut.
         """
-        widened, inside, stack = set(cut), _bits(cut), list(cut)
-        needs, before, landmarks = self._plain.needs, self._before, self._landmarks
+        widened, inside, stack = set(cut), _bit_set(cut), list(cut)
+        needs, before, landmarks = self._given_graph.needs, self._landmarks_before, self._landmarks
         while stack:
-            for action in self._plain.makers[stack.pop()]:
+            for action in self._given_graph.makers[stack.pop()]:
                 if before[action] & inside and widened.isdisjoint(needs[action]):
-                    late = next(o for o in needs[action] if landmarks[o] & inside)
-                    widened.add(late)
-                    stack.append(late)
+                    precondition = next(o for o in needs[action] if landmarks[o] & inside)
+                    widened.add(precondition)
+                    stack.append(precondition)
         return frozenset(widened)
 
 
-def _bits(objects: Iterable[int]) -> int:
-    """Return a set of objects as a bit set."""
+def _bit_set(objects: Iterable[int]) -> int:
+    """Return a set of objects as an integer, in which bit ``o`` is 1 for each object ``o``."""
     bits = 0
     for o in objects:
         bits |= 1 << o
     return bits
 
 
-def _landmarks(graph: Hypergraph, tracked: int, expired: Callable[[], bool]) -> list[int]:
-    """Return the landmarks of each object as a bit set, among the first ``tracked`` objects alone.
+def _landmarks(graph: Hypergraph, tracked_count: int, expired: Callable[[], bool]) -> list[int]:
+    """Return the landmarks of each object as a bit set, among the first ``tracked_count`` objects alone.
 
     A greatest fixpoint (Keyder, Richter and Helmert 2010). The landmarks of an object are the object itself
-    and the landmarks that all its achievers share; the landmarks of an achiever are those of its
+    and the landmarks that all its achievers share. The landmarks of an achiever are those of its
     preconditions. All bit sets are empty where time is up.
     """
-    own = [1 << o if o < tracked else 0 for o in range(graph.size)]
+    own = [1 << o if o < tracked_count else 0 for o in range(graph.size)]
     landmarks: list[int | None] = [None] * graph.size
-    missing = list(graph.missing)
+    missing = list(graph.missing_counts)
     waiting = deque(action for action, count in enumerate(missing) if not count)
     queued = bytearray(not count for count in missing)
     steps = 0
@@ -110,7 +110,7 @@ def _landmarks(graph: Hypergraph, tracked: int, expired: Callable[[], bool]) -> 
             landmarks[o] = current = (before if previous is None else before & previous) | own[o]
             if current == previous:
                 continue
-            for consumer in graph.takers[o]:
+            for consumer in graph.consumers[o]:
                 if previous is None:
                     missing[consumer] -= 1
                 if not missing[consumer] and not queued[consumer]:

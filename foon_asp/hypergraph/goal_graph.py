@@ -12,11 +12,13 @@ from foon_asp.problem import FilteredSets, Objective, Problem, search_backward
 class GoalGraph(Hypergraph):
     """A hypergraph with goals; it shares the lists of the network where possible.
 
-    An action ``a`` below ``units`` is the unit with that id. If an objective counts the items taken from the
-    kitchen, ``start`` is empty and action ``units + o`` takes item ``o``: it has no preconditions and the
-    effect ``o``. Otherwise ``start`` is the kitchen. Add effects may be initial objects, ``goals`` are not.
-    Each required set of a restriction is an additional object, one of ``required``: it is a goal, and each
-    unit of the set achieves it.
+    Action ``a`` below ``units`` is the unit with that id. ``start`` is the kitchen, and ``goals`` are not
+    initial. Add effects may be initial objects. A restriction of the question has required sets: a tree has a
+    unit of each. Each required set is an additional object, one of ``required``. It is a goal, and each unit
+    of the set achieves it.
+
+    If an objective counts the items taken from the kitchen, ``start`` is empty. Then action ``units + o``
+    takes item ``o``: it has no preconditions and the effect ``o``.
     """
 
     units: int
@@ -38,10 +40,11 @@ class GoalGraph(Hypergraph):
         of other objects do not change.
         """
 
-        def lacking(action: int) -> tuple[int, int, int]:
+        def sort_key(action: int) -> tuple[int, int, int]:
+            """Return the number of non-initial preconditions of an action, its cost and its number."""
             return sum(o not in self.start for o in self.needs[action]), cost(action), action
 
-        kept = {o: tuple(nsmallest(max_achievers, self.makers[o], lacking)) for o in self.required}
+        kept = {o: tuple(nsmallest(max_achievers, self.makers[o], sort_key)) for o in self.required}
         if not kept:
             return self
         assert isinstance(self.makers, FilteredSets)
@@ -49,7 +52,10 @@ class GoalGraph(Hypergraph):
 
 
 def graph_of(problem: Problem, objectives: Iterable[Objective]) -> GoalGraph:
-    """Return the graph of a problem under a list of objectives."""
+    """Return the graph of a problem under a list of objectives.
+
+    It has actions that take kitchen items only if an objective counts these.
+    """
     network, kitchen, restriction = problem.network, problem.kitchen, problem.restriction
     units, size = len(network), len(network.objects)
     goals = tuple(o for o in dict.fromkeys(problem.targets) if o not in kitchen)

@@ -4,12 +4,12 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
-from foon_asp.hypergraph.action_landmarks import relevant_beside_landmarks
-from foon_asp.hypergraph.dominance import undominated
+from foon_asp.hypergraph.action_landmarks import relevant_given_landmarks
+from foon_asp.hypergraph.dominance import undominated_actions
 from foon_asp.hypergraph.gap_bounded_subproblem import reduced_cost_fixing, reduced_costs_of
-from foon_asp.hypergraph.h_values import derive
+from foon_asp.hypergraph.h_values import compute_h_values
 from foon_asp.hypergraph.incumbent_gap import FirstCuts, Gap, Stage
-from foon_asp.hypergraph.incumbent_trees import improved, irredundant
+from foon_asp.hypergraph.incumbent_trees import improve_locally, irredundant_subset
 from foon_asp.hypergraph.landmark_cuts import Cuts, landmark_cuts
 from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
 from foon_asp.hypergraph.reductions import Reduction
@@ -26,78 +26,98 @@ class Bounded(NamedTuple):
     cuts: Cuts
 
 
-def bound(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide | None) -> Bounded:
+def raise_bound(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide | None) -> Bounded:
     """Raise the lower bound by landmark cuts over the candidates, which have to contain a tree.
 
-    ``guide`` is as for :func:`landmark_cuts`.
+    ``h_values`` and ``guide`` are as for :func:`landmark_cuts`. The cuts become evidence if they are the
+    first ones, or if no earlier bound is as great.
     """
     costs = task.costs
     assert costs is not None
-    max_members = task.tuning.landmark_actions * max(task.tuning.easy_actions, len(gap.candidates))
+    max_landmark_actions = task.tuning.landmark_actions * max(task.tuning.easy_actions, len(gap.candidates))
     cuts = landmark_cuts(
-        task.graph, task.graph.goals, gap.candidates, costs, h_values, task.expired, guide, max_members
+        task.graph,
+        task.graph.goals,
+        gap.candidates,
+        costs,
+        h_values,
+        task.expired,
+        guide,
+        max_landmark_actions,
     )
     evidence = gap.evidence
     if evidence.first is None and not cuts.interrupted:
         evidence = evidence._replace(first=FirstCuts(cuts, gap.candidates))
     if evidence.cuts is None or cuts.bound > evidence.cuts.bound:
         evidence = evidence._replace(cuts=cuts)
-    return Bounded(gap.raised(min(cuts.bound, task.total(gap)), evidence), cuts)
+    return Bounded(gap.with_bound(min(cuts.bound, task.incumbent_cost(gap)), evidence), cuts)
 
 
 def tighten(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide | None, thorough: bool) -> Stage:
-    """Raise the lower bound by cuts, look for better trees, and fix candidates by reduced costs."""
-    gap, cuts = bound(task, gap, h_values, guide)
+    """Raise the lower bound by cuts, look for better trees, and fix candidates by reduced costs.
+
+    Yields the gap after each step. Where the cuts prove the incumbent optimal, no candidates are fixed, and
+    the gap is marked as proved. Raises ``KeyboardInterrupt`` where the search for cuts was interrupted.
+    """
+    gap, cuts = raise_bound(task, gap, h_values, guide)
     yield gap
     if cuts.interrupted:
         raise KeyboardInterrupt
-    met = meets(task, gap, cuts)
+    met = is_proved_by(task, gap, cuts)
     if not met and not task.expired():
-        improved_gap = improve(task, gap, cuts, thorough)
-        met = improved_gap is not gap and meets(task, improved_gap, cuts)
+        improved_gap = search_neighbourhood(task, gap, cuts, thorough)
+        met = improved_gap is not gap and is_proved_by(task, improved_gap, cuts)
         gap = improved_gap
         yield gap
     if met:
-        gap = gap.closed()
+        gap = gap.as_proved()
     elif Reduction.DEAR in task.reductions and not task.expired():
-        gap = fix(task, gap, cuts)
+        gap = fix_candidates(task, gap, cuts)
     yield gap
     return gap
 
 
-def guide_by(task: Task, gap: Gap) -> Guide:
+def h_max_guide(task: Task, gap: Gap) -> Guide:
     """Return the guide for landmark cuts: a function from reduced costs to h_max over the candidates."""
-    return lambda reduced_cost: derive(task.graph, gap.candidates, reduced_cost, h_add=False).cost
+    return lambda reduced_cost: (
+        compute_h_values(task.graph, gap.candidates, reduced_cost, h_add=False).h_objects
+    )
 
 
-def meets(task: Task, gap: Gap, cuts: Cuts) -> bool:
+def is_proved_by(task: Task, gap: Gap, cuts: Cuts) -> bool:
     """Return whether cuts prove the incumbent optimal and only better trees are wanted."""
     assert task.costs is not None
-    return task.only_better(gap) and task.costs.met(cuts, gap.incumbent)
+    return task.only_better(gap) and task.costs.proves_optimal(cuts, gap.incumbent)
 
 
-def improve(task: Task, gap: Gap, cuts: Cuts, thorough: bool) -> Gap:
-    """Look for better trees in the reduced-cost neighbourhood."""
+def search_neighbourhood(task: Task, gap: Gap, cuts: Cuts, thorough: bool) -> Gap:
+    """Look for a better tree in the reduced-cost neighbourhood; return the gap with it.
+
+    Returns the same gap if there is none. ``thorough`` is as for :func:`improve_locally`.
+    """
     costs = task.costs
     assert costs is not None
     reduced_cost = reduced_costs_of(costs, cuts)
-    distance, tree = task.total(gap) - cuts.bound, set(gap.incumbent)
+    distance, tree = task.incumbent_cost(gap) - cuts.bound, set(gap.incumbent)
     candidates = neighbourhood(
-        task.thin, gap.candidates, reduced_cost, distance, enough=task.tuning.neighbourhood_actions
+        task.thin_graph, gap.candidates, reduced_cost, distance, enough=task.tuning.neighbourhood_actions
     )
-    better = improved(task.graph, candidates | tree, tree, costs, reduced_cost, task.expired, thorough)
+    better = improve_locally(task.graph, candidates | tree, tree, costs, reduced_cost, task.expired, thorough)
     return gap if better is tree else gap.with_incumbent(better)
 
 
-def improve_repeatedly(task: Task, gap: Gap) -> Stage:
-    """Look thoroughly for better trees from each new incumbent, within the budget of branching."""
+def search_repeatedly(task: Task, gap: Gap) -> Stage:
+    """Search the neighbourhood thoroughly from each new incumbent, within the budget of branching.
+
+    Yields the gap after each search.
+    """
     budget, previous = task.tuning.branching_budget, frozenset[int]()
     while gap.incumbent != previous and not task.expired():
         previous = gap.incumbent
         budget -= len(previous) * len(gap.candidates)
         if budget < 0:
             break
-        gap = improve(task, gap, gap.evidence.cuts or NO_CUTS, thorough=True)
+        gap = search_neighbourhood(task, gap, gap.evidence.cuts or NO_CUTS, thorough=True)
         yield gap
     return gap
 
@@ -106,13 +126,13 @@ def follow_h_add(task: Task, gap: Gap) -> Gap:
     """Replace the incumbent by the tree that follows h_add, if that is better."""
     costs = task.costs
     assert costs is not None
-    tree = derive(task.graph, gap.candidates, costs, h_add=True).tree(task.graph, task.graph.goals)
-    better = irredundant(task.graph, tree or gap.incumbent, costs)
+    tree = compute_h_values(task.graph, gap.candidates, costs, h_add=True).tree(task.graph, task.graph.goals)
+    better = irredundant_subset(task.graph, tree or gap.incumbent, costs)
     return gap.with_incumbent(better) if task.is_better(better, gap) else gap
 
 
-def fix(task: Task, gap: Gap, cuts: Cuts) -> Gap:
-    """Exclude the candidates above the cutoff by reduced-cost fixing."""
+def fix_candidates(task: Task, gap: Gap, cuts: Cuts) -> Gap:
+    """Exclude the candidates above the cutoff by reduced-cost fixing, with the reduced costs of cuts."""
     assert task.costs is not None
     reduced_cost, distance = reduced_costs_of(task.costs, cuts), task.cutoff(gap) - cuts.bound
     return gap.with_candidates(
@@ -124,10 +144,10 @@ def prune_dominated(task: Task, gap: Gap) -> Gap:
     """Exclude the candidates that others dominate, if the task asks for that and has exact costs."""
     if task.costs is None or Reduction.DOMINATED not in task.reductions:
         return gap
-    return gap.with_candidates(undominated(task.graph, gap.candidates, task.costs))
+    return gap.with_candidates(undominated_actions(task.graph, gap.candidates, task.costs))
 
 
-def prune_beside_landmarks(task: Task, gap: Gap) -> Gap:
+def prune_by_landmarks(task: Task, gap: Gap) -> Gap:
     """Exclude the candidates that action landmarks make irrelevant, if the task asks for that.
 
     Does nothing if there are many candidates.
@@ -135,21 +155,24 @@ def prune_beside_landmarks(task: Task, gap: Gap) -> Gap:
     large = len(gap.candidates) > task.tuning.neighbourhood_actions
     if large or Reduction.FORCED not in task.reductions:
         return gap
-    return gap.with_candidates(relevant_beside_landmarks(task.graph, gap.candidates))
+    return gap.with_candidates(relevant_given_landmarks(task.graph, gap.candidates))
 
 
-def relevant(task: Task, gap: Gap) -> tuple[Gap, dict[int, int]] | None:
-    """Return the gap over the relevant actions that can run, and the h-value of each object.
+def restrict_to_relevant(task: Task, gap: Gap) -> tuple[Gap, dict[int, int]] | None:
+    """Return the gap over the relevant actions that can run, and the h_max of each object.
 
-    A gap without an incumbent gets the tree that follows h_max. ``None`` if there is no tree.
+    A gap without an incumbent gets the tree that follows h_max. ``None`` if there is no tree. Costs are the
+    rough ones of the task.
     """
     graph = task.graph
     cone, _ = graph.cone(task.scope)
-    derivations = derive(graph, cone, task.coarse, h_add=False)
+    derivations = compute_h_values(graph, cone, task.coarse_costs, h_add=False)
     tree = derivations.tree(graph, graph.goals)
     if tree is None:
         return None
     candidates: Collection[int] = derivations.h_actions
     if len(candidates) < len(cone):  # others may lead only to actions that cannot run
         candidates = graph.cone(candidates)[0]
-    return replace(gap, incumbent=gap.incumbent or frozenset(tree), candidates=candidates), derivations.cost
+    return replace(
+        gap, incumbent=gap.incumbent or frozenset(tree), candidates=candidates
+    ), derivations.h_objects

@@ -11,28 +11,30 @@ from foon_asp.problem import follow_achievers
 class Derivations(NamedTuple):
     """The h-values and best achievers of the objects that some actions reach, cheapest first.
 
-    ``cost[o]`` is the h-value of object ``o``, and ``maker[o]`` its best achiever; following best achievers
-    is acyclic. ``h_actions[a]`` is the cost of action ``a`` plus the h-value of its preconditions. Actions
-    that cannot run, objects that are not reached, and initial objects are missing.
+    ``h_objects``: the h-value of each object.
+    ``best_achievers``: the best achiever of each object. Following best achievers is acyclic.
+    ``h_actions``: for each action, its cost plus the h-value of its preconditions.
+
+    Actions that cannot run, objects that are not reached, and initial objects are missing.
     """
 
-    cost: dict[int, int]
-    maker: dict[int, int]
+    h_objects: dict[int, int]
+    best_achievers: dict[int, int]
     h_actions: dict[int, int]
 
     def tree(self, graph: GoalGraph, objects: Iterable[int]) -> set[int] | None:
         """Return the actions that derive objects by best achievers; ``None`` if an object is not reached."""
-        return follow_achievers(objects, self.maker, graph.needs, graph.start)
+        return follow_achievers(objects, self.best_achievers, graph.needs, graph.start)
 
 
-def derive(
+def compute_h_values(
     graph: GoalGraph, actions: Collection[int], cost: Mapping[int, int] | Callable[[int], int], h_add: bool
 ) -> Derivations:
-    """Return the h-values of the objects that actions reach, for costs of zero or more.
+    """Return the h-values and best achievers of the objects that actions reach; no cost is below 0.
 
-    With ``h_add``, the h-values of an action's preconditions are added, which counts shared actions more than
+    With ``h_add``, the h-values of an action's preconditions are added, so shared actions count more than
     once. Otherwise their maximum counts (h_max), which is a lower bound on every derivation (Bonet and
-    Geffner 2001). The generalized Dijkstra algorithm, with a bucket for each h-value.
+    Geffner 2001). The algorithm is Dijkstra's, generalized, with a bucket for each h-value.
     """
     price = cost.__getitem__ if isinstance(cost, Mapping) else cost
     needs, gives, start = graph.needs, graph.gives, graph.start

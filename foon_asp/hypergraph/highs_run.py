@@ -10,9 +10,9 @@ from foon_asp.deadline import uninterrupted
 class RunTuning(NamedTuple):
     """How HiGHS is run such that it ends when time is up.
 
-    ``small_size``: columns and rows of a program, together; with more, it is run in a thread of its own.
-    ``steps``: steps of the simplex algorithm between two looks at the time; they take about a second.
-    ``poll_seconds``: seconds between two looks at the time, for a program in a thread.
+    ``small_size``: columns and rows of a program, together. A larger program is run in a thread of its own.
+    ``steps``: steps of the simplex algorithm between two checks of the time; they take about a second.
+    ``poll_seconds``: seconds between two checks of the time, for a program in a thread.
     ``end_seconds``: seconds that HiGHS has to end; a step of the interior-point method may take longer.
     """
 
@@ -26,7 +26,10 @@ RUN = RunTuning()
 
 
 def libraries() -> tuple[Any, Any]:
-    """Return the modules highspy and numpy, imported only when needed since that is slow."""
+    """Import and return the modules highspy and numpy.
+
+    They are imported only when needed, since that is slow.
+    """
     with uninterrupted():
         import highspy  # noqa: PLC0415
         import numpy as np  # noqa: PLC0415
@@ -43,20 +46,23 @@ def silent_highs() -> Any:
     import highspy  # noqa: PLC0415 (it is there now)
 
     class Silent(highspy.Highs):
+        """HiGHS without output."""
+
         def enableCallbacks(self) -> None:  # noqa: N802
+            """Turn off the output, then enable callbacks."""
             self.setOptionValue("output_flag", False)
             super().enableCallbacks()  # type: ignore[no-untyped-call]
 
     return Silent()  # type: ignore[no-untyped-call]
 
 
-def run(highs: Any, expired: Callable[[], bool], whole: bool = False) -> bool:
+def run(highs: Any, expired: Callable[[], bool], has_integers: bool = False) -> bool:
     """Run HiGHS on its model; return whether it ended before time was up.
 
-    ``whole`` says that the model has integer variables. If time was up, the current solution can be read.
-    Raises ``KeyboardInterrupt`` if HiGHS does not stop; the instance must not be used after that.
+    ``has_integers`` says that the model has integer variables. If time was up, the current solution can be
+    read. Raises ``KeyboardInterrupt`` if HiGHS does not stop; the instance must not be used after that.
     """
-    if whole or highs.getNumCol() + highs.getNumRow() > RUN.small_size:
+    if has_integers or highs.getNumCol() + highs.getNumRow() > RUN.small_size:
         return _Run(highs, expired).wait()
     import highspy  # noqa: PLC0415 (slow to import, so only when it is there already)
 
@@ -72,7 +78,7 @@ def run(highs: Any, expired: Callable[[], bool], whole: bool = False) -> bool:
 class _Run:
     """A run of HiGHS in a thread of its own, with a callback that can interrupt it.
 
-    In the main thread, ctrl-C could come during the callback, and HiGHS does not survive exceptions there.
+    In the main thread, ctrl-C could come during the callback. HiGHS does not survive exceptions there.
     """
 
     def __init__(self, highs: Any, expired: Callable[[], bool]) -> None:
@@ -88,7 +94,7 @@ class _Run:
 
         kinds = highspy.cb.HighsCallbackType
         self._highs.setOptionValue("simplex_iteration_limit", highspy.kHighsIInf)
-        self._highs.setCallback(self._look, None)
+        self._highs.setCallback(self._interrupt_if_stopped, None)
         for name in ("kCallbackSimplexInterrupt", "kCallbackIpmInterrupt", "kCallbackMipInterrupt"):
             self._highs.startCallback(getattr(kinds, name))
         thread = DaemonThread(self._highs.run)
@@ -102,6 +108,7 @@ class _Run:
             raise KeyboardInterrupt
         return bool(self._highs.getModelStatus() != highspy.HighsModelStatus.kInterrupt)
 
-    def _look(self, _: object, __: object, ___: object, answer: Any, ____: object) -> None:
+    def _interrupt_if_stopped(self, _: object, __: object, ___: object, answer: Any, ____: object) -> None:
+        """Interrupt HiGHS once the run is stopped; HiGHS calls this between its steps."""
         if self._stopped:
             answer.user_interrupt = True

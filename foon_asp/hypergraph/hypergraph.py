@@ -10,8 +10,8 @@ class Hypergraph:
     """Actions ``0 .. len(needs) - 1`` over objects ``0 .. size - 1``.
 
     Action ``a`` has the preconditions ``needs[a]`` and the add effects ``gives[a]``. ``start`` are the
-    initial objects; no object is ever consumed. ``known_makers`` are the achievers of each object, where
-    they are known already.
+    initial objects. No object is ever consumed. ``known_makers`` are the achievers of each object, if the
+    caller has them already.
     """
 
     size: int
@@ -22,7 +22,7 @@ class Hypergraph:
 
     @cached_property
     def at_start(self) -> bytearray:
-        """For each object, 1 if it is initial, else 0."""
+        """A flag for each object: 1 if it is initial, else 0."""
         flags = bytearray(self.size)
         for o in self.start:
             flags[o] = True
@@ -30,48 +30,51 @@ class Hypergraph:
 
     @cached_property
     def makers(self) -> Sequence[Sequence[int]]:
-        """The achievers of each object."""
-        return self._owners(self.gives) if self.known_makers is None else self.known_makers
+        """The achievers of each object: the actions with it as an add effect."""
+        return self._indices_by_object(self.gives) if self.known_makers is None else self.known_makers
 
     @cached_property
-    def takers(self) -> list[list[int]]:
+    def consumers(self) -> list[list[int]]:
         """The consumers of each object: the actions with it as a precondition."""
-        return self._owners(self.needs)
+        return self._indices_by_object(self.needs)
 
     @cached_property
-    def missing(self) -> list[int]:
-        """For each action, the number of its preconditions that are not initial."""
+    def missing_counts(self) -> list[int]:
+        """The number of non-initial preconditions of each action."""
         at_start = self.at_start
         return [sum(not at_start[o] for o in set(needed)) for needed in self.needs]
 
-    def crossing(self, objects: frozenset[int]) -> tuple[int, ...]:
-        """Return the landmark of a cut: actions that achieve one of its objects and need none, ascending."""
+    def landmark_of(self, objects: frozenset[int]) -> tuple[int, ...]:
+        """Return the landmark of a cut: the actions that achieve one of its objects and need none.
+
+        They are in ascending order.
+        """
         makers, needs = self.makers, self.needs
         return tuple(sorted({a for o in objects for a in makers[o] if objects.isdisjoint(needs[a])}))
 
-    def _owners(self, lists: Sequence[Sequence[int]]) -> list[list[int]]:
-        """Return for each object the indices of the lists that have it."""
-        owners: list[list[int]] = [[] for _ in range(self.size)]
+    def _indices_by_object(self, lists: Sequence[Sequence[int]]) -> list[list[int]]:
+        """Return, for each object, the indices of the lists that contain it."""
+        indices: list[list[int]] = [[] for _ in range(self.size)]
         for action, members in enumerate(lists):
             for o in set(members):
-                owners[o].append(action)
-        return owners
+                indices[o].append(action)
+        return indices
 
     def reach(self, forbidden: frozenset[int] = frozenset()) -> bytearray:
-        """Return for each object 1 if it is reachable without the forbidden actions, else 0.
+        """Return a flag for each object: 1 if it is reachable without the forbidden actions, else 0.
 
         Takes linear time.
         """
-        missing = list(self.missing)
+        missing = list(self.missing_counts)
         reached = bytearray(self.at_start)
-        gives, takers = self.gives, self.takers
+        gives, consumers = self.gives, self.consumers
         ready = [a for a, count in enumerate(missing) if not count and a not in forbidden]
         for action in ready:  # grows while it is walked through
             for o in gives[action]:
                 if not reached[o]:
                     reached[o] = True
-                    for taker in takers[o]:
-                        missing[taker] -= 1
-                        if not missing[taker] and taker not in forbidden:
-                            ready.append(taker)
+                    for consumer in consumers[o]:
+                        missing[consumer] -= 1
+                        if not missing[consumer] and consumer not in forbidden:
+                            ready.append(consumer)
         return reached

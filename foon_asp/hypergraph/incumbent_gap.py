@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, NamedTuple
 from foon_asp.hypergraph.landmark_cuts import Cuts
 
 if TYPE_CHECKING:  # few questions need it
-    from foon_asp.hypergraph.cost_partition import SharedCosts
+    from foon_asp.hypergraph.cost_partition import CostPartition
     from foon_asp.hypergraph.proof_tree import Cases
 
 
 class FirstCuts(NamedTuple):
-    """Landmark cuts found before any action was excluded, and the actions that they hold for."""
+    """Landmark cuts found before any action was excluded, and the actions over which they were found."""
 
     cuts: Cuts
     actions: Collection[int]
@@ -23,15 +23,15 @@ class Evidence(NamedTuple):
 
     ``first``: the cuts found before any reduction.
     ``cuts``: the greedy cost partition with the greatest bound.
-    ``shared``: the last optimal cost partition that raised the bound.
+    ``partition``: the last optimal cost partition that raised the bound.
     ``tight``: the tight cuts of all LP solutions so far, in order.
-    ``starting``: the tight cuts of the last LP solution; the next relaxation begins with them.
-    ``cases``: the actions branched on.
+    ``starting``: the tight cuts of the last LP solution. The next relaxation begins with them.
+    ``cases``: the actions branched on; ``None`` if branching proved nothing.
     """
 
     first: FirstCuts | None = None
     cuts: Cuts | None = None
-    shared: "SharedCosts | None" = None
+    partition: "CostPartition | None" = None
     tight: tuple[frozenset[int], ...] = ()
     starting: tuple[frozenset[int], ...] = ()
     cases: "Cases" = None
@@ -46,9 +46,11 @@ class Gap:
 
     ``incumbent``: the actions of the best tree so far.
     ``lower_bound``: a lower bound on the cost of every tree, in the units of :class:`ExactCosts`.
-    ``candidates``: the actions that better trees can have, and equally good trees if these are wanted.
+    ``candidates``: the actions that better trees can have. If equally good trees are wanted, their actions
+    are candidates, too.
     ``budget``: the number of actions that branch and bound may still look at.
     ``proved``: whether the incumbent is proved optimal.
+    ``evidence``: the cuts that prove the lower bound.
     """
 
     incumbent: frozenset[int]
@@ -66,11 +68,11 @@ class Gap:
         """Return the gap with fewer candidates."""
         return replace(self, candidates=candidates)
 
-    def raised(self, lower_bound: int, evidence: Evidence) -> "Gap":
+    def with_bound(self, lower_bound: int, evidence: Evidence) -> "Gap":
         """Return the gap with new evidence, and with this lower bound if it is greater."""
         return replace(self, lower_bound=max(self.lower_bound, lower_bound), evidence=evidence)
 
-    def closed(self) -> "Gap":
+    def as_proved(self) -> "Gap":
         """Return the gap with its incumbent marked as proved optimal."""
         return replace(self, proved=True)
 

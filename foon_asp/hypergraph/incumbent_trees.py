@@ -5,18 +5,18 @@ from heapq import heapify, heappop, heappush
 from typing import TYPE_CHECKING
 
 from foon_asp.hypergraph.goal_graph import GoalGraph
-from foon_asp.hypergraph.h_values import derive
+from foon_asp.hypergraph.h_values import compute_h_values
 from foon_asp.hypergraph.support import Support
 
 if TYPE_CHECKING:  # few questions need it
-    from foon_asp.hypergraph.cost_partition import SharedCosts
+    from foon_asp.hypergraph.cost_partition import CostPartition
 
 
-def irredundant(graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int]) -> set[int]:
+def irredundant_subset(graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int]) -> set[int]:
     """Return an irredundant subset of a tree, by removing redundant actions, expensive ones first.
 
-    All actions of the tree have to be able to run. Actions that the cheapest derivations by h_add do not use
-    are removed before any others.
+    All actions of the tree have to be able to run. Some actions are removed before any others: those that the
+    cheapest derivations by h_add do not use.
     """
     support = Support(graph, tree, cost)
     waiting = [(-cost(action), action) for action in support.actions]
@@ -24,8 +24,8 @@ def irredundant(graph: GoalGraph, tree: Collection[int], cost: Callable[[int], i
     needed: set[int] = set()  # and so in every subset of the tree
     while waiting:
         _, action = heappop(waiting)
-        if action in support.actions and action not in needed and support.replaceable(action):
-            freed = support.leave_out(action)
+        if action in support.actions and action not in needed and support.is_replaceable(action):
+            freed = support.remove(action)
             if freed is None:
                 needed.add(action)
             for other in freed or ():  # they may have become replaceable
@@ -33,46 +33,56 @@ def irredundant(graph: GoalGraph, tree: Collection[int], cost: Callable[[int], i
     return support.actions
 
 
-def guessed(
+def trees_by_lp_values(
     graph: GoalGraph,
     actions: Collection[int],
     cost: Callable[[int], int],
-    shares: Mapping[int, float],
+    lp_values: Mapping[int, float],
     without: Collection[int],
 ) -> Iterator[set[int]]:
-    """Yield irredundant trees that follow the LP values ``shares`` and have no action of ``without``."""
+    """Yield irredundant trees that follow LP values and have no action of ``without``.
+
+    The greater the LP value of an action, the less it costs. One tree follows h_add, one h_max, if they
+    exist.
+    """
     allowed = [a for a in actions if a not in without]
 
-    def unshared(action: int) -> int:
-        return 1 + _scaled(cost(action), 1 - min(1.0, shares[action]))
+    def price_by_lp_value(action: int) -> int:
+        """Return about 1000 times the cost of an action times 1 minus its LP value."""
+        return 1 + _scaled_cost(cost(action), 1 - min(1.0, lp_values[action]))
 
     for h_add in (True, False):
-        tree = derive(graph, allowed, unshared, h_add).tree(graph, graph.goals)
+        tree = compute_h_values(graph, allowed, price_by_lp_value, h_add).tree(graph, graph.goals)
         if tree is not None:
-            yield irredundant(graph, tree, cost)
+            yield irredundant_subset(graph, tree, cost)
 
 
-def _scaled(cost: int, share: float) -> int:
-    """Return ``1000 * cost * share``, rounded down; computed in integers, since costs may exceed floats."""
+def _scaled_cost(cost: int, share: float) -> int:
+    """Return ``1000 * cost * share``, rounded down.
+
+    It is computed in integers, since costs may exceed floats.
+    """
     return cost * int(share * 1_000_000) // 1000
 
 
-def following(
-    graph: GoalGraph, actions: Collection[int], cost: Callable[[int], int], shared: "SharedCosts"
+def trees_by_partition(
+    graph: GoalGraph, actions: Collection[int], cost: Callable[[int], int], partition: "CostPartition"
 ) -> Iterator[set[int]]:
     """Yield irredundant trees that follow an LP solution, by its values and by its reduced costs."""
 
-    def unshared(action: int) -> int:
-        return 1 + _scaled(cost(action), 1 - min(1.0, shared.shares[action]))
+    def price_by_lp_value(action: int) -> int:
+        """Return about 1000 times the cost of an action times 1 minus its LP value."""
+        return 1 + _scaled_cost(cost(action), 1 - min(1.0, partition.lp_values[action]))
 
-    def loose(action: int) -> int:
-        return cost(action) + shared.reduced_costs[action]
+    def price_by_reduced_cost(action: int) -> int:
+        """Return the reduced cost of an action, in parts, plus its cost, which decides among equal ones."""
+        return cost(action) + partition.reduced_costs[action]
 
-    for price in (unshared, loose):
+    for price in (price_by_lp_value, price_by_reduced_cost):
         for h_add in (True, False):
-            tree = derive(graph, actions, price, h_add).tree(graph, graph.goals)
+            tree = compute_h_values(graph, actions, price, h_add).tree(graph, graph.goals)
             if tree is not None:
-                yield irredundant(graph, tree, cost)
+                yield irredundant_subset(graph, tree, cost)
 
 
 def perturbation_search(
@@ -80,46 +90,50 @@ def perturbation_search(
     actions: Collection[int],
     tree: set[int],
     cost: Callable[[int], int],
-    enough: int,
+    sufficient_cost: int,
     expired: Callable[[], bool],
-    shares: Mapping[int, float],
+    lp_values: Mapping[int, float],
     random_number: Callable[[], float],
     tries: int,
 ) -> set[int]:
-    """Return a cheaper tree found by perturbation search, else ``tree``; ends at a cost of ``enough``.
+    """Return a cheaper tree found by perturbation search, else ``tree``.
 
-    Each round derives a tree at perturbed costs: each cost is multiplied by a random factor from 0.5 to 1.5.
-    In half of the rounds, a random part of the current tree also costs nothing, and sometimes only a random
-    part of the other actions is allowed. In the other rounds, costs are also multiplied by 1 minus the LP
-    values ``shares``. A tree of equal cost becomes the current tree. Ends when each action was looked at
+    Each round derives a tree by h_add or h_max at perturbed costs: each cost is multiplied by a random factor
+    from 0.5 to 1.5. In half of the rounds, costs are also multiplied by 1 minus the LP values. In the other
+    half, a random part of the current tree costs nothing; sometimes only a random part of the other actions
+    is allowed. A tree that costs no more than the current tree replaces it.
+
+    Ends at a cost of ``sufficient_cost`` or where time is up. Also ends when each action was looked at
     ``tries`` times since the last improvement.
     """
-    best = last = tree
+    best = current_tree = tree
     total = sum(map(cost, tree))
-    ordered = sorted(actions)
-    effort = tries * len(ordered)
-    while effort > 0 and total > enough and not expired():
+    ordered_actions = sorted(actions)
+    effort = tries * len(ordered_actions)
+    while effort > 0 and total > sufficient_cost and not expired():
         if random_number() < 0.5:
-            candidates = ordered
-            unused = ((a, (1 - min(1.0, shares[a])) * (0.5 + random_number())) for a in candidates)
-            price = {a: 1 + _scaled(cost(a), share) for a, share in unused}
+            candidates = ordered_actions
+            factors = ((a, (1 - min(1.0, lp_values[a])) * (0.5 + random_number())) for a in candidates)
+            price = {a: 1 + _scaled_cost(cost(a), share) for a, share in factors}
         else:
-            share, fraction = random_number(), 1.0 if random_number() < 0.5 else random_number() ** 2
-            candidates = [a for a in ordered if random_number() < fraction or a in last]
-            price = {a: _scaled(cost(a), 0.5 + random_number()) for a in candidates}
-            price |= {a: 0 for a in sorted(last) if random_number() < share}
+            share, allowed_share = random_number(), 1.0 if random_number() < 0.5 else random_number() ** 2
+            candidates = [a for a in ordered_actions if random_number() < allowed_share or a in current_tree]
+            price = {a: _scaled_cost(cost(a), 0.5 + random_number()) for a in candidates}
+            price |= {a: 0 for a in sorted(current_tree) if random_number() < share}
         effort -= len(candidates)
-        derived = derive(graph, candidates, price, h_add=random_number() < 0.5).tree(graph, graph.goals)
-        candidate = irredundant(graph, derived or last, cost)
+        derived = compute_h_values(graph, candidates, price, h_add=random_number() < 0.5).tree(
+            graph, graph.goals
+        )
+        candidate = irredundant_subset(graph, derived or current_tree, cost)
         candidate_total = sum(map(cost, candidate))
         if candidate_total < total:
-            best, effort = candidate, tries * len(ordered)
+            best, effort = candidate, tries * len(ordered_actions)
         if candidate_total <= total:
-            last, total = candidate, candidate_total
+            current_tree, total = candidate, candidate_total
     return best
 
 
-def improved(
+def improve_locally(
     graph: GoalGraph,
     actions: Collection[int],
     tree: set[int],
@@ -131,28 +145,30 @@ def improved(
     """Return a cheaper tree among the actions by local search, else ``tree``.
 
     First tries the trees that follow h_add and h_max, by costs and by reduced costs. If ``thorough``, then
-    tries to do without each action of the best tree: derives a tree without this action, while the other
-    actions of the best tree cost nothing.
+    tries to do without each action of the best tree. For that, it derives a tree without this action, while
+    the other actions of the best tree cost nothing.
     """
     best = tree
     total = sum(map(cost, best))
 
-    def offer(actions: Collection[int], price: Callable[[int], int], h_add: bool) -> None:
-        """Keep the tree that follows h_add or h_max at some prices, if it is the best so far."""
+    def try_derived_tree(actions: Collection[int], price: Callable[[int], int], h_add: bool) -> None:
+        """Derive a tree by h_add or h_max at some prices, and keep it if it is the best so far."""
         nonlocal best, total
-        derived = derive(graph, actions, price, h_add).tree(graph, graph.goals)
+        derived = compute_h_values(graph, actions, price, h_add).tree(graph, graph.goals)
         if derived is not None:
-            candidate = irredundant(graph, derived, cost)
+            candidate = irredundant_subset(graph, derived, cost)
             candidate_total = sum(map(cost, candidate))
             if candidate_total < total:
                 best, total = candidate, candidate_total
 
     for use_h_add in (True, False):
-        offer(actions, cost, use_h_add)
-        offer(actions, lambda a: reduced_cost(a) * total + cost(a), use_h_add)
+        try_derived_tree(actions, cost, use_h_add)
+        try_derived_tree(actions, lambda a: reduced_cost(a) * total + cost(a), use_h_add)
     tried: set[int] = set()
     while thorough and not expired() and (untried := best - tried):
         action = max(untried, key=lambda a: (reduced_cost(a), cost(a), -a))
         tried.add(action)
-        offer([a for a in actions if a != action], lambda a: 0 if a in best else cost(a), h_add=True)
+        try_derived_tree(
+            [a for a in actions if a != action], lambda a: 0 if a in best else cost(a), h_add=True
+        )
     return best

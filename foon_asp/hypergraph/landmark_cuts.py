@@ -1,7 +1,7 @@
 """Lower bounds by LM-cut (Helmert and Domshlak 2009), looking only at actions that its cuts touch.
 
 Landmarks are as in :mod:`foon_asp.hypergraph.cut`. The weight of each landmark is the least reduced cost of
-its actions; it is subtracted from the reduced costs of all of them.
+its actions. It is subtracted from the reduced costs of all of them.
 """
 
 import math
@@ -14,34 +14,38 @@ from foon_asp.hypergraph.hypergraph import Hypergraph
 
 
 class WeightedCut(NamedTuple):
-    """A cut with its landmark ``members``, its weight, and the cheapest landmark action.
+    """A cut with its landmark ``members``, its ``weight``, and the ``cheapest`` landmark action.
 
-    ``weight`` was the reduced cost of the ``cheapest`` action when the cut was found. Cuts form chains, to
-    save memory: the objects of this cut are ``own`` and all objects of the earlier cut ``after``.
+    The weight is the reduced cost of the cheapest action when the cut was found. Cuts form chains, to save
+    memory: this cut has its ``added_objects`` and all objects of ``earlier_cut``.
     """
 
-    own: frozenset[int]
+    added_objects: frozenset[int]
     members: tuple[int, ...]
     cheapest: int
     weight: int
-    after: "WeightedCut | None" = None
+    earlier_cut: "WeightedCut | None" = None
 
     @property
     def objects(self) -> frozenset[int]:
-        """All objects of the cut, among them a target; computed on demand, since the chain may be long."""
-        objects, cut = [self.own], self.after
+        """All objects of the cut, among them a target.
+
+        They are computed at each access, since the chain may be long.
+        """
+        objects, cut = [self.added_objects], self.earlier_cut
         while cut is not None:
-            objects.append(cut.own)
-            cut = cut.after
+            objects.append(cut.added_objects)
+            cut = cut.earlier_cut
         return frozenset().union(*objects)
 
 
 class Cuts(NamedTuple):
     """A cost partition over cuts: the sum ``bound`` of its weights is a lower bound on every derivation.
 
-    ``reduced_costs[a]`` is the reduced cost of action ``a``; actions that are missing have their full cost.
-    ``hopeless`` says that the allowed actions have no derivation. ``interrupted`` says that ctrl-C ended the
-    search for cuts: the bound holds, but ``reduced_costs`` must not be used.
+    ``reduced_costs``: the reduced cost of actions; an action that is missing has its full cost.
+    ``hopeless``: whether the allowed actions have no derivation.
+    ``interrupted``: whether ctrl-C ended the search for cuts. Then the bound holds, but ``reduced_costs``
+    must not be used.
     """
 
     bound: int
@@ -54,21 +58,22 @@ class Cuts(NamedTuple):
 class _Level:
     """Objects that every derivation makes, and the goal zone of the last of them.
 
-    ``zone``: the goal zone, a set of objects that grows from the last object; cuts are made of it.
-    ``edge``: the actions of reduced cost above 0 that achieve an object of the zone.
-    ``cut``: the latest cut of this zone; before the first, the latest cut ``after`` of the level below.
+    ``zone``: the goal zone, a set of objects that grows backwards from the last object. It becomes a cut.
+    ``frontier``: the actions of reduced cost above 0 that achieve an object of the zone, as keys.
+    ``cut``: the latest cut of this zone. Before the first, it is ``earlier_cut``, the latest cut of the level
+    below.
     """
 
-    def __init__(self, objects: Sequence[int], after: WeightedCut | None) -> None:
+    def __init__(self, objects: Sequence[int], earlier_cut: WeightedCut | None) -> None:
         self.objects = list(objects)
-        self.after = after
-        self.begin()
+        self.earlier_cut = earlier_cut
+        self.clear_zone()
 
-    def begin(self) -> None:
+    def clear_zone(self) -> None:
         """Start an empty zone."""
         self.zone: set[int] = set()
-        self.edge: dict[int, None] = {}
-        self.cut = self.after
+        self.frontier: dict[int, None] = {}
+        self.cut = self.earlier_cut
 
 
 class _Target:
@@ -81,10 +86,11 @@ class _Target:
         self.levels = [_Level([target], None)]
         self.outer_zones: set[int] = set()
 
-    def level(self, free: Container[int]) -> _Level | None:
+    def top_level(self, free: Container[int]) -> _Level | None:
         """Return the topmost level whose last object is not free; ``None`` if the target itself is free.
 
-        Removes the free objects above it. An object is free if it can be made at reduced cost 0.
+        An object is free if it can be made at reduced cost 0. Free objects and empty levels above are
+        removed.
         """
         while self.levels:
             level = self.levels[-1]
@@ -92,15 +98,18 @@ class _Target:
                 return level
             if level.objects:
                 level.objects.pop()
-                level.begin()
+                level.clear_zone()
                 continue
             self.levels.pop()
             if self.levels:
                 self.outer_zones -= self.levels[-1].zone
         return None
 
-    def add(self, needed: Sequence[int]) -> None:
-        """Add a level of ``needed``, the common preconditions of the latest landmark; the last is first."""
+    def add_level(self, needed: Sequence[int]) -> None:
+        """Add a level of ``needed``, the common preconditions of the latest landmark, if there are any.
+
+        The search continues from the last of them.
+        """
         if needed:
             self.outer_zones |= self.levels[-1].zone
             self.levels.append(_Level(needed, self.levels[-1].cut))
@@ -111,68 +120,69 @@ def landmark_cuts(
     targets: Iterable[int],
     allowed: Container[int],
     cost: Callable[[int], int],
-    guide_costs: Mapping[int, int],
+    h_values: Mapping[int, int],
     expired: Callable[[], bool],
     guide: Callable[[Callable[[int], int]], Mapping[int, int]] | None = None,
-    max_members: float = math.inf,
+    max_landmark_actions: float = math.inf,
 ) -> Cuts:
     """Find landmark cuts and a cost partition by LM-cut, until the targets have reduced cost 0.
 
     ``allowed``: the only actions that count. All of them cost more than 0.
-    ``guide_costs``: h-values of objects, infinite where missing. As in LM-cut, a cut passes through the
+    ``h_values``: h-values of objects, infinite where missing. As in LM-cut, a cut passes through the
     precondition of the greatest h-value.
-    ``guide``: computes new h-values from reduced costs, and is called now and then.
-    ``max_members``: ends the search when the landmarks have about this many actions together.
+    ``guide``: a function that computes new h-values from reduced costs. It is called each time that a certain
+    number of cuts was found; ``None`` keeps the first h-values.
+    ``max_landmark_actions``: ends the search when the landmarks have about this many actions together.
 
     Ends early where time is up, too. Targets take turns, the greatest h-value first, so that the cuts of one
     target do not use up the costs that others need. The set of objects of reduced cost 0 only grows, so the
     time is linear in the parts of the graph that cuts touch.
     """
-    search = _Search(graph, allowed, cost, guide_costs)
+    search = _Search(graph, allowed, cost, h_values)
     queue = deque(_Target(o) for o in sorted(targets, key=search.guide_key, reverse=True))
     next_guide = max(tuning.CUTS.guided_cuts, len(queue))  # how many cuts there are when the guide is asked
     effort = 0
     try:
-        while queue and effort < max_members and not expired():
+        while queue and effort < max_landmark_actions and not expired():
             target = queue.popleft()
-            level = target.level(search.free.objects)
+            level = target.top_level(search.free.objects)
             if level is None:
                 continue
             queue.append(target)
             if guide is not None and len(search.cuts) >= next_guide:
-                search.guide_costs = guide(search.reduced_cost)
+                search.h_values = guide(search.reduced_cost)
                 waiting = sum(len(level_above.objects) for level_above in target.levels)
                 next_guide = len(search.cuts) + max(
                     tuning.CUTS.guided_cuts,
                     len(queue),
                     waiting,
-                    len(search.guide_costs) // tuning.CUTS.guides,
+                    len(search.h_values) // tuning.CUTS.guides,
                 )
-                level.begin()
-            cut = search.cut(level, target.outer_zones)
+                level.clear_zone()
+            cut = search.add_cut(level, target.outer_zones)
             if cut is None:
                 return Cuts(search.bound, search.reduced_costs, search.cuts, hopeless=True)
             effort += len(cut.members)
-            target.add(search.needed_by_all(cut.members))
+            target.add_level(search.common_preconditions(cut.members))
     except KeyboardInterrupt:
         return Cuts(search.bound, search.reduced_costs, search.cuts, interrupted=True)
     return Cuts(search.bound, search.reduced_costs, search.cuts)
 
 
 class _Search:
-    """The state of LM-cut: cuts so far, reduced costs, and objects of reduced cost 0."""
+    """The state of LM-cut: cuts so far, reduced costs, and free objects (of reduced cost 0)."""
 
     def __init__(
         self,
         graph: Hypergraph,
         allowed: Container[int],
         cost: Callable[[int], int],
-        guide_costs: Mapping[int, int],
+        h_values: Mapping[int, int],
     ) -> None:
         self._graph, self._allowed, self._cost = graph, allowed, cost
-        self.guide_costs = guide_costs
+        self.h_values = h_values
         self.reduced_costs: dict[int, int] = {}
-        self.free = _Free(graph)
+        self.free = _FreeObjects(graph)
         self.cuts: list[WeightedCut] = []
         self.bound = 0
 
@@ -182,74 +192,79 @@ class _Search:
 
     def guide_key(self, o: int) -> tuple[float, int]:
         """Return a sort key of an object: its h-value, then its number."""
-        return self.guide_costs.get(o, math.inf), o
+        return self.h_values.get(o, math.inf), o
 
-    def cut(self, level: _Level, outer_zones: set[int]) -> WeightedCut | None:
-        """Add and return the next cut of a level; ``None`` where no action crosses it."""
-        new = self._grow_zone(level, outer_zones)
-        while new is None:
-            level.begin()
-            new = self._grow_zone(level, outer_zones)
+    def add_cut(self, level: _Level, outer_zones: set[int]) -> WeightedCut | None:
+        """Find the next cut of a level, and subtract its weight from reduced costs; return the cut.
+
+        ``None`` where no action crosses the zone.
+        """
+        new_objects = self._grow_zone(level, outer_zones)
+        while new_objects is None:
+            level.clear_zone()
+            new_objects = self._grow_zone(level, outer_zones)
         needs = self._graph.needs
-        members = tuple(action for action in level.edge if level.zone.isdisjoint(needs[action]))
+        members = tuple(action for action in level.frontier if level.zone.isdisjoint(needs[action]))
         if not members:
             return None
-        level.edge = dict.fromkeys(members)
+        level.frontier = dict.fromkeys(members)
         reduced_costs = {action: self.reduced_cost(action) for action in members}
         cheapest = min(reduced_costs, key=reduced_costs.__getitem__)
         weight = reduced_costs[cheapest]
-        level.cut = WeightedCut(frozenset(new), members, cheapest, weight, level.cut)
+        level.cut = WeightedCut(frozenset(new_objects), members, cheapest, weight, level.cut)
         self.bound += weight
         self.cuts.append(level.cut)
         for action, reduced_cost in reduced_costs.items():
             self.reduced_costs[action] = reduced_cost - weight
             if reduced_cost == weight:
-                self.free.release(action)
+                self.free.add_action(action)
         return level.cut
 
-    def needed_by_all(self, members: Sequence[int]) -> list[int]:
+    def common_preconditions(self, members: Sequence[int]) -> list[int]:
         """Return the common preconditions of a landmark that are not free, the greatest h-value last."""
         needs = self._graph.needs
-        common = set(self.free.lacking(members[0])).intersection(*(needs[action] for action in members))
+        common = set(self.free.missing_preconditions(members[0])).intersection(
+            *(needs[action] for action in members)
+        )
         return sorted(common, key=self.guide_key)
 
     def _grow_zone(self, level: _Level, outer_zones: set[int]) -> list[int] | None:
-        """Grow a zone through actions of reduced cost 0, and return its new objects.
+        """Grow a zone backwards through actions of reduced cost 0, and return its new objects.
 
-        ``None`` if all preconditions of such an action are free: then the zone has to start anew.
+        ``None`` if all preconditions of such an action are free. Then the zone has to start anew.
         """
         needs, achievers, reduced_costs = self._graph.needs, self._graph.makers, self.reduced_costs
-        zone, edge = level.zone, level.edge
-        new = [] if zone else [level.objects[-1]]
-        zone.update(new)
-        passed = [action for action in edge if not reduced_costs.get(action, True)]
-        for action in passed:
-            del edge[action]
+        zone, frontier = level.zone, level.frontier
+        new_objects = [] if zone else [level.objects[-1]]
+        zone.update(new_objects)
+        free_actions = [action for action in frontier if not reduced_costs.get(action, True)]
+        for action in free_actions:
+            del frontier[action]
         i = 0
         while True:
-            for action in passed:
+            for action in free_actions:
                 if not zone.isdisjoint(needs[action]):
                     continue
-                lacking = self.free.lacking(action)
+                lacking = self.free.missing_preconditions(action)
                 if not lacking:
                     return None
-                dearest = max(lacking, key=self.guide_key)
-                zone.add(dearest)
-                new.append(dearest)
-            if i == len(new):
-                return new
-            passed = []
-            for action in achievers[new[i]]:
+                costliest = max(lacking, key=self.guide_key)
+                zone.add(costliest)
+                new_objects.append(costliest)
+            if i == len(new_objects):
+                return new_objects
+            free_actions = []
+            for action in achievers[new_objects[i]]:
                 if action in self._allowed and outer_zones.isdisjoint(needs[action]):
                     if reduced_costs.get(action, True):
-                        edge[action] = None
+                        frontier[action] = None
                     else:
-                        passed.append(action)
+                        free_actions.append(action)
             i += 1
 
 
-class _Free:
-    """The free objects: those reachable by actions of reduced cost 0, updated incrementally."""
+class _FreeObjects:
+    """The objects reachable by actions of reduced cost 0, updated as such actions are added."""
 
     def __init__(self, graph: Hypergraph) -> None:
         self._graph = graph
@@ -257,14 +272,17 @@ class _Free:
         self._missing: dict[int, int] = {}
         self._waiting: dict[int, list[int]] = {}
 
-    def lacking(self, action: int) -> list[int]:
+    def missing_preconditions(self, action: int) -> list[int]:
         """Return the preconditions of an action that are neither free nor initial."""
         free, start = self.objects, self._graph.start
         return [o for o in self._graph.needs[action] if o not in free and o not in start]
 
-    def release(self, action: int) -> None:
-        """Add an action of reduced cost 0: once its preconditions are free, its add effects become free."""
-        lacking = self.lacking(action)
+    def add_action(self, action: int) -> None:
+        """Add an action of reduced cost 0.
+
+        Once its preconditions are free, its add effects become free.
+        """
+        lacking = self.missing_preconditions(action)
         self._missing[action] = len(lacking)
         for o in lacking:
             self._waiting.setdefault(o, []).append(action)

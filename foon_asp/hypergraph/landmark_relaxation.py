@@ -1,7 +1,7 @@
 """The linear relaxation of the hitting set problem over landmark cuts, which grows by the cuts it violates.
 
 Each action is a column, each cut a row: its landmark actions add up to at least 1. Cuts are looked for in the
-graph of first achievers, where fewer actions cross them, and returned as cuts of the whole graph.
+graph of first achievers, where fewer actions cross them. They are returned as cuts of the whole graph.
 """
 
 import math
@@ -24,10 +24,11 @@ class LandmarkRelaxation:
 
     ``actions``: the old number of each action.
     ``graph``, ``targets``: the subgraph of first achievers, and its targets.
-    ``costs``, ``dearest``: the cost of each action, and the greatest cost.
-    ``relative``: costs divided by the greatest one, since costs may be too great for floats.
-    ``covering``: the linear program, with ``relative`` as the costs of columns.
-    ``cuts``, ``rows``: the objects of each cut, and its landmark.
+    ``costs``, ``greatest_cost``: the cost of each action, and the greatest cost.
+    ``relative_costs``: costs divided by the greatest one, since costs may be too great for floats.
+    ``covering``: the linear program, with ``relative_costs`` as the costs of columns.
+    ``cuts``: the cut of each row, given by its objects in the subgraph.
+    ``rows``: the landmark of each row, as an array of actions.
     """
 
     def __init__(
@@ -42,87 +43,88 @@ class LandmarkRelaxation:
 
         self._np = np
         self.actions = sorted(actions)
-        plain, self._objects, self.targets = _renumbered(graph, targets, self.actions)
+        plain, self._objects, self.targets = _subgraph(graph, targets, self.actions)
         self._achievers = FirstAchievers(plain, expired)
         self.graph = self._achievers.graph
         self.costs = [cost(a) for a in self.actions]
-        self.dearest = max(self.costs, default=1)
-        self.relative = np.array([c / self.dearest for c in self.costs])
-        self.covering = Covering(self.relative.tolist())
+        self.greatest_cost = max(self.costs, default=1)
+        self.relative_costs = np.array([c / self.greatest_cost for c in self.costs])
+        self.covering = Covering(self.relative_costs.tolist())
         self.cuts: list[frozenset[int]] = []
         self.rows: list[Any] = []
         self._random = random.Random(0)
         self._whole_cuts: dict[frozenset[int], frozenset[int]] = {}
 
-    def add(self, cut: frozenset[int]) -> None:
-        """Add a row for a cut, given by objects: its columns are the landmark actions."""
-        self.rows.append(self._np.array(self.members(cut), dtype=self._np.int32))
+    def add_cut(self, cut: frozenset[int]) -> None:
+        """Add a row for a cut, given by objects of the subgraph: its columns are the landmark actions."""
+        self.rows.append(self._np.array(self.landmark_of(cut), dtype=self._np.int32))
         self.cuts.append(cut)
-        self.covering.add(self.rows[-1])
+        self.covering.add_row(self.rows[-1])
 
-    def add_known(self, cuts: Iterable[Iterable[int]]) -> None:
+    def add_whole_cuts(self, cuts: Iterable[Iterable[int]]) -> None:
         """Add rows for cuts of the whole graph, each given by its objects."""
         position = {o: i for i, o in enumerate(self._objects)}
         for objects in cuts:
-            self.add(frozenset(position[o] for o in objects if o in position))
+            self.add_cut(frozenset(position[o] for o in objects if o in position))
 
-    def members(self, cut: frozenset[int]) -> list[int]:
-        """Return the landmark of a cut."""
-        return self._achievers.members(cut)
+    def landmark_of(self, cut: frozenset[int]) -> list[int]:
+        """Return the landmark of a cut of the subgraph, ascending."""
+        return self._achievers.landmark_of(cut)
 
-    def whole(self, cut: frozenset[int]) -> frozenset[int]:
+    def whole_cut(self, cut: frozenset[int]) -> frozenset[int]:
         """Return the cut of the whole graph with the same landmark as a cut of this subgraph.
 
-        The result has object numbers of the whole graph.
+        The result has object numbers of the whole graph. It is cached.
         """
         if cut not in self._whole_cuts:
-            self._whole_cuts[cut] = frozenset(self._objects[o] for o in self._achievers.widened(cut))
+            self._whole_cuts[cut] = frozenset(self._objects[o] for o in self._achievers.widen(cut))
         return self._whole_cuts[cut]
 
     def separate(
         self,
         cutters: Iterable[Cutter],
         used: Collection[int],
-        shares: Any,
+        lp_values: Any,
         budget: int,
         stopped: Callable[[], bool],
     ) -> tuple[int, int]:
         """Add disjoint cuts that an LP solution violates, until ``budget`` actions were looked at.
 
-        ``shares`` is the array of the LP value of each action, which is changed in place. No landmark has an
-        action of ``used``. Returns the number of cuts added and the number of actions looked at.
+        ``lp_values`` is an array of the LP value of each action. It is changed in place. No landmark has an
+        action of ``used``. Ends early where ``stopped`` returns true. Returns the number of cuts added and
+        the number of actions looked at.
         """
         added = looks = 0
         for cutter in cutters:
-            cuts = disjoint_violated_cuts(cutter, used, shares, self.relative, self._random.random)
+            cuts = disjoint_violated_cuts(cutter, used, lp_values, self.relative_costs, self._random.random)
             while looks < budget and not stopped():
                 looks += len(cutter.actions)
                 cut = next(cuts, None)
                 if cut is None:
                     break
                 added += 1
-                self.add(frozenset(cut.objects))
+                self.add_cut(frozenset(cut.objects))
         return added, looks
 
-    def in_parts(self) -> Any:
-        """Return an array of costs in parts: 64-bit integers where their sum fits, else Python integers."""
+    def costs_in_parts(self) -> Any:
+        """Return an array of costs in parts: integers of 64 bits where their sum fits, else of Python."""
         fits = sum(self.costs) * PARTS < 2**62
         return self._np.array(self.costs, dtype=self._np.int64 if fits else object) * PARTS
 
-    def shared_out(self, dual_values: Iterable[tuple[int, float]], capacity: Any) -> dict[int, int]:
-        """Return a feasible weight in parts for each row: its dual value rounded, limited by ``capacity``.
+    def feasible_weights(self, dual_values: Iterable[tuple[int, float]], capacity: Any) -> dict[int, int]:
+        """Return a feasible weight, in parts, of each row: its dual rounded and limited by ``capacity``.
 
-        ``dual_values`` are pairs of row and dual value. ``capacity`` is an array of the cost of each action
-        in parts; weights are subtracted from it, so that reduced costs remain. Afterwards, weights are raised
-        greedily while capacity is left. They add up to a lower bound, whatever the dual values are.
+        ``dual_values`` are pairs of row and dual. ``capacity`` is an array of the cost of each action, in
+        parts. Weights are subtracted from it in place, so that reduced costs remain. Afterwards, weights are
+        raised greedily while capacity is left. The weights add up to a lower bound, whatever the duals are.
         """
-        of_1 = self.dearest * PARTS
-        wanted = {row: round(Fraction(w) * of_1) if 0 < w < math.inf else 0 for row, w in dual_values}
-        weights = dict.fromkeys(wanted, 0)
-        dearest_first = sorted(wanted, key=lambda row: -wanted[row])
-        for limited in (True, False):
-            for row in dearest_first:
-                upper = wanted[row] if limited else math.inf
+        scale = self.greatest_cost * PARTS
+        rounded_duals = {row: round(Fraction(w) * scale) if 0 < w < math.inf else 0 for row, w in dual_values}
+        weights = dict.fromkeys(rounded_duals, 0)
+        greatest_first = sorted(rounded_duals, key=lambda row: -rounded_duals[row])
+        for within_duals in (True, False):
+            for row in greatest_first:
+                upper = rounded_duals[row] if within_duals else math.inf
                 weight = int(min(upper, capacity[self.rows[row]].min())) if upper else 0
                 if weight:
                     weights[row] += weight
@@ -130,17 +132,20 @@ class LandmarkRelaxation:
         return weights
 
 
-def _renumbered(
+def _subgraph(
     graph: Hypergraph, targets: Iterable[int], actions: Sequence[int]
 ) -> tuple[Hypergraph, list[int], list[int]]:
-    """Return the graph of the given actions, the old numbers of its objects, and its targets."""
+    """Return the graph of the given actions, the old numbers of its objects, and its targets.
+
+    It has the targets and the non-initial preconditions of the actions as objects.
+    """
     targets, start = tuple(targets), graph.start
     objects = sorted({o for a in actions for o in graph.needs[a] if o not in start}.union(targets))
     number = {o: i for i, o in enumerate(objects)}
-    small = Hypergraph(
+    subgraph = Hypergraph(
         len(number),
         [[number[o] for o in graph.needs[a] if o in number] for a in actions],
         [[number[o] for o in graph.gives[a] if o in number] for a in actions],
         (),
     )
-    return small, objects, [number[o] for o in targets]
+    return subgraph, objects, [number[o] for o in targets]

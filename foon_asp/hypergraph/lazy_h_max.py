@@ -7,21 +7,22 @@ from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.goal_graph import GoalGraph
 
 
-def within_reach(
+def lazy_h_max_test(
     graph: GoalGraph, allowed: Container[int], reduced_cost: Callable[[int], int]
 ) -> Callable[[int, float], bool]:
-    """Return a function of an object and a limit: whether allowed actions make the object at such an h_max.
+    """Return a function of an object and a limit: whether the h_max of the object is at most the limit.
 
-    ``derive`` computes h_max of all objects at once. This function goes backwards from one object, and prunes
-    by the limit; with a low limit, it looks at a small part of a large network. It returns ``True`` where it
-    would go too deep or take too long.
+    Only ``allowed`` actions count, at reduced cost. :func:`compute_h_values` computes h_max of all objects at
+    once. This function goes backwards from one object and prunes by the limit. With a low limit, it looks at
+    a small part of a large network. It also returns ``True`` where it would go too deep or take too long.
     """
     needs, achievers, start = graph.needs, graph.makers, graph.start
     lower_bounds: dict[int, float] = {}  # on the h_max of objects
     sufficient_limits: dict[int, float] = {}  # limits for which the answer was ``True``
     budget = tuning.CUTS.lazy_looks
 
-    def reached(o: int, limit: float, deep: int = tuning.CUTS.lazy_depth) -> bool:
+    def is_within(o: int, limit: float, depth: int = tuning.CUTS.lazy_depth) -> bool:
+        """Return whether the h_max of an object is at most a limit; updates the bounds known so far."""
         nonlocal budget
         if lower_bounds.get(o, 0) > limit:
             return False
@@ -36,7 +37,7 @@ def within_reach(
             if h_action <= limit:
                 remaining = limit - h_action
                 for needed in needs[action]:
-                    if needed not in start and deep and not reached(needed, remaining, deep - 1):
+                    if needed not in start and depth and not is_within(needed, remaining, depth - 1):
                         missing = lower_bounds[needed]
                         h_action = (
                             missing if missing == math.inf else h_action + missing
@@ -49,4 +50,4 @@ def within_reach(
         lower_bounds[o] = lowest
         return False
 
-    return reached
+    return is_within

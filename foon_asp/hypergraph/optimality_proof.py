@@ -1,12 +1,12 @@
 """Proofs that no derivation costs less than the incumbent: cost partitions over landmarks, and branching.
 
-A cost partition gives each landmark a weight such that, for each action, the weights of its landmarks add up
-to at most its cost. Then the sum of all weights is a lower bound on the cost of every derivation. The best
-weights solve the dual of the hitting set relaxation; landmarks are added as long as the LP solution violates
-one (Bonet and Helmert 2010; Haslum, Slaney and Thiébaux 2012 for the hitting sets).
+A cost partition gives each landmark a weight. For each action, the weights of its landmarks add up to at most
+its cost. Then the sum of all weights is a lower bound on the cost of every derivation. The best weights solve
+the dual of the hitting set relaxation. Landmarks are added as long as the LP solution violates one (Bonet and
+Helmert 2010; Haslum, Slaney and Thiébaux 2012 for the hitting sets).
 
-A limit on a resource is one more row of the relaxation: an action that consumes the resource may carry more
-weight, and the weight of the limit times its amount is subtracted from the bound.
+A limit on a resource is one more row of the relaxation. An action that consumes the resource may then carry
+more weight, and the weight of the limit times its amount is subtracted from the bound.
 """
 
 import math
@@ -19,14 +19,14 @@ from operator import mul
 from typing import Protocol
 
 from foon_asp.hypergraph import tuning
-from foon_asp.hypergraph.branch_and_bound import branched
-from foon_asp.hypergraph.cost_partition import CostPartitioning, SharedCosts
+from foon_asp.hypergraph.branch_and_bound import prove_by_branching
+from foon_asp.hypergraph.cost_partition import CostPartition, CostPartitioning
 from foon_asp.hypergraph.covering import TOLERANCE, Covering
 from foon_asp.hypergraph.cut import Cut, Cutter
 from foon_asp.hypergraph.exact_optimum import ExactOptimum, Limit, exact_optimum
 from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.landmark_relaxation import PARTS
-from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, minus, times
+from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, multiply, subtract
 from foon_asp.hypergraph.proof_tree import (
     Branch,
     Broken,
@@ -46,22 +46,22 @@ Others = Callable[[frozenset[int], Collection[frozenset[int]]], Proof]
 class Rules(Protocol):
     """Rules on derivations that neither targets nor limits express."""
 
-    def bars(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
+    def barred_actions(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
         """Return for each rule, by number, the actions that it bars.
 
-        A derivation with the used actions and no action of ``without`` breaks the rule if it also has a
-        barred action.
+        Take a derivation with all ``used`` actions and no action of ``without``. It breaks the rule if it
+        also has a barred action.
         """
 
-    def breaking(self, derivation: frozenset[int]) -> Sequence[int]:
+    def breaking_actions(self, derivation: frozenset[int]) -> Sequence[int]:
         """Return actions of a derivation that together break a rule; empty if it breaks none."""
 
-    def exceeded(self, derivation: frozenset[int]) -> Limit | None:
+    def exceeded_limit(self, derivation: frozenset[int]) -> Limit | None:
         """Return a limit that a derivation exceeds and that was not returned before; ``None`` without one."""
 
 
 class CheaperError(Exception):
-    """A derivation was found that costs less than the incumbent."""
+    """A derivation was found that costs less than the incumbent; ``actions`` are its actions."""
 
     def __init__(self, actions: Sequence[int]) -> None:
         super().__init__("a cheaper derivation was found")
@@ -69,20 +69,20 @@ class CheaperError(Exception):
 
 
 class _TimeUpError(Exception):
-    pass
+    """A proof was given up."""
 
 
 class Prover:
     """Searches for optimality proofs over one hypergraph, its targets and the cost of each action.
 
     ``costs``, ``order``: the cost of each action as a vector, and the order of the vectors.
-    ``forbidden``: actions; derivations with one of them do not count.
+    ``forbidden``: actions. Derivations with one of them do not count.
     ``expired``: returns whether to give up. It is called between steps that take milliseconds on thousands of
     actions.
     ``known_cuts``: cuts to begin with, each by its objects.
     ``limits``, ``rules``: derivations that exceed a limit or break a rule do not count.
-    ``multiples``: a number per coordinate; all costs are multiples of it, so bounds are rounded up to one. 0
-    or a missing number means no rounding.
+    ``multiples``: a number for each coordinate, of which all costs are multiples. So bounds are rounded up to
+    a multiple. 0 or a missing number means no rounding.
     """
 
     def __init__(
@@ -103,7 +103,7 @@ class Prover:
         self._graph, self._targets, self._costs, self._order = graph, targets, costs, order
         self._forbidden, self._expired = forbidden, expired
         self._random = random.Random(0)
-        self._members = cache(graph.crossing)
+        self._landmark_of = cache(graph.landmark_of)
         floats = [order.approximate(cost) for cost in set(costs)]
         scale, self._scales = 1.0, list[float]()
         for level, rates in enumerate(order.levels):
@@ -113,18 +113,18 @@ class Prover:
             self._scales.append(scale / unit)
             scale *= 1e-4 / (1 + largest / unit)  # so that a level weighs much less than the one before
 
-    def scaled(self, vector: Vector) -> float:
+    def as_float(self, vector: Vector) -> float:
         """Return a cost as one float: a sum in which each level weighs much less than the one before."""
         return sum(map(mul, self._order.approximate(vector), self._scales), 0.0)
 
     def prove(self, derivation: Iterable[int], cases: Cases = None) -> Proof | None:
         """Return a proof that no derivation costs less than this one; ``None`` where that takes too long.
 
-        Known cuts are tried first; if they do not suffice, the proof branches on ``cases``. Raises
+        Known cuts are tried first. If they do not suffice, the proof branches on ``cases``. Raises
         :class:`CheaperError` if a cheaper derivation is found.
         """
         try:
-            goal, nothing = self._total(derivation), frozenset[int]()
+            goal, nothing = self._cost_of(derivation), frozenset[int]()
             return self._prove(goal, nothing, self._forbidden, self._known_cuts, cases, at_root=True)
         except _TimeUpError:
             return None
@@ -139,20 +139,20 @@ class Prover:
     def relax(self, derivation: Iterable[int]) -> tuple[Packing, Vector] | None:
         """Return the optimal cost partition of the relaxation at the root and its sum, a lower bound.
 
-        The relaxation may exceed limits, at a cost far above that of ``derivation``. ``None`` where time was
+        The relaxation may exceed limits, at a cost far above that of ``derivation``. ``None`` where time is
         up, and where the targets cannot be reached.
         """
         nothing: frozenset[int] = frozenset()
-        barred = self._bars(nothing, self._forbidden).values()
+        barred = self._barred_actions(nothing, self._forbidden).values()
         cutter = Cutter(self._graph, self._targets, self._forbidden.union(*barred))
         if cutter.hopeless:
             return None
         try:
-            node = _Node(self, cutter, nothing, self._total(derivation))
+            node = _Node(self, cutter, nothing, self._cost_of(derivation))
             exact = node.relax(None)
         except _TimeUpError:
             return None
-        return None if exact is None else (node.packing(exact), self.rounded(exact.value)[0])
+        return None if exact is None else (node.packing(exact), self.round_up(exact.value)[0])
 
     def _prove(
         self,
@@ -166,33 +166,36 @@ class Prover:
         """Return a proof that derivations with all used and no forbidden actions cost at least ``goal``.
 
         If the goal is ``None``, it proves that there is no such derivation. ``known_cuts`` are tried first.
-        ``at_root`` is true before any branching; there may have been reduced-cost fixing.
+        ``at_root`` is true before any branching, also after reduced-cost fixing. Raises :class:`CheaperError`
+        as :meth:`prove` does, and :class:`_TimeUpError` where it gives up. Limits that a rounded solution
+        exceeds are added to the limits of the prover.
         """
         targets = [*self._targets, *(o for action in sorted(used) for o in self._graph.needs[action])]
-        bars = self._bars(used, forbidden)
+        bars = self._barred_actions(used, forbidden)
         for rule, barred in bars.items():
             if not used.isdisjoint(barred):
                 return Broken(rule)
         cutter = Cutter(self._graph, targets, forbidden.union(*bars.values()))
         if cutter.hopeless:
             return Hopeless(cutter.hopeless)
-        remaining_goal = None if goal is None else minus(goal, self._total(used))
+        remaining_goal = None if goal is None else subtract(goal, self._cost_of(used))
         undecided = set(cutter.actions) - used if cases else ()
         while cases is not None and cases[0] not in undecided:
             cases = cases[2] if cases[0] in used else cases[1]
-        widened: Sequence[Cut] = ()
+        cuts: Sequence[Cut] = ()
         if remaining_goal is not None:
 
             def others(above_cutoff: frozenset[int], known_cuts: Collection[frozenset[int]]) -> Proof:
+                """Continue the proof for derivations without the actions above the cutoff."""
                 return self._prove(goal, used, forbidden | above_cutoff, known_cuts, cases, at_root)
 
-            many = len(cutter.actions) > tuning.PROOF.rounded_actions or (
+            is_large = len(cutter.actions) > tuning.PROOF.rounded_actions or (
                 at_root and forbidden != self._forbidden
             )
-            step = self._step() if many else Fraction(0)
-            alone = cases is not None and not at_root
-            proof, widened = self._packed(
-                cutter, used, remaining_goal, known_cuts, others, step, alone, at_root
+            step = self._cost_step() if is_large else Fraction(0)
+            without_lp = cases is not None and not at_root
+            proof, cuts = self._prove_by_partition(
+                cutter, used, remaining_goal, known_cuts, others, step, without_lp, at_root
             )
             if proof is not None:
                 return proof
@@ -200,23 +203,25 @@ class Prover:
             return self._branch(goal, used, forbidden, known_cuts, cases[0], cases[1:])
         while True:
             node = _Node(self, cutter, used, goal)
-            node.admit(widened)
+            node.add_cuts(cuts)
             exact = node.relax(remaining_goal)
-            if exact is not None and node.suffices(exact.value, remaining_goal):
+            if exact is not None and node.is_sufficient(exact.value, remaining_goal):
                 return node.packing(exact)
-            action = node.undecided()
+            action = node.most_fractional_action()
             rounded_solution = [] if action is not None else node.rounded_solution()
-            limit = self._exceeded(rounded_solution)
+            limit = self._exceeded_limit(rounded_solution)
             if limit is None:
                 break
             self._limits.append(limit)
-            widened = node.cuts
+            cuts = node.cuts
         if action is None:
-            breaking = [a for a in self._breaking(rounded_solution) if a not in used]
+            breaking = [a for a in self._breaking_actions(rounded_solution) if a not in used]
             if not breaking:
-                cheaper = goal is not None and self._order.compare(self._total(rounded_solution), goal) < 0
-                if cheaper and cutter.reached_by(rounded_solution) and not node.exceeds(rounded_solution):
-                    raise CheaperError(self._able(rounded_solution))
+                cost = self._cost_of(rounded_solution)
+                is_cheaper = goal is not None and self._order.compare(cost, goal) < 0
+                is_derivation = cutter.reached_by(rounded_solution)
+                if is_cheaper and is_derivation and not node.exceeds_limit(rounded_solution):
+                    raise CheaperError(self._runnable_actions(rounded_solution))
                 raise _TimeUpError  # floats led nowhere
             action = breaking[0]
         known_cuts = [frozenset(cut.objects) for cut in node.cuts]
@@ -231,7 +236,10 @@ class Prover:
         action: int,
         cases: Sequence[Cases],
     ) -> Branch:
-        """Return a proof by branching: for the derivations without an action, and for those with it."""
+        """Return a proof by branching: for the derivations without an action, and for those with it.
+
+        ``cases`` are the known cases without it and with it.
+        """
         without, using = cases
         return Branch(
             action,
@@ -239,10 +247,11 @@ class Prover:
             self._prove(goal, used | {action}, forbidden, known_cuts, using),
         )
 
-    def rounded(self, bound: Vector) -> tuple[Vector, int | None]:
+    def round_up(self, bound: Vector) -> tuple[Vector, int | None]:
         """Round up a bound at its first coordinate that is no multiple of its number in ``multiples``.
 
-        Returns the bound and the index of the rounded coordinate, ``None`` if no coordinate was rounded.
+        Coordinates after it become 0. Returns the bound and the index of the rounded coordinate, ``None`` if
+        no coordinate was rounded.
         """
         for i, (coordinate, multiple) in enumerate(zip(bound, self._multiples, strict=False)):
             if multiple and coordinate % multiple:
@@ -250,23 +259,26 @@ class Prover:
                 return (*bound[:i], math.ceil(coordinate / multiple) * multiple, *after), i
         return bound, None
 
-    def _bars(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
-        return {} if self._rules is None else self._rules.bars(used, without)
+    def _barred_actions(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
+        """Return the barred actions of each rule, as :meth:`Rules.barred_actions` does."""
+        return {} if self._rules is None else self._rules.barred_actions(used, without)
 
-    def _breaking(self, derivation: Iterable[int]) -> Sequence[int]:
-        return () if self._rules is None else self._rules.breaking(frozenset(derivation))
+    def _breaking_actions(self, derivation: Iterable[int]) -> Sequence[int]:
+        """Return actions that together break a rule, as :meth:`Rules.breaking_actions` does."""
+        return () if self._rules is None else self._rules.breaking_actions(frozenset(derivation))
 
-    def _exceeded(self, derivation: Iterable[int]) -> Limit | None:
+    def _exceeded_limit(self, derivation: Iterable[int]) -> Limit | None:
+        """Return a new limit that a derivation exceeds; ``None`` without one, or without rules."""
         chosen = frozenset(derivation)
-        return None if self._rules is None or not chosen else self._rules.exceeded(chosen)
+        return None if self._rules is None or not chosen else self._rules.exceeded_limit(chosen)
 
-    def _able(self, actions: Sequence[int]) -> list[int]:
+    def _runnable_actions(self, actions: Sequence[int]) -> list[int]:
         """Return the actions that can run in a derivation by the given actions alone."""
         graph = self._graph
         reached = graph.reach(frozenset(range(len(graph.needs))).difference(actions))
         return [action for action in actions if all(reached[o] for o in graph.needs[action])]
 
-    def _packed(
+    def _prove_by_partition(
         self,
         cutter: Cutter,
         used: frozenset[int],
@@ -274,50 +286,53 @@ class Prover:
         known_cuts: Collection[frozenset[int]],
         others: Others,
         step: Fraction,
-        alone: bool,
+        without_lp: bool,
         at_root: bool,
     ) -> tuple[Proof | None, Sequence[Cut]]:
-        """Return a proof of ``goal`` found without exact linear programming, else ``None``; and all cuts.
+        """Return a proof of ``goal`` without exact linear programming, else ``None``; and the cuts looked at.
 
-        Tries a greedy cost partition over ``known_cuts``, then reduced-cost fixing by it; ``others`` proves
-        the goal for derivations without the fixed actions. Then both are tried with the rounded dual solution
-        of the LP, and at the root :func:`branched` comes last. With ``alone`` or a ``step`` of 0, the LP is
-        not used.
+        First tries a greedy cost partition over ``known_cuts``, then reduced-cost fixing by it. For the
+        derivations without the fixed actions, ``others`` proves the goal. Then both are tried with the
+        rounded duals of the LP. At the root, :func:`prove_by_branching` comes last. If ``without_lp`` is true
+        or ``step`` is 0, the LP is not used.
         """
         targets = set(cutter.targets)
         known_cuts = [cut for cut in known_cuts if not targets.isdisjoint(cut)]
-        cuts = [self._widened(cutter, cut) for cut in known_cuts[: tuning.PROOF.greedy_cuts]]
+        cuts = [self._widen(cutter, cut) for cut in known_cuts[: tuning.PROOF.greedy_cuts]]
         cuts = [cut for cut in cuts if used.isdisjoint(cut.members)]
-        packing, reduced_costs = self._share_out((cut, None) for cut in cuts)
-        if self._reaches(packing, goal):
+        packing, reduced_costs = self._partition_greedily((cut, None) for cut in cuts)
+        if self._reaches_goal(packing, goal):
             return packing, cuts
         proof = self._fix_by_cost(cutter, used, goal, packing, reduced_costs, others, known_cuts, step)
-        if proof is not None or alone or not step:
+        if proof is not None or without_lp or not step:
             return proof, cuts
 
-        def steps(action: int) -> int:
+        def cost_in_steps(action: int) -> int:
+            """Return the remaining cost of an action as a multiple of ``step``."""
             return 0 if action in used else int(self._costs[action][0] / step)
 
         enough = math.ceil(goal[0] / step)
 
-        shared = self._optimal_partition(cutter, steps, known_cuts, enough)
-        if shared is not None:
+        partition = self._optimal_partition(cutter, cost_in_steps, known_cuts, enough)
+        if partition is not None:
             weighted_cuts = [
-                (self._widened(cutter, cut), (weight * step / PARTS,)) for cut, weight in shared.cuts
+                (self._widen(cutter, cut), (weight * step / PARTS,)) for cut, weight in partition.cuts
             ]
             weighted_cuts = [(cut, weight) for cut, weight in weighted_cuts if used.isdisjoint(cut.members)]
-            packing, reduced_costs = self._share_out(weighted_cuts)
-            if self._reaches(packing, goal):
+            packing, reduced_costs = self._partition_greedily(weighted_cuts)
+            if self._reaches_goal(packing, goal):
                 return packing, cuts
-            proof = self._fix_by_cost(cutter, used, goal, packing, reduced_costs, others, shared.tight, step)
+            proof = self._fix_by_cost(
+                cutter, used, goal, packing, reduced_costs, others, partition.tight, step
+            )
             if proof is not None:
                 return proof, cuts
             cuts += [cut for cut, _ in weighted_cuts]
-        return self._searched(cutter, goal, cuts, step) if at_root else None, cuts
+        return self._prove_by_search(cutter, goal, cuts, step) if at_root else None, cuts
 
     def _optimal_partition(
         self, cutter: Cutter, cost: Callable[[int], int], known_cuts: Iterable[frozenset[int]], enough: int
-    ) -> SharedCosts | None:
+    ) -> CostPartition | None:
         """Return the optimal cost partition, or an earlier one that puts many actions above the cutoff.
 
         ``enough`` is the bound that is needed. ``None`` where there is no partition.
@@ -326,18 +341,18 @@ class Prover:
             self._graph, cutter.targets, cutter.actions, cost, self._expired, known_cuts
         )
         while True:
-            shared = partitioning.advance(enough, max_solutions=1)
-            if shared is None or partitioning.converged:
-                return shared
-            cutoff = (enough - 1) * PARTS - shared.bound
-            above_cutoff = sum(reduced_cost > cutoff for reduced_cost in shared.reduced_costs.values())
+            partition = partitioning.advance(enough, max_solutions=1)
+            if partition is None or partitioning.converged:
+                return partition
+            cutoff = (enough - 1) * PARTS - partition.bound
+            above_cutoff = sum(reduced_cost > cutoff for reduced_cost in partition.reduced_costs.values())
             if above_cutoff > tuning.PROOF.fixed_share * len(cutter.actions):
-                return shared
+                return partition
 
-    def _step(self) -> Fraction:
+    def _cost_step(self) -> Fraction:
         """Return a number that all costs are multiples of; 0 for costs of several coordinates.
 
-        Also 0 if there are limits or rules.
+        It is also 0 if there are limits or rules.
         """
         constrained = self._limits or self._rules is not None
         one_number = len(self._multiples) == 1 == len(self._order.zero)
@@ -357,7 +372,8 @@ class Prover:
         """Return a proof by reduced-cost fixing; ``None`` if too few actions are above the cutoff.
 
         A derivation with an action costs at least the sum of the weights plus the reduced cost of the action.
-        Also ``None`` if ``step`` is 0.
+        For derivations without the actions above the cutoff, ``others`` proves the goal. If its proof needs
+        no such action, it is returned as it is. ``None`` also if ``step`` is 0.
         """
         if not step:
             return None
@@ -367,54 +383,61 @@ class Prover:
         if len(above_cutoff) <= tuning.PROOF.fixed_share * len(cutter.actions):
             return None
         proof = others(above_cutoff, known_cuts)
-        needed = above_cutoff.intersection(self._crossing(proof))
-        return CostFixing(tuple(sorted(needed)), packing._replace(rounded=0), proof) if needed else proof
+        fixed = above_cutoff.intersection(self._landmark_actions(proof))
+        return CostFixing(tuple(sorted(fixed)), packing._replace(rounded=0), proof) if fixed else proof
 
-    def _crossing(self, proof: Proof) -> Iterator[int]:
+    def _landmark_actions(self, proof: Proof) -> Iterator[int]:
         """Yield the actions that cross cuts of a proof, including fixed actions."""
         for objects in {cut.objects for cut in cuts_of(proof)}:
-            yield from self._members(frozenset(objects))
+            yield from self._landmark_of(frozenset(objects))
 
-    def _widened(self, cutter: Cutter, objects: Iterable[int]) -> Cut:
-        """Return a cut; objects are added if an action that cannot run crosses it."""
+    def _widen(self, cutter: Cutter, objects: Iterable[int]) -> Cut:
+        """Return the cut of some objects, and add objects to it if an action that cannot run crosses it."""
         inside = frozenset(o for o in objects if not self._graph.at_start[o])
-        members = cutter.among(self._members(inside))
-        return cutter.widened(inside) if members is None else Cut(tuple(sorted(inside)), members)
+        members = cutter.without_forbidden(self._landmark_of(inside))
+        return cutter.widen(inside) if members is None else Cut(tuple(sorted(inside)), members)
 
-    def _searched(
+    def _prove_by_search(
         self, cutter: Cutter, goal: Vector, known_cuts: Sequence[Cut], step: Fraction
     ) -> Proof | None:
-        """Return a proof by :func:`branched`, its cuts valid for all actions; ``None`` without a proof."""
+        """Return a proof by :func:`prove_by_branching`; ``None`` without a proof, and if ``step`` is 0.
+
+        Its cuts are widened, so that they are valid for all actions.
+        """
         if not step:
             return None
-        result = branched(
+        result = prove_by_branching(
             *(self._graph, cutter.targets, cutter.actions),
             *(lambda action: int(self._costs[action][0] / step), [cut.objects for cut in known_cuts]),
             *(math.ceil(goal[0] / step), self._expired),
         )
 
-        widened = cache(partial(self._widened, cutter))
+        widened = cache(partial(self._widen, cutter))
 
-        def packed(packing: Packing) -> Packing:
+        def widen_packing(packing: Packing) -> Packing:
+            """Return a cost partition with widened cuts, and with its costs as vectors."""
             weights = [(widened(cut.objects), (weight[0] * step,)) for cut, weight in packing.weights]
-            _, rounded = self.rounded(self._order.total(weight for _, weight in weights))
+            _, rounded = self.round_up(self._order.total(weight for _, weight in weights))
             return Packing(tuple(weights), rounded=rounded)
 
-        def stated(proof: Proof) -> Proof:
+        def widen_proof(proof: Proof) -> Proof:
+            """Return a proof with widened cuts."""
             if isinstance(proof, Branch):
-                return Branch(proof.action, stated(proof.without), stated(proof.using))
+                return Branch(proof.action, widen_proof(proof.without), widen_proof(proof.using))
             if isinstance(proof, Hopeless):
                 return Hopeless(widened(proof.cut.objects))
             if isinstance(proof, CostFixing):
                 return CostFixing(
-                    proof.actions, packed(proof.packing)._replace(rounded=0), stated(proof.others)
+                    proof.actions, widen_packing(proof.packing)._replace(rounded=0), widen_proof(proof.others)
                 )
             assert isinstance(proof, Packing)
-            return packed(proof)
+            return widen_packing(proof)
 
-        return None if result is None else stated(result)
+        return None if result is None else widen_proof(result)
 
-    def _share_out(self, cuts: Iterable[tuple[Cut, Vector | None]]) -> tuple[Packing, dict[int, Vector]]:
+    def _partition_greedily(
+        self, cuts: Iterable[tuple[Cut, Vector | None]]
+    ) -> tuple[Packing, dict[int, Vector]]:
         """Partition costs greedily: each cut in turn gets the least reduced cost of its landmark actions.
 
         Each cut comes with the maximum of its weight, ``None`` for no maximum. Returns the cost partition,
@@ -429,24 +452,26 @@ class Prover:
             if self._order.sign(weight) > 0:
                 weights.append((cut, weight))
                 reduced_costs.update(
-                    (a, minus(reduced_cost, weight)) for a, reduced_cost in remaining.items()
+                    (a, subtract(reduced_cost, weight)) for a, reduced_cost in remaining.items()
                 )
-        _, rounded = self.rounded(self._order.total(weight for _, weight in weights))
+        _, rounded = self.round_up(self._order.total(weight for _, weight in weights))
         return Packing(tuple(weights), rounded=rounded), reduced_costs
 
-    def _reaches(self, packing: Packing, goal: Vector) -> bool:
+    def _reaches_goal(self, packing: Packing, goal: Vector) -> bool:
         """Return whether the sum of the weights of a cost partition, rounded up, is at least ``goal``."""
-        value, _ = self.rounded(self._order.total(weight for _, weight in packing.weights))
+        value, _ = self.round_up(self._order.total(weight for _, weight in packing.weights))
         return self._order.compare(value, goal) >= 0
 
-    def _total(self, actions: Iterable[int]) -> Vector:
+    def _cost_of(self, actions: Iterable[int]) -> Vector:
+        """Return the sum of the costs of actions."""
         return self._order.total(self._costs[a] for a in actions)
 
 
 class _Node:
     """The relaxation at one node of the branching: a column for each action, a row for each limit and cut.
 
-    ``shares`` are the LP values of the columns in the last solution, ``cuts`` the cuts in order of rows.
+    ``lp_values`` are the LP values of the columns in the last solution. ``cuts`` are the cuts in order of
+    rows. The excess over a limit costs 1000 times the ``goal``, which is the bound to be proved.
     """
 
     def __init__(self, prover: Prover, cutter: Cutter, used: frozenset[int], goal: Vector | None) -> None:
@@ -454,23 +479,25 @@ class _Node:
         self._actions = cutter.actions
         self._columns = {action: column for column, action in enumerate(self._actions)}
         self._costs = [prover._costs[action] for action in self._actions]
-        floats = {cost: prover.scaled(cost) for cost in set(self._costs)}
+        floats = {cost: prover.as_float(cost) for cost in set(self._costs)}
         self._floats = [floats[cost] for cost in self._costs]
-        self._limits = [self._limited(column, limit) for column, limit in enumerate(prover._limits)]
-        excess_cost = (Fraction(1),) * prover._order.width if goal is None else times(goal, Fraction(1000))
+        self._limits = [
+            self._limit_over_columns(column, limit) for column, limit in enumerate(prover._limits)
+        ]
+        excess_cost = (Fraction(1),) * prover._order.width if goal is None else multiply(goal, Fraction(1000))
         self._costs += [excess_cost] * len(self._limits)
-        self._covering = Covering([*self._floats, *[prover.scaled(excess_cost)] * len(self._limits)])
+        self._covering = Covering([*self._floats, *[prover.as_float(excess_cost)] * len(self._limits)])
         for amounts, max_amount in self._limits:
-            self._covering.limit(amounts, max_amount)
+            self._covering.add_limit(amounts, max_amount)
         constrained = self._limits or prover._rules is not None
         self._free = (
             [] if constrained else [column for column, cost in enumerate(self._costs) if not any(cost)]
         )
         self.cuts: list[Cut] = []
         self._rows: list[list[int]] = []
-        self.shares: Sequence[float]
+        self.lp_values: Sequence[float]
 
-    def _limited(self, row: int, limit: Limit) -> Limit:
+    def _limit_over_columns(self, row: int, limit: Limit) -> Limit:
         """Return limit number ``row`` over columns, reduced by the amounts of the used actions.
 
         An additional column is the excess over the limit.
@@ -480,7 +507,7 @@ class _Node:
         remaining = max_amount - sum(amounts[a] for a in self._used if a in amounts)
         return {**columns, len(self._actions) + row: Fraction(-1)}, remaining
 
-    def exceeds(self, actions: Iterable[int]) -> bool:
+    def exceeds_limit(self, actions: Iterable[int]) -> bool:
         """Return whether actions exceed a limit."""
         chosen = set(actions)
         return any(
@@ -488,89 +515,96 @@ class _Node:
             for amounts, max_amount in self._prover._limits
         )
 
-    def suffices(self, value: Vector, enough: Vector | None) -> bool:
-        """Return whether a bound is at least ``enough`` or, if that is ``None``, whether it is above 0."""
+    def is_sufficient(self, value: Vector, enough: Vector | None) -> bool:
+        """Return whether a bound, rounded up, is at least ``enough``; for ``None``, whether it is above 0."""
         order = self._prover._order
         if enough is None:
             return order.sign(value) > 0
-        return order.compare(self._prover.rounded(value)[0], enough) >= 0
+        return order.compare(self._prover.round_up(value)[0], enough) >= 0
 
     def relax(self, enough: Vector | None) -> ExactOptimum | None:
         """Add cuts until the bound is ``enough``, or no cut is found that the LP solution violates.
 
-        Returns the exact optimum of the rows; ``None`` where exact arithmetic fails.
+        Returns the exact optimum of the rows; ``None`` where exact arithmetic fails. Raises
+        :class:`_TimeUpError` where time is up.
         """
         order = self._prover._order
-        wanted = math.inf if enough is None else self._prover.scaled(enough)
+        wanted = math.inf if enough is None else self._prover.as_float(enough)
         if enough is not None and len(enough) == len(self._prover._multiples) == 1:  # more than one step less
-            wanted -= 0.99 * self._prover.scaled((self._prover._multiples[0],))
+            wanted -= 0.99 * self._prover.as_float((self._prover._multiples[0],))
         while True:
-            self._check()
+            self._check_time()
             relaxed = self._covering.solve(self._prover._expired)
-            self._check()
-            self._share(relaxed.x)
+            self._check_time()
+            self._record_solution(relaxed.x)
             if relaxed.value < wanted * 0.9999999 and self._separate():
                 continue
             exact = exact_optimum(self._rows, self._costs, order, relaxed.columns, relaxed.rows, self._limits)
             if exact is not None:
-                if enough is not None and self.suffices(exact.value, enough):
+                if enough is not None and self.is_sufficient(exact.value, enough):
                     return exact
-                self._share([float(exact.x.get(column, 0)) for column in range(len(self._actions))])
+                self._record_solution([float(exact.x.get(column, 0)) for column in range(len(self._actions))])
             if not self._separate():
                 return exact
 
-    def _check(self) -> None:
+    def _check_time(self) -> None:
+        """Raise :class:`_TimeUpError` if time is up."""
         if self._prover._expired():
             raise _TimeUpError
 
-    def _share(self, x: Sequence[float]) -> None:
+    def _record_solution(self, x: Sequence[float]) -> None:
         """Record an LP solution; actions that cost 0 get the value 1 if there are no limits and rules."""
-        self.shares = [*x]
+        self.lp_values = [*x]
         for column in self._free:
-            self.shares[column] = 1.0
+            self.lp_values[column] = 1.0
 
     def packing(self, exact: ExactOptimum) -> Packing:
-        """Return the cost partition of an exact optimum."""
-        weights = sorted(exact.weights.items())
+        """Return the cost partition of an exact optimum: its duals as weights of cuts and limits."""
+        weights = sorted(exact.duals.items())
         first = len(self._limits)
         return Packing(
             tuple((self.cuts[row - first], weight) for row, weight in weights if row >= first),
             tuple((row, weight) for row, weight in weights if row < first),
-            self._prover.rounded(exact.value)[1],
+            self._prover.round_up(exact.value)[1],
         )
 
-    def undecided(self) -> int | None:
-        """Return the most fractional action, of equal ones the most expensive; ``None`` without one."""
-        halves = [
+    def most_fractional_action(self) -> int | None:
+        """Return the action whose LP value is nearest to 1/2; ``None`` if all are integers.
+
+        Of equal ones, the most expensive is returned.
+        """
+        fractional = [
             (abs(x - 0.5), -self._floats[column], self._actions[column])
-            for column, x in enumerate(self.shares[: len(self._actions)])
+            for column, x in enumerate(self.lp_values[: len(self._actions)])
             if abs(x - 0.5) < 0.5 - TOLERANCE
         ]
-        return min(halves)[2] if halves else None
+        return min(fractional)[2] if fractional else None
 
     def rounded_solution(self) -> list[int]:
-        """Return the actions of the rounded LP solution, with the used ones."""
-        shares = zip(self._actions, self.shares, strict=False)  # after those of actions come those of limits
-        return sorted({action for action, x in shares if round(x)} | self._used)
+        """Return the actions of the rounded LP solution and the used ones, ascending."""
+        lp_values = zip(
+            self._actions, self.lp_values, strict=False
+        )  # after those of actions come those of limits
+        return sorted({action for action, x in lp_values if round(x)} | self._used)
 
     def _separate(self) -> bool:
         """Add violated cuts with disjoint landmarks; return whether any was added."""
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
         count = len(self._actions)
-        shares, costs = np.zeros((2, len(self._prover._costs)))
-        shares[self._actions], costs[self._actions] = self.shares[:count], self._floats
+        lp_values, costs = np.zeros((2, len(self._prover._costs)))
+        lp_values[self._actions], costs[self._actions] = self.lp_values[:count], self._floats
         random_number = self._prover._random.random
-        cuts = disjoint_violated_cuts(self._cutter, self._used, shares, costs, random_number, TOLERANCE)
+        cuts = disjoint_violated_cuts(self._cutter, self._used, lp_values, costs, random_number, TOLERANCE)
         violated = list(islice(cuts, tuning.RELAXATION.cuts))
-        self.admit(violated)
+        self.add_cuts(violated)
         return bool(violated)
 
-    def admit(self, cuts: Iterable[Cut]) -> None:
+    def add_cuts(self, cuts: Iterable[Cut]) -> None:
         """Add cuts as rows, except cuts with a landmark action that has no column."""
         for cut in cuts:
             if self._columns.keys() >= set(cut.members):
                 row = [self._columns[a] for a in cut.members]
                 self.cuts.append(cut)
                 self._rows.append(row)
-                self._covering.add(row)
+                self._covering.add_row(row)

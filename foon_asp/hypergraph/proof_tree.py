@@ -8,11 +8,14 @@ from foon_asp.hypergraph.lexicographic import Vector
 
 
 class Packing(NamedTuple):
-    """A cost partition over cuts; its weights and the costs of the used actions add up to a lower bound.
+    """A cost partition over cuts, which proves a lower bound.
 
-    ``limits`` are the weights of limits, by index: the amount of a limit that used actions leave, times its
-    weight, is subtracted from the bound. ``rounded`` is the index of the coordinate at which the bound is
-    rounded up, ``None`` without rounding.
+    The bound is the sum of the weights and of the costs of the used actions. For each limit, its weight times
+    the amount that used actions leave is subtracted.
+
+    ``weights``: pairs of a cut and its weight.
+    ``limits``: pairs of the index of a limit and its weight.
+    ``rounded``: the index of the coordinate at which the bound is rounded up; ``None`` without rounding.
     """
 
     weights: tuple[tuple[Cut, Vector], ...]
@@ -58,7 +61,7 @@ Cases = tuple[int, "Cases", "Cases"] | None
 
 
 def cuts_of(proof: Proof) -> Iterator[Cut]:
-    """Yield the cuts of a proof."""
+    """Yield the cuts of a proof, those of all branches."""
     waiting = [proof]
     while waiting:
         step = waiting.pop()

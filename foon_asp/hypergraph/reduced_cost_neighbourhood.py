@@ -19,13 +19,13 @@ def neighbourhood(
     """Return a superset of the allowed actions of irredundant derivations of reduced cost up to ``limit``.
 
     In such a derivation, a path leads from each action to a goal: each action makes a precondition of the
-    next. So the reduced costs along the path add up to at most ``limit``. Computed by Dijkstra's algorithm
-    from the goals.
+    next. So the reduced costs along the path add up to at most ``limit``. The paths are found by Dijkstra's
+    algorithm from the goals.
 
     ``limit``: the greatest reduced cost; ``math.inf`` for no limit.
     ``h_actions``: h-values of actions. An action counts with its h-value, since no action of its derivation
-    is on the path; without them, with its reduced cost.
-    ``enough``: ends the search when this many actions are found; then the result is no superset.
+    is on the path. Without them, it counts with its reduced cost.
+    ``enough``: ends the search when this many actions are found. Then the result is no superset.
     ``min_reduced_cost``: no reduced cost is below it.
     ``reachable``: tests whether an object can be made at a reduced cost, if there are no ``h_actions``.
     """

@@ -14,23 +14,23 @@ from foon_asp.garbage_collection import uncollected
 from foon_asp.hypergraph import greedy_stages as greedy
 from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.exact_costs import CoarseCosts, ExactCosts, TooFineError
-from foon_asp.hypergraph.extension import extended, extensions
+from foon_asp.hypergraph.extension import actions_of_extensions, extend_tree
 from foon_asp.hypergraph.gap_bounded_subproblem import Subproblem
 from foon_asp.hypergraph.goal_graph import graph_of
-from foon_asp.hypergraph.h_values import derive
+from foon_asp.hypergraph.h_values import compute_h_values
 from foon_asp.hypergraph.incumbent_gap import Gap, Stage
-from foon_asp.hypergraph.incumbent_trees import irredundant
+from foon_asp.hypergraph.incumbent_trees import irredundant_subset
 from foon_asp.hypergraph.landmark_cuts import Cuts
 from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
 from foon_asp.hypergraph.reductions import ALL, Reduction
 from foon_asp.hypergraph.restricted_subproblem import restricted_subproblem
-from foon_asp.hypergraph.solved_goals import SolvedGoals, is_open_to
+from foon_asp.hypergraph.solved_goals import SolvedGoals, can_use_solved_goals
 from foon_asp.hypergraph.task import Task
 from foon_asp.hypergraph.tuning import PresolveTuning
 from foon_asp.problem import Objective, Problem
 
 if TYPE_CHECKING:  # few questions need it
-    from foon_asp.hypergraph.cost_partition import SharedCosts
+    from foon_asp.hypergraph.cost_partition import CostPartition
     from foon_asp.hypergraph.proof_tree import Cases
 
 Expired = Callable[[], bool]
@@ -40,7 +40,11 @@ Stages = Callable[[Task, Gap, HValues], Stage]
 
 
 class Course(NamedTuple):
-    """The stages after a first tree: ``near_goals`` in a large network, otherwise ``whole``."""
+    """Stages to run after a first tree.
+
+    ``near_goals``: those for a large network, of which only a part near the goals was looked at.
+    ``whole``: those for any other network.
+    """
 
     near_goals: Stages
     whole: Stages
@@ -58,7 +62,7 @@ class Reduced(NamedTuple):
     ``interrupted``: whether ctrl-C ended the reduction, or time was up before any reduction. Then ``units``
     must not be used.
     ``subproblem``: the gap-bounded subproblem, which is valid under any rules on trees.
-    ``shared``: the optimal cost partition, if one was computed.
+    ``partition``: the optimal cost partition, if one was computed.
     ``cases``: the actions branched on.
     ``tight``: the tight cuts of the LP solutions by which units were excluded, over the units remaining then.
     """
@@ -71,7 +75,7 @@ class Reduced(NamedTuple):
     cuts: Cuts | None
     interrupted: bool = False
     subproblem: Subproblem | None = None
-    shared: "SharedCosts | None" = None
+    partition: "CostPartition | None" = None
     cases: "Cases" = None
     tight: Collection[frozenset[int]] = ()
 
@@ -80,10 +84,10 @@ class Listener:
     """Observer of incumbents and bounds; its methods do nothing unless overridden."""
 
     def tree(self, units: frozenset[int]) -> None:
-        """Receive a tree that is better than the one before."""
+        """Receive the units of a tree that is better than the one before."""
 
     def bound(self, costs: ExactCosts, bound: int) -> None:
-        """Receive a lower bound on all trees."""
+        """Receive a lower bound on all trees, in the units of ``costs``."""
 
 
 class Bounds(Listener):
@@ -93,7 +97,7 @@ class Bounds(Listener):
         self._listener = listener
 
     def bound(self, costs: ExactCosts, bound: int) -> None:
-        """Receive a lower bound on all trees."""
+        """Pass on a lower bound on all trees."""
         self._listener.bound(costs, bound)
 
 
@@ -113,15 +117,15 @@ def reduce(
     ``expired``: returns whether time is up.
     ``listener``: receives trees and bounds.
     ``guard``: returns a context in which time being up interrupts computations, as ctrl-C does.
-    ``solved``: solved goals of the same question, which speed up this one; its answer is added to them.
+    ``solved``: solved goals of the same question. They speed up this one, and its answer is added to them.
     """
     with uncollected():
         with guard():
-            presolve = _Presolve(_task(problem, objectives, reductions, expired), listener, guard)
-        if solved is None or not is_open_to(presolve.task):
+            presolve = _Presolve(_task_of(problem, objectives, reductions, expired), listener, guard)
+        if solved is None or not can_use_solved_goals(presolve.task):
             presolve.extend_or_run()
         else:
-            presolve.run_beside(solved)
+            presolve.run_with_solved_goals(solved)
         return presolve.reduced()
 
 
@@ -144,7 +148,7 @@ def reduce_under_rules(
     presolve_tuning = tuning.PRESOLVE._replace(branching_budget=0, landmark_actions=math.inf)
     with uncollected():
         with guard():
-            task = _task(problem, objectives, reductions, expired, presolve_tuning)
+            task = _task_of(problem, objectives, reductions, expired, presolve_tuning)
             presolve = _Presolve(task, listener, guard, redundant)
         presolve.run(course or ROUNDS)
         return presolve.reduced(redundant)
@@ -162,7 +166,7 @@ def h_add_tree(problem: Problem, objectives: Sequence[Objective]) -> frozenset[i
     return reduced.tree
 
 
-def at_costs(
+def reduce_at_costs(
     subproblem: Subproblem,
     objectives: Sequence[Objective],
     costs: ExactCosts,
@@ -173,36 +177,36 @@ def at_costs(
 ) -> Reduced:
     """Reduce a gap-bounded subproblem under other costs, with ``known_tree`` as a first incumbent, if any.
 
-    With ``below``, all units of trees that cost less than ``below`` remain, and those of trees better than
-    the incumbent. Then the reduction also ends early if the first cuts exclude hardly any action and more
-    than ``max_actions`` remain.
+    With ``below``, two kinds of units remain: those of trees that cost less than ``below``, and those of
+    trees better than the incumbent. Then the reduction also ends early if the first cuts exclude hardly any
+    action and more than ``max_actions`` remain.
     """
     presolve_tuning = tuning.PRESOLVE._replace(branching_budget=0, landmark_actions=math.inf)
     if below:  # clingo gets the remaining actions with an incumbent
         presolve_tuning = presolve_tuning._replace(relaxed_actions=presolve_tuning.easy_actions)
     reductions = {Reduction.DEAR, Reduction.BOUNDS} if below else ALL
     with uncollected():
-        task = _task(subproblem.problem, objectives, reductions, expired, presolve_tuning)
-        task = replace(task, costs=costs, coarse=costs, below=below, scope=subproblem.remaining)
+        task = _task_of(subproblem.problem, objectives, reductions, expired, presolve_tuning)
+        task = replace(task, costs=costs, coarse_costs=costs, below=below, scope=subproblem.remaining)
 
-        def fixed_first(task: Task, gap: Gap, h_values: HValues) -> Stage:
+        def fix_before_rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
             """Fix candidates by the cutoff first, and run all rounds only if few enough remain."""
             if below and len(gap.candidates) > max_actions:
                 before = len(gap.candidates)
-                gap, cuts = greedy.bound(task, gap, h_values, greedy.guide_by(task, gap))
-                gap = greedy.fix(task, gap, cuts)  # the cutoff does not depend on the incumbent
+                gap, cuts = greedy.raise_bound(task, gap, h_values, greedy.h_max_guide(task, gap))
+                gap = greedy.fix_candidates(task, gap, cuts)  # the cutoff does not depend on the incumbent
                 yield gap
                 if len(gap.candidates) > max(max_actions, task.tuning.worthwhile_share * before):
                     return gap
-                h_values = derive(task.graph, gap.candidates, costs, h_add=False).cost
-            return (yield from rounds(task, gap, h_values))
+                h_values = compute_h_values(task.graph, gap.candidates, costs, h_add=False).h_objects
+            return (yield from run_rounds(task, gap, h_values))
 
         presolve = _Presolve(task, None, nullcontext)
-        presolve.run(Course(rounds_near_goals, fixed_first), subproblem.actions(known_tree))
+        presolve.run(Course(run_near_goals, fix_before_rounds), subproblem.actions(known_tree))
         return presolve.reduced(subproblem.redundant)
 
 
-def _task(
+def _task_of(
     problem: Problem,
     objectives: Sequence[Objective],
     reductions: Collection[Reduction],
@@ -233,50 +237,59 @@ def _with_costs(task: Task, actions: Collection[int]) -> Task:
     return task
 
 
-def rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
-    """Repeat landmark cuts, search for trees and pruning, until nothing changes or a tree is optimal."""
+def run_rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
+    """Repeat landmark cuts, search for trees and pruning, until nothing changes or a tree is optimal.
+
+    Where the cuts exclude few candidates, the linear relaxation and branching follow. Then better trees are
+    looked for thoroughly. Ends early where time is up. Yields each gap that it reaches.
+    """
     costs, limits = task.costs, task.tuning
     if costs is not None and len(gap.candidates) > limits.easy_actions:
         gap = greedy.follow_h_add(task, gap)
         yield gap
-    if costs is not None and costs.limited:  # any tree below the limit will do
-        gap = greedy.improve(task, gap, greedy.NO_CUTS, thorough=False)
-        gap = gap.closed() if greedy.meets(task, gap, greedy.NO_CUTS) else gap
+    if costs is not None and costs.has_limit:  # any tree below the limit will do
+        gap = greedy.search_neighbourhood(task, gap, greedy.NO_CUTS, thorough=False)
+        gap = gap.as_proved() if greedy.is_proved_by(task, gap, greedy.NO_CUTS) else gap
         yield gap
     thorough = False  # as a last resort
     while not gap.proved:
         before = gap
         if costs is not None and task.reductions & {Reduction.BOUNDS, Reduction.DEAR}:
-            guide = greedy.guide_by(task, gap)
+            guide = greedy.h_max_guide(task, gap)
             gap = yield from greedy.tighten(task, gap, h_values, guide, thorough)
         if gap.proved or task.expired():
             return gap
         gap = greedy.prune_dominated(task, gap)
-        if not _differs(gap, before):
-            gap = greedy.prune_beside_landmarks(task, gap)
+        if not _has_changed(gap, before):
+            gap = greedy.prune_by_landmarks(task, gap)
         yield gap
         slow = len(gap.candidates) > max(
             limits.neighbourhood_actions, limits.worthwhile_share * len(before.candidates)
         )  # another turn would bring little
-        if (slow or not _differs(gap, before)) and costs is not None and not thorough:
-            gap = yield from _relaxed(task, gap)
+        if (slow or not _has_changed(gap, before)) and costs is not None and not thorough:
+            gap = yield from _tighten_by_relaxation(task, gap)
             if gap.proved:
                 return gap
-        changed = _differs(gap, before)
+        changed = _has_changed(gap, before)
         if not changed and (thorough or len(gap.candidates) <= limits.easy_actions):
             return gap
         thorough = not changed
-        h_values = derive(task.graph, gap.candidates, costs or task.coarse, h_add=False).cost
+        h_values = compute_h_values(
+            task.graph, gap.candidates, costs or task.coarse_costs, h_add=False
+        ).h_objects
     return gap
 
 
-def _differs(gap: Gap, before: Gap) -> bool:
-    """Return whether a gap has fewer candidates or another incumbent than before."""
+def _has_changed(gap: Gap, before: Gap) -> bool:
+    """Return whether a gap has fewer candidates or another incumbent than the gap ``before``."""
     return (len(gap.candidates), gap.incumbent) != (len(before.candidates), before.incumbent)
 
 
-def _relaxed(task: Task, gap: Gap) -> Stage:
-    """Tighten the gap by optimal cost partitions and branch and bound, if there are many candidates."""
+def _tighten_by_relaxation(task: Task, gap: Gap) -> Stage:
+    """Tighten the gap by optimal cost partitions and branch and bound; yield each gap that is reached.
+
+    Does nothing if there are few candidates.
+    """
     if len(gap.candidates) <= task.tuning.relaxed_actions:
         return gap
     from foon_asp.hypergraph.relaxation_stages import (  # noqa: PLC0415 (few questions need it)
@@ -288,10 +301,11 @@ def _relaxed(task: Task, gap: Gap) -> Stage:
     return gap if gap.proved else (yield from branch(task, gap))
 
 
-def rounds_near_goals(task: Task, gap: Gap, h_values: HValues) -> Stage:
+def run_near_goals(task: Task, gap: Gap, h_values: HValues) -> Stage:
     """Run the greedy stages near the goals of a large network, then rounds over the remaining candidates.
 
-    No guide is used, since h-values of reduced costs take time linear in all actions.
+    No guide is used, since h-values of reduced costs take time linear in all actions. Yields each gap that it
+    reaches. Raises ``KeyboardInterrupt`` where time is up before any reduction.
     """
     if task.costs is not None:
         gap = yield from greedy.tighten(task, gap, h_values, None, thorough=False)
@@ -300,19 +314,24 @@ def rounds_near_goals(task: Task, gap: Gap, h_values: HValues) -> Stage:
     if len(gap.candidates) == len(task.graph.needs):
         if task.expired():  # before any reduction
             raise KeyboardInterrupt
-        opening = greedy.relevant(task, gap)
+        opening = greedy.restrict_to_relevant(task, gap)
         assert opening is not None
         gap, _ = opening
     gap = greedy.prune_dominated(task, gap)
     yield gap
     if not task.expired():
-        h_values = derive(task.graph, gap.candidates, task.costs or task.coarse, h_add=False).cost
-        gap = yield from rounds(task, gap, h_values)
+        h_values = compute_h_values(
+            task.graph, gap.candidates, task.costs or task.coarse_costs, h_add=False
+        ).h_objects
+        gap = yield from run_rounds(task, gap, h_values)
     return gap
 
 
 def _follow_h_add(task: Task, gap: Gap, h_values: HValues) -> Stage:
-    """Look for a better tree by h_add."""
+    """Replace the incumbent by the tree that follows h_add, if that is better; yield the gap.
+
+    Does nothing without exact costs.
+    """
     if task.costs is not None:
         gap = greedy.follow_h_add(task, gap)
         yield gap
@@ -320,49 +339,59 @@ def _follow_h_add(task: Task, gap: Gap, h_values: HValues) -> Stage:
 
 
 def _bound_once(task: Task, gap: Gap, h_values: HValues) -> Stage:
-    """Raise the lower bound once by landmark cuts."""
+    """Raise the lower bound once by landmark cuts; yield the gap.
+
+    Does nothing without exact costs.
+    """
     if task.costs is not None:
-        gap = greedy.bound(task, gap, h_values, greedy.guide_by(task, gap)).gap
+        gap = greedy.raise_bound(task, gap, h_values, greedy.h_max_guide(task, gap)).gap
         yield gap
     return gap
 
 
 def _bound_lazily(task: Task, gap: Gap, h_values: HValues) -> Stage:
-    """Raise the lower bound by landmark cuts without a guide, since a guide looks at all actions."""
+    """Raise the lower bound once by landmark cuts without a guide; yield the gap.
+
+    A guide would look at all actions. Does nothing without exact costs.
+    """
     if task.costs is not None:
-        gap = greedy.bound(task, gap, h_values, None).gap
+        gap = greedy.raise_bound(task, gap, h_values, None).gap
         yield gap
     return gap
 
 
-ROUNDS, BOUND = Course(rounds_near_goals, rounds), Course(_bound_lazily, _bound_once)
+ROUNDS, BOUND = Course(run_near_goals, run_rounds), Course(_bound_lazily, _bound_once)
 
 
-def _near_goals(task: Task) -> tuple[Gap, HValues] | None:
+def _first_tree_near_goals(task: Task) -> tuple[Gap, HValues] | None:
     """Find a first tree among the actions nearest to the goals, so that large networks are read lazily.
 
     Most of a large network is too far from the goals for a good tree, and is never looked at. Returns the gap
-    over all actions, and the h-value of each object; ``None`` if the network is small or no tree is found.
+    over all actions, and the h-value of each object. ``None`` if the network is small or no tree is found.
     """
     size, limits = len(task.graph.needs), task.tuning
     if not task.reductions & {Reduction.BOUNDS, Reduction.DEAR} or size <= limits.lazy_actions:
         return None
     all_actions = range(size)
-    nearest = neighbourhood(task.thin, all_actions, task.coarse, math.inf, enough=limits.first_actions)
+    nearest = neighbourhood(
+        task.thin_graph, all_actions, task.coarse_costs, math.inf, enough=limits.first_actions
+    )
     if len(nearest) < limits.first_actions:
         return None
-    narrowed = restricted_subproblem(task.thin, nearest, task.coarse, size // 4)
+    narrowed = restricted_subproblem(task.thin_graph, nearest, task.coarse_costs, size // 4)
     if narrowed is None:
         return None
     derivations, tree = narrowed
-    return Gap(frozenset(tree), 0, all_actions), derivations.cost
+    return Gap(frozenset(tree), 0, all_actions), derivations.h_objects
 
 
 class _Presolve:
-    """A run of the stages of a task; ``gap`` is its last gap, ``None`` before there is a tree.
+    """A run of the stages of a task.
 
-    ``ended`` is true if nothing interrupted the run. If trees may be ``redundant``, they may have any action,
-    so the costs of all actions are needed.
+    ``gap``: the last gap; ``None`` before there is a tree.
+    ``ended``: whether nothing interrupted the run.
+    ``redundant``: whether trees may have redundant actions. Then the costs of all actions are needed.
+    ``listener``, ``guard``: as for :func:`reduce`.
     """
 
     def __init__(self, task: Task, listener: Listener | None, guard: Guard, redundant: bool = False) -> None:
@@ -375,8 +404,11 @@ class _Presolve:
         """A listener for another task whose bounds hold here, too, but whose trees do not."""
         return Bounds(self._listener)
 
-    def guarded(self, step: Callable[[], None]) -> None:
-        """Run a step under the guard; ``KeyboardInterrupt`` is raised only if there is no tree yet."""
+    def run_guarded(self, step: Callable[[], None]) -> None:
+        """Run a step under the guard, and set ``ended``.
+
+        ``KeyboardInterrupt`` ends the step. It is raised further only if there is no tree yet.
+        """
         self.ended = False
         try:
             with self.guard():
@@ -388,52 +420,57 @@ class _Presolve:
 
     def run(self, course: Course, known_tree: Collection[int] = ()) -> None:
         """Find a first tree, and run the stages of a course from it."""
-        self.guarded(lambda: self._run(course, known_tree))
+        self.run_guarded(lambda: self._run_course(course, known_tree))
 
-    def _run(self, course: Course, known_tree: Collection[int]) -> None:
+    def _run_course(self, course: Course, known_tree: Collection[int]) -> None:
+        """Find a first tree, and run the stages of a course from it; the guard is up to the caller.
+
+        Does nothing more if there is no tree. Without reductions, the stages are not run.
+        """
         task, stages = self.task, course.near_goals
-        opening = _near_goals(task)
+        opening = _first_tree_near_goals(task)
         if opening is None:
-            opening, stages = greedy.relevant(task, Gap(frozenset(), 0, ())), course.whole
+            opening, stages = greedy.restrict_to_relevant(task, Gap(frozenset(), 0, ())), course.whole
         if opening is None:
             return
         self.gap, h_values = opening
         if task.reductions:
             trees = [self.gap.incumbent, known_tree] if known_tree else [self.gap.incumbent]
-            tree = min(trees, key=lambda tree: sum(map(task.coarse, tree)))
-            self.report(self.gap.with_incumbent(irredundant(task.graph, tree, task.coarse)))
-            self.take(stages, h_values)
+            tree = min(trees, key=lambda tree: sum(map(task.coarse_costs, tree)))
+            self.report(self.gap.with_incumbent(irredundant_subset(task.graph, tree, task.coarse_costs)))
+            self.run_stages(stages, h_values)
 
-    def run_beside(self, solved: SolvedGoals) -> None:
+    def run_with_solved_goals(self, solved: SolvedGoals) -> None:
         """Run all rounds, if possible from the gap that ``solved`` has, and add the answer to ``solved``."""
 
-        def begin() -> None:
+        def run_from_shared_gap() -> None:
+            """Run the rounds from the gap that ``solved`` has, or from the beginning if it has none."""
             costs = solved.costs
             if costs is not None:
                 self.task = replace(self.task, costs=costs)
             gap = solved.gap(self.task)
             if gap is None or costs is None:
-                self._run(ROUNDS, ())
+                self._run_course(ROUNDS, ())
             else:
                 self.report(Gap(gap.incumbent, 0, gap.candidates))
                 self.report(gap)
                 if not gap.proved:
-                    h_values = derive(self.task.graph, gap.candidates, costs, h_add=False).cost
-                    self.take(ROUNDS.whole, h_values)
-            solved.learn(self.task, self.gap)
+                    h_values = compute_h_values(self.task.graph, gap.candidates, costs, h_add=False).h_objects
+                    self.run_stages(ROUNDS.whole, h_values)
+            solved.record(self.task, self.gap)
 
-        self.guarded(begin)
+        self.run_guarded(run_from_shared_gap)
 
     def extend_or_run(self) -> None:
         """Run all rounds; if sets of units are required, first try to extend trees for the goals alone."""
         restriction = self.task.problem.restriction
         if restriction is not None and restriction.required and Reduction.DEAR in self.task.reductions:
-            _extend(self)
+            _presolve_by_extension(self)
         if self.gap is None:
             self.run(ROUNDS)
 
-    def take(self, stages: Stages, h_values: HValues) -> None:
-        """Run stages from the current gap; report trees and bounds on the way."""
+    def run_stages(self, stages: Stages, h_values: HValues) -> None:
+        """Run stages from the current gap with exact costs; report trees and bounds on the way."""
         assert self.gap is not None
         actions = range(len(self.task.graph.needs)) if self._redundant else self.gap.candidates
         self.task = task = _with_costs(self.task, actions)
@@ -441,7 +478,7 @@ class _Presolve:
             self.report(gap)
 
     def report(self, gap: Gap) -> None:
-        """Make another gap the current one; report its tree and its bound if they are new."""
+        """Make another gap the current one; report its tree and its bound to the listener if they are new."""
         before, self.gap = self.gap, gap
         if before is None or gap.incumbent is not before.incumbent:
             self._listener.tree(self._units(gap.incumbent))
@@ -449,6 +486,7 @@ class _Presolve:
             self._listener.bound(self.task.costs, gap.lower_bound)
 
     def _units(self, actions: Collection[int]) -> frozenset[int]:
+        """Return the units among actions."""
         return frozenset(a for a in actions if a < self.task.graph.units)
 
     def reduced(self, redundant: bool = False) -> Reduced:
@@ -464,39 +502,40 @@ class _Presolve:
             subproblem = Subproblem(task.problem, task.graph, actions, task.costs, cuts, redundant)
         return Reduced(
             *(tree, tuple(sorted(units)), gap.proved, task.costs, gap.lower_bound, evidence.cuts),
-            *(not self.ended, subproblem, evidence.shared, evidence.cases, evidence.tight),
+            *(not self.ended, subproblem, evidence.partition, evidence.cases, evidence.tight),
         )
 
 
-def _extend(presolve: _Presolve) -> None:
+def _presolve_by_extension(presolve: _Presolve) -> None:
     """Presolve a question with required sets by its relaxation: the same question without these sets.
 
-    Every tree contains a tree for the goals alone, and its other units, the extension, cost the difference.
-    So the candidates are the units of cheap trees for the goals and of cheap extensions. If a tree costs no
-    more than the best tree for the goals alone, it is optimal. ``presolve.gap`` stays ``None`` if the
-    relaxation does not help.
+    Every tree contains a tree for the goals alone. Its other units, the extension, cost the difference. So
+    the candidates are the units of cheap trees for the goals and of cheap extensions. If a tree costs no more
+    than the best tree for the goals alone, it is optimal.
+
+    ``presolve.gap`` stays ``None`` if the relaxation does not help.
     """
     task = presolve.task
     graph, restriction = task.graph, task.problem.restriction
     assert restriction is not None
-    alone = replace(task.problem, restriction=replace(restriction, required=()))
-    goals_task = _task(alone, task.objectives, task.reductions, task.expired)
+    goals_problem = replace(task.problem, restriction=replace(restriction, required=()))
+    goals_task = _task_of(goals_problem, task.objectives, task.reductions, task.expired)
     goals_task = _with_costs(goals_task, range(len(goals_task.graph.needs)))
-    goals_only = _Presolve(goals_task, presolve.bounds_listener, presolve.guard)
-    goals_only.run(ROUNDS)
-    reduced, gap, costs = goals_only.reduced(), goals_only.gap, goals_task.costs
+    goals_presolve = _Presolve(goals_task, presolve.bounds_listener, presolve.guard)
+    goals_presolve.run(ROUNDS)
+    reduced, gap, costs = goals_presolve.reduced(), goals_presolve.gap, goals_task.costs
     if costs is None or gap is None or reduced.subproblem is None:
         return
     subproblem, h_values = reduced.subproblem, dict[int, int]()
 
     def extend() -> None:
         """Extend the best tree for the goals alone; the candidates are the actions of cheap extensions."""
-        tree = extended(task.thin, gap.incumbent, costs, len(graph.needs) // 4)
+        tree = extend_tree(task.thin_graph, gap.incumbent, costs, len(graph.needs) // 4)
         if tree is None:
             return
-        incumbent = frozenset(irredundant(graph, tree, costs))
-        first = Gap(incumbent, 0, range(len(graph.needs)))
-        presolve.report(first)
+        incumbent = frozenset(irredundant_subset(graph, tree, costs))
+        start = Gap(incumbent, 0, range(len(graph.needs)))
+        presolve.report(start)
         if reduced.interrupted:
             raise KeyboardInterrupt
         only_better, total = Reduction.BOUNDS in task.reductions, sum(map(costs, incumbent))
@@ -504,18 +543,18 @@ def _extend(presolve: _Presolve) -> None:
         if only_better and optimal:
             presolve.task = replace(task, costs=costs)
             evidence = gap.evidence._replace(first=None, tight=())
-            presolve.gap = first.raised(gap.lower_bound, evidence).closed()
+            presolve.gap = start.with_bound(gap.lower_bound, evidence).as_proved()
             return
         limit = total - only_better
         candidates = {*subproblem.actions_within(limit, task.expired), *incumbent}
         distance = limit - gap.lower_bound + costs.doubt
-        candidates |= extensions(graph, candidates, costs, distance, task.expired)
+        candidates |= actions_of_extensions(graph, candidates, costs, distance, task.expired)
         if task.expired():
             raise KeyboardInterrupt
-        derivations = derive(graph, candidates, task.coarse, h_add=False)
-        h_values.update(derivations.cost)
-        presolve.gap = first.with_candidates(graph.cone(derivations.h_actions)[0])
+        derivations = compute_h_values(graph, candidates, task.coarse_costs, h_add=False)
+        h_values.update(derivations.h_objects)
+        presolve.gap = start.with_candidates(graph.cone(derivations.h_actions)[0])
 
-    presolve.guarded(extend)
+    presolve.run_guarded(extend)
     if presolve.gap is not None and presolve.ended and not presolve.gap.proved:
-        presolve.guarded(lambda: presolve.take(rounds, h_values))
+        presolve.run_guarded(lambda: presolve.run_stages(run_rounds, h_values))

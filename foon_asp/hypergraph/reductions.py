@@ -8,10 +8,12 @@ from foon_asp.errors import UserError
 class Reduction(StrEnum):
     """A reduction of the search, beyond relevance and reachability.
 
-    ``forced``: units made irrelevant by action landmarks. ``dear``: units above the cutoff, all of whose
-    trees cost more than the incumbent. Both keep every optimal tree. ``dominated``: units that another unit
-    dominates. ``bounds``: only trees better than the incumbent are searched for, and none where the bounds
-    meet. These two keep at least one optimal tree.
+    ``forced``: excludes units made irrelevant by action landmarks.
+    ``dear``: excludes units above the cutoff, all of whose trees cost more than the incumbent.
+    ``dominated``: excludes units that another unit dominates.
+    ``bounds``: only trees better than the incumbent are searched for, and none where the bounds meet.
+
+    The first two keep every optimal tree, the others at least one.
     """
 
     FORCED = "forced"
@@ -33,10 +35,11 @@ def parse_reductions(text: str) -> frozenset[Reduction]:
     named = {"all": ALL, "safe": SAFE, "none": NONE}
     if text in named:
         return named[text]
-    return frozenset(map(_parse, text.split(",")))
+    return frozenset(map(_parse_name, text.split(",")))
 
 
-def _parse(name: str) -> Reduction:
+def _parse_name(name: str) -> Reduction:
+    """Return the reduction of this name; raises :class:`UserError` for another name."""
     try:
         return Reduction(name.strip())
     except ValueError:

@@ -7,13 +7,18 @@ from itertools import accumulate
 
 from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.branch_and_bound import Branching
-from foon_asp.hypergraph.cost_partition import CostPartitioning, SharedCosts
+from foon_asp.hypergraph.cost_partition import CostPartition, CostPartitioning
 from foon_asp.hypergraph.covering import ROUGH_TOLERANCE
 from foon_asp.hypergraph.gap_bounded_subproblem import reduced_cost_fixing
-from foon_asp.hypergraph.greedy_stages import improve_repeatedly, prune_dominated
-from foon_asp.hypergraph.h_values import derive
+from foon_asp.hypergraph.greedy_stages import prune_dominated, search_repeatedly
+from foon_asp.hypergraph.h_values import compute_h_values
 from foon_asp.hypergraph.incumbent_gap import Gap, Stage
-from foon_asp.hypergraph.incumbent_trees import following, guessed, irredundant, perturbation_search
+from foon_asp.hypergraph.incumbent_trees import (
+    irredundant_subset,
+    perturbation_search,
+    trees_by_lp_values,
+    trees_by_partition,
+)
 from foon_asp.hypergraph.landmark_relaxation import PARTS
 from foon_asp.hypergraph.reductions import Reduction
 from foon_asp.hypergraph.task import Task
@@ -22,7 +27,8 @@ from foon_asp.hypergraph.task import Task
 def partition_costs(task: Task, gap: Gap) -> Stage:
     """Raise the bound by optimal cost partitions, derive trees from LP solutions, and fix candidates.
 
-    The relaxation begins anew over the remaining candidates, as long as many are excluded.
+    Where many candidates were excluded, the relaxation begins anew over the remaining ones. Ends where few
+    are excluded, where time is up, and where branching is faster. Yields each gap that it reaches.
     """
     costs, graph, limits = task.costs, task.graph, task.tuning
     assert costs is not None
@@ -33,26 +39,26 @@ def partition_costs(task: Task, gap: Gap) -> Stage:
         before, almost_closed, starting = len(gap.candidates), False, gap.evidence.starting
         partitioning = CostPartitioning(graph, graph.goals, gap.candidates, costs, task.expired, starting)
         while True:
-            shared = partitioning.advance(task.total(gap), tuning.RELAXATION.stalled_solutions)
-            if shared is None:
+            partition = partitioning.advance(task.incumbent_cost(gap), tuning.RELAXATION.stalled_solutions)
+            if partition is None:
                 return gap
             if partitioning.converged:
                 break
-            gap = yield from follow_solution(task, gap, shared, limits.search_looks)
+            gap = yield from follow_solution(task, gap, partition, limits.search_looks)
             almost_closed = (
-                may_branch(task, gap) and gap.lower_bound > task.total(gap) * limits.sufficient_bound
+                may_branch(task, gap) and gap.lower_bound > task.incumbent_cost(gap) * limits.sufficient_bound
             )
             if gap.proved or almost_closed or len(gap.candidates) < limits.worthwhile_share * before:
                 break
         if not gap.proved:
-            gap = yield from follow_solution(task, gap, shared, limits.search_looks)
+            gap = yield from follow_solution(task, gap, partition, limits.search_looks)
         if gap.proved or almost_closed or task.expired():
             break
     return gap
 
 
 def _starting_cuts(gap: Gap) -> tuple[frozenset[int], ...]:
-    """Return the greedy cuts to begin the relaxation with.
+    """Return the greedy cuts to begin the relaxation with, each by its objects.
 
     Large landmarks are weak and make the LP slow: of many, only the smallest are returned.
     """
@@ -63,53 +69,60 @@ def _starting_cuts(gap: Gap) -> tuple[frozenset[int], ...]:
     return tuple(cut.objects for cut, size in zip(smallest_first, sizes, strict=True) if size <= budget)
 
 
-def follow_solution(task: Task, gap: Gap, shared: SharedCosts, looks: int) -> Stage:
+def follow_solution(task: Task, gap: Gap, partition: CostPartition, looks: int) -> Stage:
     """Look for better trees that follow an LP solution, then apply its cost partition.
 
-    ``looks`` is the budget: how often each candidate may be looked at.
+    Trees are also looked for by branch and bound, if the solution uses few actions, else by perturbation
+    search. ``looks`` is the budget: how often each candidate may be looked at. Yields each gap that it
+    reaches.
     """
     costs, graph = task.costs, task.graph
     assert costs is not None
-    used = {action for action, share in shared.shares.items() if share > ROUGH_TOLERANCE} | gap.incumbent
-    for tree in following(graph, gap.candidates, costs, shared):
+    used = {
+        action for action, lp_value in partition.lp_values.items() if lp_value > ROUGH_TOLERANCE
+    } | gap.incumbent
+    for tree in trees_by_partition(graph, gap.candidates, costs, partition):
         used |= tree
         if task.is_better(tree, gap):
             gap = gap.with_incumbent(tree)
             yield gap
-    least, count = -(-shared.bound // PARTS), len(gap.candidates)
-    if least < task.total(gap) and len(used) <= task.tuning.sparse_share * count:
-        cuts = [cut for cut, _ in shared.cuts]
+    rounded_bound, count = -(-partition.bound // PARTS), len(gap.candidates)
+    if rounded_bound < task.incumbent_cost(gap) and len(used) <= task.tuning.sparse_share * count:
+        cuts = [cut for cut, _ in partition.cuts]
         gap = yield from search_among(task, gap, used, cuts, 2 * looks * count)
-    elif least < task.total(gap):
+    elif rounded_bound < task.incumbent_cost(gap):
         tree = perturbation_search(
-            *(graph, gap.candidates, set(gap.incumbent), costs, least, task.expired),
-            *(shared.shares, task.chance.random, looks),
+            *(graph, gap.candidates, set(gap.incumbent), costs, rounded_bound, task.expired),
+            *(partition.lp_values, task.random_source.random, looks),
         )
         gap = gap.with_incumbent(tree) if task.is_better(tree, gap) else gap
-    gap = apply(task, gap, shared)
+    gap = apply_partition(task, gap, partition)
     yield gap
     return gap
 
 
-def apply(task: Task, gap: Gap, shared: SharedCosts) -> Gap:
+def apply_partition(task: Task, gap: Gap, partition: CostPartition) -> Gap:
     """Raise the bound by a cost partition, fix candidates by reduced costs, and prune dominated ones.
 
-    The bound is rounded up, since costs are whole numbers.
+    The bound is rounded up, since costs are whole numbers. If it meets the incumbent, the gap is marked as
+    proved.
     """
-    costs, total, evidence = task.costs, task.total(gap), gap.evidence
+    costs, total, evidence = task.costs, task.incumbent_cost(gap), gap.evidence
     assert costs is not None
-    bound = min(-(-shared.bound // PARTS), total)
-    tight = tuple(dict.fromkeys((*evidence.tight, *shared.tight)))
-    evidence = evidence._replace(tight=tight, starting=tuple(shared.tight))
-    gap = gap.raised(bound, evidence._replace(shared=shared) if bound > gap.lower_bound else evidence)
+    bound = min(-(-partition.bound // PARTS), total)
+    tight = tuple(dict.fromkeys((*evidence.tight, *partition.tight)))
+    evidence = evidence._replace(tight=tight, starting=tuple(partition.tight))
+    gap = gap.with_bound(
+        bound, evidence._replace(partition=partition) if bound > gap.lower_bound else evidence
+    )
     if Reduction.DEAR in task.reductions:
-        distance = task.cutoff(gap) * PARTS - shared.bound
-        reduced_cost = shared.reduced_costs.__getitem__
+        distance = task.cutoff(gap) * PARTS - partition.bound
+        reduced_cost = partition.reduced_costs.__getitem__
         gap = gap.with_candidates(
             reduced_cost_fixing(task.graph, gap.candidates, reduced_cost, distance, task.expired)
         )
     gap = prune_dominated(task, gap)
-    return gap.closed() if task.only_better(gap) and not costs.doubt and bound == total else gap
+    return gap.as_proved() if task.only_better(gap) and not costs.doubt and bound == total else gap
 
 
 def search_among(
@@ -117,17 +130,18 @@ def search_among(
 ) -> Stage:
     """Look for a better tree among a few actions by branch and bound (sub-MIP heuristic).
 
-    ``effort`` is the budget, in actions looked at.
+    ``cuts`` are cuts to begin with. ``effort`` is the budget, in actions looked at. Yields the gap with each
+    better tree.
     """
     graph, costs = task.graph, task.costs
     assert costs is not None
-    runnable = derive(graph, actions, costs, h_add=False).h_actions
+    runnable = compute_h_values(graph, actions, costs, h_add=False).h_actions
     search = Branching(
-        *(graph, graph.goals, runnable, costs, cuts, task.total(gap)),
-        lambda shares, without: guessed(graph, runnable, costs, shares, without),
+        *(graph, graph.goals, runnable, costs, cuts, task.incumbent_cost(gap)),
+        lambda lp_values, without: trees_by_lp_values(graph, runnable, costs, lp_values, without),
     )
     for _ in search.search(effort, task.expired):
-        tree = irredundant(graph, search.incumbent or gap.incumbent, costs)
+        tree = irredundant_subset(graph, search.incumbent or gap.incumbent, costs)
         if task.is_better(tree, gap):
             gap = gap.with_incumbent(tree)
             yield gap
@@ -135,35 +149,42 @@ def search_among(
 
 
 def may_branch(task: Task, gap: Gap) -> bool:
-    """Return whether branching may prove a tree optimal; ``False`` if rounding could decide."""
+    """Return whether branching may prove a tree optimal; ``False`` if rounding could decide.
+
+    Also ``False`` if the budget is used up, if costs have a limit, or if equally good trees are wanted.
+    """
     assert task.costs is not None
-    return task.only_better(gap) and not (task.costs.doubt or task.costs.limited) and gap.budget > 0
+    return task.only_better(gap) and not (task.costs.doubt or task.costs.has_limit) and gap.budget > 0
 
 
 def branch(task: Task, gap: Gap) -> Stage:
-    """Branch and bound over the candidates, within the budget, if the lower bound is close enough."""
+    """Branch and bound over the candidates, within the budget, if the lower bound is close enough.
+
+    Better trees are first looked for in the neighbourhood. If the search closes all nodes, the gap is marked
+    as proved, and the case split becomes evidence. Yields each gap that it reaches.
+    """
     costs, graph, limits = task.costs, task.graph, task.tuning
     assert costs is not None
-    close = gap.lower_bound >= task.total(gap) * limits.branching_bound
-    if not may_branch(task, gap) or len(gap.candidates) <= limits.relaxed_actions or not close:
+    is_close = gap.lower_bound >= task.incumbent_cost(gap) * limits.branching_bound
+    if not may_branch(task, gap) or len(gap.candidates) <= limits.relaxed_actions or not is_close:
         return gap
-    gap = yield from improve_repeatedly(task, gap)
-    total, evidence, candidates = task.total(gap), gap.evidence, gap.candidates
+    gap = yield from search_repeatedly(task, gap)
+    total, evidence, candidates = task.incumbent_cost(gap), gap.evidence, gap.candidates
     cuts = [cut.objects for cut in evidence.cuts.cuts] if evidence.cuts else []
-    cuts += [objects for objects, _ in evidence.shared.cuts] if evidence.shared else []
+    cuts += [objects for objects, _ in evidence.partition.cuts] if evidence.partition else []
     search = Branching(
         *(graph, graph.goals, candidates, costs, cuts, total),
-        lambda shares, without: guessed(graph, candidates, costs, shares, without),
+        lambda lp_values, without: trees_by_lp_values(graph, candidates, costs, lp_values, without),
     )
     for _ in search.search(gap.budget, task.expired):
         incumbent = gap.incumbent if search.incumbent is None else search.incumbent
-        gap = gap.with_incumbent(incumbent).raised(search.bound, evidence)
+        gap = gap.with_incumbent(incumbent).with_bound(search.bound, evidence)
         yield gap
     gap = replace(gap, budget=search.effort)
     if search.closed:
         proof = evidence._replace(cases=search.cases())
-        gap = gap.raised(task.total(gap), proof).closed()
-    elif evidence.shared is not None and task.total(gap) < total:
-        gap = apply(task, gap, evidence.shared)
+        gap = gap.with_bound(task.incumbent_cost(gap), proof).as_proved()
+    elif evidence.partition is not None and task.incumbent_cost(gap) < total:
+        gap = apply_partition(task, gap, evidence.partition)
     yield gap
     return gap

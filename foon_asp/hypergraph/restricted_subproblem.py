@@ -3,25 +3,25 @@
 from collections.abc import Callable
 
 from foon_asp.hypergraph.goal_graph import GoalGraph
-from foon_asp.hypergraph.h_values import Derivations, derive
+from foon_asp.hypergraph.h_values import Derivations, compute_h_values
 
 
 def restricted_subproblem(
     graph: GoalGraph, actions: set[int], cost: Callable[[int], int], max_actions: int
 ) -> tuple[Derivations, set[int]] | None:
-    """Add actions until they contain a tree; return their derivations, and the tree.
+    """Add actions until they contain a tree; return the h-values of their objects, and the tree.
 
-    Each round adds an achiever of each relevant object that is not reached; achievers with the fewest
+    Each round adds an achiever of each relevant object that is not reached. Achievers with the fewest
     non-initial preconditions come first. ``None`` if more than ``max_actions`` actions would be needed, or if
     there is no tree.
     """
     needs, achievers, start = graph.needs, graph.makers, graph.start
     chosen = set(actions)
     ranked: dict[int, list[int]] = {}  # by relevant object, its achievers not yet added, best last
-    fresh = set(graph.goals)
+    unreached = set(graph.goals)
     while len(chosen) <= max_actions:
-        while fresh:
-            o = fresh.pop()
+        while unreached:
+            o = unreached.pop()
             if o in start:
                 continue
             candidates = ranked.get(o)
@@ -32,12 +32,12 @@ def restricted_subproblem(
             if candidates:
                 action = candidates.pop()
                 chosen.add(action)
-                fresh.update(n for n in needs[action] if n not in ranked)
-        derivations = derive(graph, chosen, cost, h_add=False)
+                unreached.update(n for n in needs[action] if n not in ranked)
+        derivations = compute_h_values(graph, chosen, cost, h_add=False)
         tree = derivations.tree(graph, graph.goals)
         if tree is not None:
             return derivations, tree
-        fresh = {o for o, candidates in ranked.items() if candidates and o not in derivations.cost}
-        if not fresh:
+        unreached = {o for o, candidates in ranked.items() if candidates and o not in derivations.h_objects}
+        if not unreached:
             return None
     return None

@@ -9,14 +9,14 @@ from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
 from foon_asp.hypergraph import tuning
-from foon_asp.hypergraph.cost_partition import SharedCosts, quotient, stalled
+from foon_asp.hypergraph.cost_partition import CostPartition, float_quotient, has_stalled
 from foon_asp.hypergraph.covering import Covering, UnsolvedError
 from foon_asp.hypergraph.cut import Cutter
 from foon_asp.hypergraph.exact_costs import ExactCosts
 from foon_asp.hypergraph.incumbent_gap import Gap
-from foon_asp.hypergraph.incumbent_trees import guessed
+from foon_asp.hypergraph.incumbent_trees import trees_by_lp_values
 from foon_asp.hypergraph.landmark_relaxation import PARTS, LandmarkRelaxation
-from foon_asp.hypergraph.relaxation_stages import apply
+from foon_asp.hypergraph.relaxation_stages import apply_partition
 from foon_asp.hypergraph.task import Task
 
 
@@ -36,20 +36,26 @@ class _LpTolerance(NamedTuple):
 _LP = _LpTolerance()
 
 
-class _Relaxed(NamedTuple):
-    """A tree, and the last LP solution: its rows, the values ``x`` of actions, and the weights of rows."""
+class _Relaxation(NamedTuple):
+    """The result of a relaxation: a tree, and the last LP solution.
+
+    ``rows``: the rows of the LP, which are numbers of landmarks.
+    ``x``: the LP value of each action.
+    ``duals``: the dual of each of the rows.
+    """
 
     tree: frozenset[int]
     rows: Sequence[int]
     x: Sequence[float]
-    weights: Sequence[float]
+    duals: Sequence[float]
 
 
 class SharedLandmarks:
     """Landmarks of all objects that a network can make from a kitchen, for costs without rounding.
 
-    The linear relaxation for a question begins with known landmarks of its goals. Landmarks that it adds are
-    kept for later questions. A question may exclude actions.
+    ``actions`` are the actions that can run, and ``objects`` the objects that they make. The linear
+    relaxation for a question begins with known landmarks of its goals. Landmarks that it adds are kept for
+    later questions. A question may exclude actions.
     """
 
     def __init__(self, task: Task, costs: ExactCosts, actions: Iterable[int], objects: Sequence[int]) -> None:
@@ -65,41 +71,43 @@ class SharedLandmarks:
     def tighten(self, task: Task, excluded: frozenset[int], tree: frozenset[int]) -> Gap:
         """Return the gap of a question: a tree as good as ``tree`` or better, a bound, and the candidates.
 
-        Cuts are kept as evidence only if the gap stays open, since they are many and large.
+        Cuts are kept as evidence only if the gap stays open, since they are many and large. Where HiGHS
+        fails, the gap has ``tree`` and the bound 0.
         """
-        relaxed = self._relax(task, excluded, tree)
+        result = self._relax(task, excluded, tree)
         candidates = self._actions - excluded
-        if relaxed is None:
+        if result is None:
             return Gap(tree, 0, candidates)
-        relaxation, gap = self._relaxation, Gap(relaxed.tree, 0, candidates)
-        capacity = relaxation.in_parts()
+        relaxation, gap = self._relaxation, Gap(result.tree, 0, candidates)
+        capacity = relaxation.costs_in_parts()
         capacity[[self._position[action] for action in excluded]] = capacity.sum()  # they limit no weight
-        weights = relaxation.shared_out(zip(relaxed.rows, relaxed.weights, strict=False), capacity)
-        bound, total = sum(weights.values()), task.total(gap)
+        weights = relaxation.feasible_weights(zip(result.rows, result.duals, strict=False), capacity)
+        bound, total = sum(weights.values()), task.incumbent_cost(gap)
         if bound > (total - 1) * PARTS:
-            return gap.raised(total, gap.evidence).closed()
-        sums, targets = self._sums(relaxed.rows, self._np.array(relaxed.x)), self._targets(task)
+            return gap.with_bound(total, gap.evidence).as_proved()
+        sums, targets = self._row_sums(result.rows, self._np.array(result.x)), self._targets(task)
         cuts = {
-            row: self._cut(row, targets)
-            for row, value in zip(relaxed.rows, sums, strict=True)
+            row: self._cut_of_row(row, targets)
+            for row, value in zip(result.rows, sums, strict=True)
             if weights.get(row) or value < _LP.tight
         }
-        shared = SharedCosts(
+        partition = CostPartition(
             bound,
             dict(zip(relaxation.actions, capacity.tolist(), strict=True)),
             [(cuts[row], weight) for row, weight in weights.items() if weight],
-            dict(zip(relaxation.actions, relaxed.x, strict=True)),
+            dict(zip(relaxation.actions, result.x, strict=True)),
             [*cuts.values()],
         )
-        return apply(task, gap, shared)
+        return apply_partition(task, gap, partition)
 
     def _targets(self, task: Task) -> list[int]:
         """Return the goals of a question by their numbers in the relaxation."""
         return [self._number[goal] for goal in task.graph.goals]
 
-    def _relax(self, task: Task, excluded: frozenset[int], tree: frozenset[int]) -> _Relaxed | None:
+    def _relax(self, task: Task, excluded: frozenset[int], tree: frozenset[int]) -> _Relaxation | None:
         """Solve the relaxation for a question, until its value reaches the cost of the best tree found.
 
+        Adds known landmarks that the LP solution violates; if there are none, new ones, which are recorded.
         Also ends when no violated cut is found or time is up. ``None`` where HiGHS fails.
         """
         np, relaxation, targets = self._np, self._relaxation, self._targets(task)
@@ -107,35 +115,37 @@ class SharedLandmarks:
             row for row, reached in enumerate(self._reached_without) if not all(reached[o] for o in targets)
         ]
         forbidden = frozenset(self._position[action] for action in excluded)
-        uses = self._sums(landmarks, self._values(dict.fromkeys(tree, 1.0)))
+        use_counts = self._row_sums(landmarks, self._value_array(dict.fromkeys(tree, 1.0)))
         # by complementary slackness, others have no weight where the tree is optimal and the relaxation tight
-        rows = [row for row, count in zip(landmarks, uses, strict=True) if count == 1]
-        covering, cutter = Covering(relaxation.relative.tolist()), None
+        rows = [row for row, count in zip(landmarks, use_counts, strict=True) if count == 1]
+        covering, cutter = Covering(relaxation.relative_costs.tolist()), None
         for column in forbidden:
-            covering.bound(column, 0.0, 0.0)
+            covering.set_bounds(column, 0.0, 0.0)
         for row in rows:
-            covering.add(relaxation.rows[row])
+            covering.add_row(relaxation.rows[row])
         values: list[float] = []
         budget = tuning.RELAXATION.cuts * len(relaxation.actions)
         while True:
             try:
-                solved = covering.solve(task.expired)
+                solution = covering.solve(task.expired)
             except UnsolvedError:
                 return None
-            x = np.where(relaxation.relative > 0, np.array(solved.x), 1.0)
-            tree = self._following(task, tree, x)
-            values.append(solved.value)
+            x = np.where(relaxation.relative_costs > 0, np.array(solution.x), 1.0)
+            tree = self._improve_by_lp(task, tree, x)
+            values.append(solution.value)
             # costs are whole, so a bound above the total less one proves the total
-            almost = 100 * sum(map(self.costs, tree)) - 99
-            lacks = quotient(almost, 100 * relaxation.dearest) - solved.value
-            if lacks <= 0 or stalled(values, lacks) or task.expired():
+            sufficient_hundredths = 100 * sum(map(self.costs, tree)) - 99
+            remaining_gap = (
+                float_quotient(sufficient_hundredths, 100 * relaxation.greatest_cost) - solution.value
+            )
+            if remaining_gap <= 0 or has_stalled(values, remaining_gap) or task.expired():
                 break
-            chosen = frozenset(rows)
-            sums = self._sums(landmarks, x)
+            current_rows = frozenset(rows)
+            sums = self._row_sums(landmarks, x)
             violated = sorted(
                 (value, row)
                 for row, value in zip(landmarks, sums, strict=True)
-                if value < _LP.violated and row not in chosen
+                if value < _LP.violated and row not in current_rows
             )
             added = [row for _, row in violated[: tuning.SHARED.violated_landmarks]]
             if not added:
@@ -143,23 +153,23 @@ class SharedLandmarks:
                 count = len(relaxation.rows)
                 relaxation.separate([cutter], (), x.copy(), budget, task.expired)
                 added = list(range(count, len(relaxation.rows)))
-                self._learn(added)
+                self._record_reached(added)
                 landmarks += added
             if not added:
                 break
             rows += added
             for row in added:
-                covering.add(relaxation.rows[row])
-        return _Relaxed(tree, rows, solved.x, covering.weights())
+                covering.add_row(relaxation.rows[row])
+        return _Relaxation(tree, rows, solution.x, covering.duals())
 
-    def _values(self, value_of_action: dict[int, float]) -> Any:
-        """Return an array of values by position; other actions have 0."""
+    def _value_array(self, value_of_action: dict[int, float]) -> Any:
+        """Return an array of the value of each action, by position; actions without a value have 0."""
         values = self._np.zeros(len(self._relaxation.actions))
         for action, value in value_of_action.items():
             values[self._position[action]] = value
         return values
 
-    def _sums(self, rows: Sequence[int], values: Any) -> list[float]:
+    def _row_sums(self, rows: Sequence[int], values: Any) -> list[float]:
         """Return for each of the rows the sum of the values of its actions."""
         if not rows:
             return []
@@ -167,26 +177,26 @@ class SharedLandmarks:
         starts = self._np.cumsum([0, *map(len, arrays[:-1])])
         return self._np.add.reduceat(values[self._np.concatenate(arrays)], starts).tolist()  # type: ignore[no-any-return]
 
-    def _learn(self, rows: Iterable[int]) -> None:
+    def _record_reached(self, rows: Iterable[int]) -> None:
         """Record for new landmarks which objects can be reached without their actions.
 
-        A landmark of one object is a landmark of all objects that cannot be reached so.
+        A landmark of one object is a landmark of every object that cannot be reached so.
         """
         for row in rows:
             landmark = frozenset(self._relaxation.rows[row].tolist())
             self._reached_without.append(self._relaxation.graph.reach(landmark))
 
-    def _following(self, task: Task, tree: frozenset[int], x: Any) -> frozenset[int]:
+    def _improve_by_lp(self, task: Task, tree: frozenset[int], x: Any) -> frozenset[int]:
         """Return the best of ``tree`` and trees that combine its actions with those of an LP solution."""
         actions, costs = self._relaxation.actions, self.costs
         used = self._np.flatnonzero(x > _LP.used).tolist()
-        shares = dict.fromkeys(tree, 0.0) | {actions[i]: float(x[i]) for i in used}
-        if len(shares) == len(tree):
+        lp_values = dict.fromkeys(tree, 0.0) | {actions[i]: float(x[i]) for i in used}
+        if len(lp_values) == len(tree):
             return tree
-        trees = guessed(task.graph, shares, costs, shares, ())
+        trees = trees_by_lp_values(task.graph, lp_values, costs, lp_values, ())
         return min(tree, *map(frozenset, trees), key=lambda tree: sum(map(costs, tree)))
 
-    def _cut(self, row: int, targets: Iterable[int]) -> frozenset[int]:
+    def _cut_of_row(self, row: int, targets: Iterable[int]) -> frozenset[int]:
         """Return a cut with one of the targets; its landmark is within the actions of a row.
 
         The result has object numbers of the whole graph.
@@ -201,4 +211,4 @@ class SharedLandmarks:
                     lacking = next(o for o in graph.needs[action] if not reached[o])
                     cut.add(lacking)
                     stack.append(lacking)
-        return relaxation.whole(frozenset(cut))
+        return relaxation.whole_cut(frozenset(cut))

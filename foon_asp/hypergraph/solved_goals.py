@@ -1,13 +1,13 @@
-"""Answered questions about a network, by which others are answered faster."""
+"""Solved questions about a network, by which other questions are answered faster."""
 
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.exact_costs import ExactCosts, TooFineError
-from foon_asp.hypergraph.h_values import Derivations, derive
+from foon_asp.hypergraph.h_values import Derivations, compute_h_values
 from foon_asp.hypergraph.incumbent_gap import Gap
-from foon_asp.hypergraph.incumbent_trees import irredundant
+from foon_asp.hypergraph.incumbent_trees import irredundant_subset
 from foon_asp.hypergraph.reductions import Reduction
 from foon_asp.hypergraph.task import Task
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:  # few questions need it
 class SolvedGoals:
     """Trees of solved questions that differ only in goals and removed units, and landmarks that they share.
 
-    Questions share landmarks from the first one on that greedy cuts do not solve: easier questions are solved
+    Landmarks are shared from the first question on that greedy cuts do not solve. Easier questions are solved
     faster one by one.
     """
 
@@ -26,7 +26,7 @@ class SolvedGoals:
         self._trees: dict[tuple[int, ...], frozenset[int]] = {}  # by goals; with units that others remove
         self._derivations: Derivations | None = None  # by h_add, once landmarks are shared
         self._landmarks: SharedLandmarks | None = None
-        self._declined = False  # whether costs are rounded, so that nothing is shared
+        self._sharing_tried = False  # it fails where costs are rounded
 
     @property
     def sharing(self) -> bool:
@@ -35,7 +35,7 @@ class SolvedGoals:
 
     def h_add(self, goal: int) -> int:
         """Return the h_add value of a goal; 0 if landmarks are not shared yet or there is no tree."""
-        return 0 if self._derivations is None else self._derivations.cost.get(goal, 0)
+        return 0 if self._derivations is None else self._derivations.h_objects.get(goal, 0)
 
     def gap(self, task: Task) -> Gap | None:
         """Return the gap of a question from shared landmarks; ``None`` before they are shared.
@@ -44,7 +44,7 @@ class SolvedGoals:
         """
         if self._landmarks is None or self._derivations is None:
             return None
-        if not self._derivations.cost.keys() >= set(task.graph.goals):
+        if not self._derivations.h_objects.keys() >= set(task.graph.goals):
             return None
         restriction, units = task.problem.restriction, task.graph.units
         removed = frozenset(
@@ -52,7 +52,11 @@ class SolvedGoals:
             for action in self._derivations.h_actions
             if restriction is not None and action < units and restriction.removed(action)
         )
-        tree = self._tree_without(task, removed) if removed or len(task.graph.goals) > 1 else self._tree(task)
+        tree = (
+            self._tree_without(task, removed)
+            if removed or len(task.graph.goals) > 1
+            else self._tree_from_solved(task)
+        )
         return None if tree is None else self._landmarks.tighten(task, removed, tree)
 
     @property
@@ -60,8 +64,8 @@ class SolvedGoals:
         """The costs of shared gaps, for all actions that can run; ``None`` before landmarks are shared."""
         return None if self._landmarks is None else self._landmarks.costs
 
-    def _tree(self, task: Task) -> frozenset[int]:
-        """Return the best union of an achiever of the goal and trees of its preconditions.
+    def _tree_from_solved(self, task: Task) -> frozenset[int]:
+        """Return the best tree that is a union of an achiever of the goal and trees of its preconditions.
 
         These trees are known from solved questions, or follow h_add.
         """
@@ -77,48 +81,52 @@ class SolvedGoals:
                 assert others is not None
                 trees.append(others.union([achiever], *solved))
         trees.sort(key=lambda tree: sum(map(costs, tree)))
-        smallest = (irredundant(graph, tree, costs) for tree in trees[: tuning.SHARED.unions])
+        smallest = (irredundant_subset(graph, tree, costs) for tree in trees[: tuning.SHARED.unions])
         return frozenset(min(smallest, key=lambda tree: sum(map(costs, tree))))
 
     def _tree_without(self, task: Task, removed: frozenset[int]) -> frozenset[int] | None:
-        """Return a tree without the removed actions, from h_add and from the solved tree of the same goals.
+        """Return a tree without the removed actions; ``None`` if there is none.
 
-        ``None`` if there is no tree.
+        It is the better of two: one by h_add, and one from it and the solved tree of the same goals.
         """
         graph, costs, derivations = task.graph, task.costs, self._derivations
         assert costs is not None
         assert derivations is not None
         allowed = derivations.h_actions.keys() - removed
-        tree = derive(graph, allowed, costs, h_add=True).tree(graph, graph.goals)
+        tree = compute_h_values(graph, allowed, costs, h_add=True).tree(graph, graph.goals)
         if tree is None:
             return None
         union = (tree | self._trees.get(graph.goals, frozenset())) - removed
-        trees = (irredundant(graph, actions, costs) for actions in (union, tree))
+        trees = (irredundant_subset(graph, actions, costs) for actions in (union, tree))
         return frozenset(min(trees, key=lambda tree: sum(map(costs, tree))))
 
-    def learn(self, task: Task, gap: Gap | None) -> None:
-        """Store the tree of a proved gap; share landmarks from then on if greedy cuts did not prove it."""
+    def record(self, task: Task, gap: Gap | None) -> None:
+        """Store the tree of a proved gap; other gaps are ignored.
+
+        If greedy cuts did not prove it, landmarks are shared from then on. Nothing is shared where costs are
+        rounded, or where the question is not reduced by both ``bounds`` and ``dear``.
+        """
         if gap is None or not gap.proved:
             return
         self._trees[task.graph.goals] = gap.incumbent
-        if not gap.evidence.tight or self._landmarks is not None or self._declined:
+        if not gap.evidence.tight or self._landmarks is not None or self._sharing_tried:
             return
-        self._declined = True
+        self._sharing_tried = True
         if not {Reduction.BOUNDS, Reduction.DEAR} <= task.reductions:
             return
         graph = task.graph
-        derivations = derive(graph, range(len(graph.needs)), task.coarse, h_add=True)
+        derivations = compute_h_values(graph, range(len(graph.needs)), task.coarse_costs, h_add=True)
         with suppress(TooFineError):
             costs = ExactCosts(task.problem, task.objectives, derivations.h_actions)
             if not costs.doubt:
                 from foon_asp.hypergraph.shared_landmarks import SharedLandmarks  # noqa: PLC0415 (numpy)
 
                 self._derivations = derivations
-                objects = sorted(derivations.cost)
+                objects = sorted(derivations.h_objects)
                 self._landmarks = SharedLandmarks(task, costs, derivations.h_actions, objects)
 
 
-def is_open_to(task: Task) -> bool:
+def can_use_solved_goals(task: Task) -> bool:
     """Return whether solved goals can help with a question: it has goals, and no required sets.
 
     Its network must not be so large that only a part of it is looked at.

@@ -4,21 +4,23 @@ from collections.abc import Callable, Collection
 from heapq import heapify, heappop, heappush
 
 from foon_asp.hypergraph.goal_graph import GoalGraph
-from foon_asp.hypergraph.h_values import derive
+from foon_asp.hypergraph.h_values import compute_h_values
 
 
 class Support:
     """A tree with the h_add values and best achievers of its objects, updated incrementally.
 
-    ``actions`` are the actions of the tree that are found by following best achievers from the goals; others
-    are removed at once. ``figure[o]`` is the h_add value of an object in use. When an action is removed, only
-    objects derived by it are derived anew, from the others, so that actions of a cycle do not support each
-    other.
+    ``actions``: the actions of the tree that are found by following best achievers from the goals. Others are
+    removed at once.
+    ``h_objects``: the h_add value of each object in use, by object.
+
+    When an action is removed, only objects derived by it are derived anew. They are derived from the other
+    objects, so that actions of a cycle do not support each other.
     """
 
     def __init__(self, graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int]) -> None:
         self._graph, self._cost = graph, cost
-        self.figure, self._best_achiever, self._h_actions = derivations = derive(
+        self.h_objects, self._best_achiever, self._h_actions = derivations = compute_h_values(
             graph, tree, cost, h_add=True
         )
         self.actions = derivations.tree(graph, graph.goals) or set()
@@ -35,18 +37,19 @@ class Support:
         for o in self._goals | self._consumers.keys():
             self._supported[self._best_achiever[o]] += 1
 
-    def _in_use(self, o: int) -> bool:
+    def _is_in_use(self, o: int) -> bool:
+        """Return whether an object is a goal or a precondition of an action."""
         return bool(o in self._goals or self._consumers.get(o))
 
-    def replaceable(self, action: int) -> bool:
+    def is_replaceable(self, action: int) -> bool:
         """Return whether every add effect in use of an action has another achiever.
 
-        A tree with redundant actions has at least one replaceable action: the last, in an executable order,
-        of the actions that can be removed together.
+        If a tree has redundant actions, at least one is replaceable: of the actions that can be removed
+        together, the last in an executable order.
         """
-        return all(len(self._achievers[o]) > 1 for o in self._graph.gives[action] if self._in_use(o))
+        return all(len(self._achievers[o]) > 1 for o in self._graph.gives[action] if self._is_in_use(o))
 
-    def leave_out(self, action: int) -> set[int] | None:
+    def remove(self, action: int) -> set[int] | None:
         """Remove an action, and the actions that are of no use without it.
 
         Returns the remaining achievers of objects that are no longer in use. If the other actions do not
@@ -56,54 +59,54 @@ class Support:
         lost: set[int] = set()
         for unit in (stack := [action]):  # grows while it is walked through
             for o in self._graph.gives[unit]:
-                if self._best_achiever.get(o) == unit and o not in lost and self._in_use(o):
+                if self._best_achiever.get(o) == unit and o not in lost and self._is_in_use(o):
                     lost.add(o)
                     for consumer in self._consumers.get(o, ()):
                         if consumer not in missing:
                             missing[consumer] = 0
                             stack.append(consumer)
                         missing[consumer] += 1
-        made, h_actions = self._rederive(lost, missing)
-        if any(o in self._goals and o not in made for o in lost):
+        rederived, h_actions = self._rederive(lost, missing)
+        if any(o in self._goals and o not in rederived for o in lost):
             return None
-        for o, (figure, achiever) in made.items():
+        for o, (h_value, achiever) in rederived.items():
             self._supported[self._best_achiever[o]] -= 1
             self._supported[achiever] += 1
-            self.figure[o], self._best_achiever[o] = figure, achiever
+            self.h_objects[o], self._best_achiever[o] = h_value, achiever
         self._h_actions.update(h_actions)
-        return self._drop([unit for unit in missing if not self._supported[unit]])
+        return self._remove_idle([unit for unit in missing if not self._supported[unit]])
 
     def _rederive(
         self, lost: Collection[int], missing: dict[int, int]
     ) -> tuple[dict[int, tuple[int, int]], dict[int, int]]:
-        """Derive lost objects anew.
+        """Derive lost objects anew; return the new h_add values.
 
-        Returns the h_add value and achiever of each object, and the h_add values of actions. ``missing``
-        counts the lost preconditions of each action, and is changed in place.
+        Returns a pair of h_add value and best achiever for each object that is reached, and the h_add values
+        of actions. ``missing`` counts the lost preconditions of each action. It is changed in place.
         """
-        made: dict[int, tuple[int, int]] = {}
+        rederived: dict[int, tuple[int, int]] = {}
         h_actions: dict[int, int] = {}
         waiting = [(self._h_actions[a], a, o) for o in lost for a in self._achievers[o] if a not in missing]
         heapify(waiting)
         while waiting:
-            figure, action, o = heappop(waiting)
-            if o in made:
+            h_value, action, o = heappop(waiting)
+            if o in rederived:
                 continue
-            made[o] = figure, action
+            rederived[o] = h_value, action
             for consumer in self._consumers.get(o, ()):
                 missing[consumer] -= 1
                 if not missing[consumer]:
                     needs = (n for n in self._graph.needs[consumer] if n not in self._graph.start)
                     total = self._cost(consumer) + sum(
-                        made[n][0] if n in made else self.figure[n] for n in needs
+                        rederived[n][0] if n in rederived else self.h_objects[n] for n in needs
                     )
                     h_actions[consumer] = total
                     for effect in self._graph.gives[consumer]:
                         if effect in lost:
                             heappush(waiting, (total, consumer, effect))
-        return made, h_actions
+        return rederived, h_actions
 
-    def _drop(self, idle: list[int]) -> set[int]:
+    def _remove_idle(self, idle: list[int]) -> set[int]:
         """Remove idle actions, and actions that only they use.
 
         Returns the remaining achievers of objects that are no longer in use.
@@ -118,7 +121,7 @@ class Support:
             for o in graph.needs[action]:
                 if o not in graph.start and action in self._consumers[o]:
                     self._consumers[o].remove(action)
-                    if not self._in_use(o):
+                    if not self._is_in_use(o):
                         freed |= self._achievers[o]
                         achiever = self._best_achiever[o]
                         self._supported[achiever] -= 1

@@ -17,11 +17,12 @@ class Task:
     """A question as a graph with costs, and the settings of its reduction.
 
     ``expired``: returns whether time is up.
-    ``thin``: the graph with few achievers of each required set.
-    ``coarse``: rough costs, for estimates.
+    ``thin_graph``: the graph with few achievers of each required set.
+    ``coarse_costs``: rough costs, for estimates.
     ``scope``: the actions that trees may have.
     ``costs``: exact costs; ``None`` if rates are too fine, and before the first tree.
-    ``below``: trees that cost less are wanted, even if they are no better than the incumbent.
+    ``below``: trees that cost less are wanted, even if they are no better than the incumbent. 0 for none.
+    ``random_source``: the random numbers of perturbation search, always from the same seed.
     """
 
     problem: Problem
@@ -29,15 +30,15 @@ class Task:
     reductions: frozenset[Reduction]
     expired: Callable[[], bool]
     graph: GoalGraph
-    thin: GoalGraph
-    coarse: Callable[[int], int]
+    thin_graph: GoalGraph
+    coarse_costs: Callable[[int], int]
     tuning: PresolveTuning
     scope: Collection[int]
     costs: ExactCosts | None = None
     below: int = 0
-    chance: random.Random = field(default_factory=lambda: random.Random(0))
+    random_source: random.Random = field(default_factory=lambda: random.Random(0))
 
-    def total(self, gap: Gap) -> int:
+    def incumbent_cost(self, gap: Gap) -> int:
         """Return the cost of the incumbent."""
         assert self.costs is not None
         return sum(map(self.costs, gap.incumbent))
@@ -45,13 +46,17 @@ class Task:
     def is_better(self, tree: Collection[int], gap: Gap) -> bool:
         """Return whether a tree costs less than the incumbent."""
         assert self.costs is not None
-        return sum(map(self.costs, tree)) < self.total(gap)
+        return sum(map(self.costs, tree)) < self.incumbent_cost(gap)
 
     def only_better(self, gap: Gap) -> bool:
         """Return whether only trees better than the incumbent are wanted, and not equally good ones."""
-        return Reduction.BOUNDS in self.reductions and self.total(gap) >= self.below
+        return Reduction.BOUNDS in self.reductions and self.incumbent_cost(gap) >= self.below
 
     def cutoff(self, gap: Gap) -> int:
         """Return the greatest cost of trees that are still wanted."""
         assert self.costs is not None
-        return max(self.total(gap), self.below) + self.costs.doubt - (Reduction.BOUNDS in self.reductions)
+        return (
+            max(self.incumbent_cost(gap), self.below)
+            + self.costs.doubt
+            - (Reduction.BOUNDS in self.reductions)
+        )

@@ -1,7 +1,7 @@
-"""Numbers that steer the stages of this room; none of them decides what is proved, only how fast.
+"""Numbers that steer the stages of presolve; none of them decides what is proved, only how fast.
 
-``benchmarks/tuning.py`` halves and doubles each, and prints what moves on the instances that it names. Stages
-read the objects at the end of this module when they are called.
+``benchmarks/tuning.py`` halves and doubles each, and prints what changes on the instances that it names.
+Stages read the objects at the end of this module when they are called.
 """
 
 from fractions import Fraction
@@ -11,20 +11,20 @@ from typing import NamedTuple
 class PresolveTuning(NamedTuple):
     """When a stage of :mod:`foon_asp.hypergraph.reduction` begins, and when it ends.
 
-    ``lazy_actions``: actions of a network; with more, only those near the goals are looked at first.
+    ``lazy_actions``: actions of a network. In a larger one, only those near the goals are looked at first.
     ``first_actions``: actions nearest to the goals among which the first tree is looked for.
     ``required_achievers``: achievers of a required set that are looked at while trees are looked for.
     ``neighbourhood_actions``: actions of the neighbourhood in which better trees are looked for.
-    ``easy_actions``: actions; with fewer, clingo is faster than a thorough search for better trees.
-    ``relaxed_actions``: actions; with fewer, clingo is faster than the linear relaxation.
+    ``easy_actions``: candidates. With fewer, clingo is faster than a thorough search for better trees.
+    ``relaxed_actions``: candidates. With fewer, clingo is faster than the linear relaxation.
     ``branching_budget``: actions that branch and bound may look at; some 20 s of processor time.
     ``branching_bound``: share of the incumbent's cost that the bound has to reach before branching begins.
-    ``sufficient_bound``: share of the incumbent's cost; from this bound on, branching is faster than cuts.
+    ``sufficient_bound``: share of the incumbent's cost. From this bound on, branching is faster than cuts.
     ``search_looks``: looks at each action in a search for a better tree that follows an LP solution.
-    ``sparse_share``: share of the candidates; up to it, trees are searched by branching, else by
+    ``sparse_share``: share of the candidates. Up to it, trees are searched by branching, else by
     perturbation.
     ``landmark_actions``: sum of the sizes of landmarks, per action, after which greedy cuts end.
-    ``worthwhile_share``: share of the candidates; another turn follows only if fewer remain.
+    ``worthwhile_share``: share of the candidates. Another turn follows only if fewer remain.
     """
 
     lazy_actions: int = 40_000
@@ -45,7 +45,8 @@ class PresolveTuning(NamedTuple):
 class CutTuning(NamedTuple):
     """How landmark cuts and h-values are looked for.
 
-    ``guided_cuts``: cuts, or one for each target, after which the h-values that guide cuts are computed anew.
+    ``guided_cuts``: cuts after which the h-values that guide cuts are computed anew. With more targets than
+    this, it is one cut for each target.
     ``guides``: how often h-values are computed, at most, while as many cuts are found as there are objects.
     Each time looks at all objects, so without a maximum cuts would take quadratic time
     (``benchmarks/shapes.py``, grid by kitchen).
@@ -86,9 +87,9 @@ class RelaxationTuning(NamedTuple):
 class ProofTuning(NamedTuple):
     """How certificates are looked for, by :class:`foon_asp.hypergraph.optimality_proof.Prover`.
 
-    ``rounded_actions``: actions; with more, rounded weights are tried before exact ones.
-    ``greedy_cuts``: known cuts that get weights greedily; others get weights only from the LP.
-    ``fixed_share``: share of the actions; with more above the cutoff, these are fixed before anything else.
+    ``rounded_actions``: actions. With more, rounded weights are tried before exact ones.
+    ``greedy_cuts``: known cuts that get weights greedily. Others get weights only from the LP.
+    ``fixed_share``: share of the actions. If more are above the cutoff, these are fixed before anything else.
     ``search_budget``: actions that branch and bound may look at; about a minute of processor time.
     ``proof_length``: objects and landmark actions that a proof by branching may list.
     ``pivots``: steps of the exact simplex algorithm from the basis of floats; few are needed.
@@ -106,8 +107,8 @@ class PriceTuning(NamedTuple):
     """How a limit on a sum over units is priced, by :mod:`foon_asp.hypergraph.priced_limit`.
 
     ``prices``: prices that are tried.
-    ``easy_units``: units; with fewer, clingo is faster than another price.
-    ``rising_units``: units; with more, rising prices are tried.
+    ``easy_units``: units. With fewer, clingo is faster than another price.
+    ``rising_units``: units. With more, rising prices are tried.
     ``rising_prices``: rising prices that are tried, at most.
     """
 

@@ -10,19 +10,22 @@ from foon_asp.hypergraph.cut import Cut, Cutter
 def disjoint_violated_cuts(
     cutter: Cutter,
     used: Collection[int],
-    shares: Any,
+    lp_values: Any,
     costs: Any,
     random_number: Callable[[], float],
     tolerance: float = ROUGH_TOLERANCE,
 ) -> Iterator[Cut]:
     """Yield cuts that an LP solution violates, with disjoint landmarks and no action of ``used``.
 
-    ``shares``: an array of the LP value of each action. Values of the landmark of a yielded cut become 1.
-    ``costs``, ``random_number``: landmarks avoid actions of great value first, then actions of low cost,
-    where each cost is multiplied by a random factor from 0.5 to 1.5.
-    ``tolerance``: a landmark whose values add up to at least 1 minus this is satisfied.
+    ``lp_values``: an array of the LP value of each action, changed in place: after a cut is yielded, the
+    values of its landmark are 1.
+    ``costs``: an array of the cost of each action.
+    ``random_number``: returns numbers from 0 to 1. Landmarks avoid actions of great LP value first. Among
+    equal values they avoid actions of low cost, after each cost is multiplied by a random factor from 0.5 to
+    1.5.
+    ``tolerance``: a landmark is satisfied if its values add up to at least 1 minus this.
 
-    Ends when the next cut is satisfied or none is left.
+    Ends when the next cut is satisfied, or when there is no other cut.
     """
     import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
@@ -30,8 +33,8 @@ def disjoint_violated_cuts(
     costs = costs[actions]
     while True:
         random_costs = costs * [0.5 + random_number() for _ in actions]
-        cut = cutter.cut(used, actions[np.lexsort((random_costs, -shares[actions]))].tolist())
-        if cut is None or shares[list(cut.members)].sum() >= 1 - tolerance:
+        cut = cutter.cut(used, actions[np.lexsort((random_costs, -lp_values[actions]))].tolist())
+        if cut is None or lp_values[list(cut.members)].sum() >= 1 - tolerance:
             return
-        shares[list(cut.members)] = 1.0
+        lp_values[list(cut.members)] = 1.0
         yield cut

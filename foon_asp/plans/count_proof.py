@@ -12,8 +12,8 @@ from fractions import Fraction
 from functools import cmp_to_key
 from typing import NamedTuple
 
-from foon_asp.hypergraph.exact_optimum import NowhereError, solve_exactly
-from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, minus, times
+from foon_asp.hypergraph.exact_optimum import UnusableBasisError, solve_exactly
+from foon_asp.hypergraph.lexicographic import Lexicographic, Vector, multiply, subtract
 from foon_asp.plans.conditions import Condition, Landmark, Level, Measure
 from foon_asp.plans.count_bound import CountBound
 from foon_asp.plans.count_model import CountModel
@@ -197,7 +197,7 @@ class PlanProver(CountBound):
                     return [ray]
                 need = claim.order.approximate(self._least)[0] / claim.order.approximate(nothing)[0]
                 factor = Fraction(math.ceil(abs(need) * 1.001) + 1)
-                return [{row: times(weight, factor) for row, weight in ray.items()}]
+                return [{row: multiply(weight, factor) for row, weight in ray.items()}]
             return []
         floats = [weight / scale for weight in floats]
         candidates = [self._rounded_weights(model, floats, parts, one) for parts in PARTS]
@@ -213,7 +213,7 @@ class PlanProver(CountBound):
     ) -> dict[int, Vector]:
         """Return the weights above 0 by row, rounded to multiples of ``one`` divided by ``parts``."""
         rounded = {row: round(floats[row] * parts) for row in model.conditions if abs(floats[row]) < 1e15}
-        return {row: times(one, Fraction(n, parts)) for row, n in rounded.items() if n > 0}
+        return {row: multiply(one, Fraction(n, parts)) for row, n in rounded.items() if n > 0}
 
     def _exact_weights(self, model: CountModel, relaxed: Relaxation) -> "list[dict[int, Vector]]":
         """Return the exact duals of a basis, which make its reduced costs 0; no duals if it is singular."""
@@ -227,7 +227,7 @@ class PlanProver(CountBound):
             return []
         try:
             solved = solve_exactly(matrix, {column: self._cost(column) for column in columns})
-        except NowhereError:
+        except UnusableBasisError:
             return []
         sign = self._claim.order.sign
         return [{row: w for row, w in solved.items() if row in model.conditions and sign(w) > 0}]
@@ -248,14 +248,14 @@ class PlanProver(CountBound):
         terms: list[Vector] = []
         for row, weight in weights.items():
             coefficients, least = program.row_of(row)
-            terms.append(times(weight, Fraction(least)))
+            terms.append(multiply(weight, Fraction(least)))
             for column, coefficient in coefficients.items():
-                loads.setdefault(column, []).append(times(weight, Fraction(coefficient)))
+                loads.setdefault(column, []).append(multiply(weight, Fraction(coefficient)))
         zero = order.zero
 
         def reduced_cost(column: int) -> Vector:
             cost = zero if free else self._cost(column)
-            return minus(cost, order.total(loads[column])) if column in loads else cost
+            return subtract(cost, order.total(loads[column])) if column in loads else cost
 
         for column in (*range(size), *self._columns):
             low, high = program.lower[column], program.upper[column]
@@ -265,10 +265,10 @@ class PlanProver(CountBound):
             per_execution = reduced_cost(column)
             ends = [zero] if low == 0 else []
             if high is None or high >= 1:
-                ends.append(order.total([times(per_execution, Fraction(max(low, 1))), once]))
+                ends.append(order.total([multiply(per_execution, Fraction(max(low, 1))), once]))
                 if order.sign(per_execution) < 0:
                     if high is None:
                         return None
-                    ends.append(order.total([times(per_execution, Fraction(high)), once]))
+                    ends.append(order.total([multiply(per_execution, Fraction(high)), once]))
             terms.append(min(ends, key=cmp_to_key(order.compare)))
         return order.total(terms)

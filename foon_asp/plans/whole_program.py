@@ -219,7 +219,7 @@ class WholeProgram:
         highs.setOptionValue("presolve", "on")
         highs.setOptionValue("mip_rel_gap", 0.0)
         highs.setOptionValue("objective_target", sufficient_cost)
-        ended = not self._expired() and run(highs, self._expired, whole=True)
+        ended = not self._expired() and run(highs, self._expired, has_integers=True)
         status = self._library.HighsModelStatus
         optimal = ended and highs.getModelStatus() in {status.kOptimal, status.kObjectiveTarget}
         values = list(highs.getSolution().col_value) if optimal else None

@@ -26,7 +26,7 @@ from foon_asp.engines import (
     bare_clingo,
     cross_check,
 )
-from foon_asp.engines.bare_clingo import check_with_bare_clingo, greatest_weight
+from foon_asp.engines.bare_clingo import check_with_bare_clingo, tree_weight_bound
 from foon_asp.problem import Objective, Problem
 from foon_asp.rules.passed_constraint import Constraint
 from tests.conftest import ROOT, Cli
@@ -72,7 +72,7 @@ def test_no_tree_as_good_as_ours_weighs_more_than_the_bound() -> None:
             ]
         )
         own = rng.choices(rates, k=rng.randint(0, 4))
-        most = greatest_weight([(rate, weights[rate]) for rate in rates], own)
+        most = tree_weight_bound([(rate, weights[rate]) for rate in rates], own)
         for size in range(5):
             for other in combinations_with_replacement(rates, size):
                 if math.prod(other) >= math.prod(own):
@@ -87,16 +87,16 @@ def test_the_bound_is_no_wider_than_rounding_down_makes_it() -> None:
     weights = rate_scale(rates).weights
     for size in range(5):
         for own in combinations_with_replacement(rates, size):
-            slack = greatest_weight(weights.items(), own) - sum(map(weights.__getitem__, own))
+            slack = tree_weight_bound(weights.items(), own) - sum(map(weights.__getitem__, own))
             assert 0 <= slack <= max(0, size - 1)
 
 
 def test_a_rate_without_a_logarithm_or_with_a_wrong_weight_is_not_checked() -> None:
     for rate, words in ((0, "no logarithm"), (1, "costs nothing has a weight")):
         with pytest.raises(NotCheckedError, match=words):
-            greatest_weight([(Fraction(rate), 5)], [])
+            tree_weight_bound([(Fraction(rate), 5)], [])
     for sure in (Fraction(1), 1 - Fraction(1, 10**5000)):
-        assert greatest_weight([(sure, 0)], [sure]) == 0
+        assert tree_weight_bound([(sure, 0)], [sure]) == 0
 
 
 # --- It agrees with what is right.

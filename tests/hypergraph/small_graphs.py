@@ -17,7 +17,7 @@ NOBODY: frozenset[int] = frozenset()
 class Bars(Protocol):
     """Rules, as far as a proof rests on them."""
 
-    def bars(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
+    def barred_actions(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
         """Return by rule the actions that are in no derivation with those used and none of the others."""
 
 
@@ -105,7 +105,7 @@ def require_proves(
         nested(proof.without, used, without | {proof.action})
         nested(proof.using, used | {proof.action}, without)
         return
-    bars = {} if rules is None else rules.bars(used, without)
+    bars = {} if rules is None else rules.barred_actions(used, without)
     if isinstance(proof, Broken):
         assert not used.isdisjoint(bars[proof.rule])
         return

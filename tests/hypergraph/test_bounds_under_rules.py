@@ -29,7 +29,7 @@ class NotAll(NamedTuple):
     sets: Sequence[frozenset[int]]
     learnt: list[Limit] | None = None
 
-    def bars(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
+    def barred_actions(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
         found: dict[int, frozenset[int]] = {}
         if self.learnt is not None:
             return found
@@ -40,11 +40,11 @@ class NotAll(NamedTuple):
                 found[rule] = each - used
         return found
 
-    def breaking(self, derivation: frozenset[int]) -> Sequence[int]:
+    def breaking_actions(self, derivation: frozenset[int]) -> Sequence[int]:
         broken = (sorted(each) for each in self.sets if each <= derivation and self.learnt is None)
         return next(broken, [])
 
-    def exceeded(self, derivation: frozenset[int]) -> Limit | None:
+    def exceeded_limit(self, derivation: frozenset[int]) -> Limit | None:
         for each in self.sets:
             if each <= derivation and self.learnt is not None:
                 self.learnt.append((dict.fromkeys(each, Fraction(1)), Fraction(len(each) - 1)))

@@ -22,8 +22,8 @@ from foon_asp.hypergraph import (
     relaxation_stages,
     tuning,
 )
-from foon_asp.hypergraph.branch_and_bound import Branching, TooLongError, branched
-from foon_asp.hypergraph.covering import Covering, Relaxed
+from foon_asp.hypergraph.branch_and_bound import Branching, TooLongError, prove_by_branching
+from foon_asp.hypergraph.covering import BasicSolution, Covering
 from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.proof_tree import Branch
 from foon_asp.hypergraph.tuning import PresolveTuning
@@ -39,7 +39,7 @@ Question = tuple[Hypergraph, list[int], list[int]]
 class Run:
     """A search with no derivation in hand, for one that costs less than all actions and one more."""
 
-    def __init__(self, question: Question, guess: Any = lambda shares, without: ()) -> None:
+    def __init__(self, question: Question, guess: Any = lambda lp_values, without: ()) -> None:
         graph, targets, costs = self.question = question
         self.trees: list[set[int]] = []
         self.bounds: list[int] = []
@@ -139,9 +139,9 @@ def test_floats_may_be_wrong_and_what_is_proved_is_not(
 ) -> None:
     """HiGHS says anything of what is taken, and of weights."""
     question = asked(seed)
-    drawn, told, solve = random.Random(seed), Covering.weights, Covering.solve
+    drawn, told, solve = random.Random(seed), Covering.duals, Covering.solve
 
-    def taken(self: Covering, expired: Callable[[], bool] = lambda: False) -> Relaxed:
+    def taken(self: Covering, expired: Callable[[], bool] = lambda: False) -> BasicSolution:
         relaxed = solve(self, expired)
         x = [drawn.choice([0, 0.5, 1, 7, math.nan, x]) for x in relaxed.x]
         return relaxed._replace(value=drawn.uniform(-9, 9), x=x)
@@ -150,7 +150,7 @@ def test_floats_may_be_wrong_and_what_is_proved_is_not(
     if weights:
         monkeypatch.setattr(
             Covering,
-            "weights",
+            "duals",
             lambda self: [drawn.choice([w, w, -1.0, math.inf, math.nan, 3.0, 1e300]) for w in told(self)],
         )
     Run(question).require_right(cheapest(*question), effort=20_000)
@@ -188,11 +188,11 @@ def test_guessed_derivations_count_and_those_of_other_actions_do_not(size: int) 
     best = {*range(1, size), *range(size, len(costs), 2)}
     barred: list[Collection[int]] = []
 
-    def guess(shares: Mapping[int, float], without: Collection[int]) -> list[set[int]]:
-        assert shares.keys() == set(range(len(costs)))
+    def guess(lp_values: Mapping[int, float], without: Collection[int]) -> list[set[int]]:
+        assert lp_values.keys() == set(range(len(costs)))
         barred.append(without)
         tree = best if reaches(graph, best, targets) else set()
-        return [{99}, tree, {*shares} - {3}]  # what comes after costs more
+        return [{99}, tree, {*lp_values} - {3}]  # what comes after costs more
 
     run = Run((graph, targets, costs), guess)
     assert run.require_right(sum(costs[a] for a in best))
@@ -217,8 +217,8 @@ def test_answers_are_those_of_the_plain_program(
     seed: int, rule: ContainerRule, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """With a tree that may be bad."""
-    monkeypatch.setattr(greedy_stages, "improved", lambda graph, few, tree, *_: tree)
-    monkeypatch.setattr(relaxation_stages, "guessed", lambda *_: ())
+    monkeypatch.setattr(greedy_stages, "improve_locally", lambda graph, few, tree, *_: tree)
+    monkeypatch.setattr(relaxation_stages, "trees_by_lp_values", lambda *_: ())
     problem = random_problem(seed, rule, units=14)
     by = [(Objective.UNITS,), (Objective.PRICE,), (Objective.INPUTS, Objective.PRICE), (Objective.KITCHEN,)]
     objectives = by[seed % 4]
@@ -280,24 +280,28 @@ def test_a_proof_alone_is_of_a_total_that_no_derivation_is_below() -> None:
     for size, best in ((4, 3 + 6), (5, 4 + 10)):
         graph, targets, costs = corners(size)
         question = graph, targets, range(len(costs)), costs.__getitem__, [{targets[0]}]
-        proof = branched(*question, best, lambda: False)
+        proof = prove_by_branching(*question, best, lambda: False)
         assert proof is not None
         require_proves(proof, graph, targets, costs, best, whole=True)
-        assert branched(*question, best + 1, lambda: False) is None
-        assert branched(*question, best, lambda: True) is None
+        assert prove_by_branching(*question, best + 1, lambda: False) is None
+        assert prove_by_branching(*question, best, lambda: True) is None
 
 
 @pytest.mark.parametrize("prices", [[2] * 20, [0, *[1] * 19]])
 def test_costs_that_no_rounding_brings_to_the_total_are_not_proved(prices: list[int]) -> None:
     graph, targets, costs = corners(3)
     some = prices[: len(costs)]
-    assert branched(graph, targets, range(len(costs)), some.__getitem__, (), 5, lambda: False) is None
+    assert (
+        prove_by_branching(graph, targets, range(len(costs)), some.__getitem__, (), 5, lambda: False) is None
+    )
 
 
 def test_a_proof_that_names_too_much_is_not_given(monkeypatch: pytest.MonkeyPatch) -> None:
     graph, targets, costs = corners(4)
     monkeypatch.setattr(tuning, "PROOF", tuning.ProofTuning(proof_length=10_000))
-    assert branched(graph, targets, range(len(costs)), costs.__getitem__, (), 9, lambda: False) is None
+    assert (
+        prove_by_branching(graph, targets, range(len(costs)), costs.__getitem__, (), 9, lambda: False) is None
+    )
 
 
 def verify_again(content: dict[str, Any], problem: Problem) -> None:

@@ -19,8 +19,8 @@ from foon_asp.hypergraph import (
     relaxation_stages,
     tuning,
 )
-from foon_asp.hypergraph.cost_partition import CostPartitioning, SharedCosts
-from foon_asp.hypergraph.covering import Covering, Relaxed, UnsolvedError, Weighed
+from foon_asp.hypergraph.cost_partition import CostPartition, CostPartitioning
+from foon_asp.hypergraph.covering import BasicSolution, Covering, LpSolution, UnsolvedError
 from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.landmark_cuts import Cuts
 from foon_asp.hypergraph.landmark_relaxation import PARTS
@@ -45,12 +45,12 @@ def share_costs(
     known_cuts: Iterable[Iterable[int]],
     enough: int,
     expired: Callable[[], bool],
-) -> SharedCosts | None:
+) -> CostPartition | None:
     """Return the cost partition that a bound of ``enough``, convergence or time ends with."""
     return CostPartitioning(graph, targets, [*actions], cost, expired, known_cuts).advance(enough)
 
 
-def require_holds(graph: Hypergraph, targets: list[int], costs: list[int], found: SharedCosts) -> None:
+def require_holds(graph: Hypergraph, targets: list[int], costs: list[int], found: CostPartition) -> None:
     load = [0] * len(costs)
     for objects, weight in found.cuts:
         assert weight > 0
@@ -65,9 +65,9 @@ def require_holds(graph: Hypergraph, targets: list[int], costs: list[int], found
     assert found.reduced_costs == {a: cost * PARTS - load[a] for a, cost in enumerate(costs)}
     assert min(found.reduced_costs.values()) >= 0
     assert found.bound <= cheapest(graph, targets, costs) * PARTS
-    assert found.shares.keys() == set(range(len(costs)))
+    assert found.lp_values.keys() == set(range(len(costs)))
     for objects in found.tight:
-        assert sum(found.shares[action] for action in crossing(graph, objects)) < 1.01
+        assert sum(found.lp_values[action] for action in crossing(graph, objects)) < 1.01
 
 
 @pytest.mark.parametrize("wrong", [False, True])
@@ -77,17 +77,17 @@ def test_no_derivation_costs_less_than_the_bound(
 ) -> None:
     graph, targets, costs = asked(seed)
     if wrong:  # nothing that HiGHS says of weights makes a bound too great
-        drawn, told, amid = random.Random(seed), Covering.weights, Covering.interior_point
+        drawn, told, amid = random.Random(seed), Covering.duals, Covering.interior_point
 
         def anything(weights: list[float]) -> list[float]:
             return [drawn.choice([w, drawn.uniform(-1, 3), math.inf, math.nan]) for w in weights]
 
-        def inside(relaxation: Covering, expired: Callable[[], bool]) -> Weighed | None:
+        def inside(relaxation: Covering, expired: Callable[[], bool]) -> LpSolution | None:
             found = amid(relaxation, expired)
-            return found and found._replace(weights=anything(found.weights))
+            return found and found._replace(duals=anything(found.duals))
 
         monkeypatch.setattr(Covering, "interior_point", inside)
-        monkeypatch.setattr(Covering, "weights", lambda it: anything(told(it)))
+        monkeypatch.setattr(Covering, "duals", lambda it: anything(told(it)))
     found = share_costs(graph, targets, range(len(costs)), costs.__getitem__, (), 10**15, never)
     assert (found is None) == (not targets)
     if found is not None:
@@ -114,7 +114,7 @@ def test_shares_are_halves_where_three_landmarks_overlap() -> None:
     assert found is not None
     assert (found.bound, found.reduced_costs) == (PARTS * 3 // 2, dict.fromkeys(range(3), 0))
     assert sorted(map(sorted, (objects for objects, _ in found.cuts))) == [[1], [2], [3]]
-    assert found.shares == pytest.approx(dict.fromkeys(range(3), 0.5))
+    assert found.lp_values == pytest.approx(dict.fromkeys(range(3), 0.5))
     assert {*found.tight} == {frozenset({o}) for o in (1, 2, 3)}
     late = share_costs(graph, [1, 2, 3], range(3), lambda _: 1, [{1}], 2, lambda: True)
     assert late is not None
@@ -162,9 +162,9 @@ def test_the_bound_rises_with_each_solution_and_time_may_be_up_at_any_step() -> 
 @pytest.mark.parametrize("most", [0, 1, 2])
 def test_where_highs_finds_nothing_what_is_known_counts(most: int, monkeypatch: pytest.MonkeyPatch) -> None:
     graph, targets, costs = asked(8, (1, 2, 3))
-    solved, solve = list[Relaxed](), Covering.solve
+    solved, solve = list[BasicSolution](), Covering.solve
 
-    def lost(covering: Covering, expired: Callable[[], bool]) -> Relaxed:
+    def lost(covering: Covering, expired: Callable[[], bool]) -> BasicSolution:
         if len(solved) == most:
             raise UnsolvedError
         solved.append(solve(covering, expired))
@@ -188,7 +188,7 @@ def test_answers_are_those_of_the_plain_program(
     presolve_tuning = PresolveTuning(relaxed_actions=0, landmark_actions=few_members)
     monkeypatch.setattr(tuning, "PRESOLVE", presolve_tuning)
     monkeypatch.setattr(tuning, "RELAXATION", tuning.RELAXATION._replace(stalled_solutions=1))
-    monkeypatch.setattr(greedy_stages, "improved", lambda graph, few, tree, *_: tree)
+    monkeypatch.setattr(greedy_stages, "improve_locally", lambda graph, few, tree, *_: tree)
     problem = random_problem(seed, rule, units=14)
     objectives = [(Objective.UNITS,), (Objective.PRICE,), (Objective.SUCCESS,), (Objective.KITCHEN,)][
         seed % 4
@@ -219,7 +219,7 @@ def reduced(
 ) -> Reduced:
     """Reduce, where shared costs come to a bound and leave so much of the last unit, in parts."""
     every = dict.fromkeys(range(12), 0)
-    told = SharedCosts(bound, {**every, 11: left}, [], dict.fromkeys(every, 0.0))
+    told = CostPartition(bound, {**every, 11: left}, [], dict.fromkeys(every, 0.0))
     answers = iter([told])
 
     class Told:
@@ -229,7 +229,7 @@ def reduced(
 
         def __init__(self, *_: object) -> None: ...
 
-        def advance(self, *_: object) -> SharedCosts | None:
+        def advance(self, *_: object) -> CostPartition | None:
             return next(answers, None)
 
     patched.setattr(relaxation_stages, "CostPartitioning", Told)
@@ -237,7 +237,7 @@ def reduced(
     patched.setattr(tuning, "PRESOLVE", PresolveTuning(relaxed_actions=0, branching_budget=0))
     found = reduce(plain_problem(WAYS, [1], rates=["1"] * 12), levels((objective,)), reductions)
     assert found.tree == FEW
-    assert found.shared == (told if bound > PARTS else None)
+    assert found.partition == (told if bound > PARTS else None)
     return found
 
 

@@ -90,13 +90,13 @@ def test_a_cut_is_widened_by_what_cannot_be_made() -> None:
         start=[5],
     )
     cutter = Cutter(graph, [0])
-    assert cutter.widened([0]) == Cut((0, 2, 3, 4), (0, 6))
-    assert cutter.widened([5, 0]) == Cut((0, 2, 3, 4), (0, 6))
-    assert cutter.widened([0, 1]) == Cut((0, 1, 2, 3, 4), (4, 6))
-    assert Cutter(graph, [0], frozenset({6})).widened([0]) == Cut((0, 2, 3, 4), (0,))
-    assert Cutter(graph, [0], frozenset({1, 3, 6})).widened([0, 1]) == Cut((0, 1, 4), (4,))
-    assert cutter.widened([0, 3]) == Cut((0, 3, 4), (0, 6))  # 2 is not needed for it
-    assert cutter.widened([5]) == Cut((), ())
+    assert cutter.widen([0]) == Cut((0, 2, 3, 4), (0, 6))
+    assert cutter.widen([5, 0]) == Cut((0, 2, 3, 4), (0, 6))
+    assert cutter.widen([0, 1]) == Cut((0, 1, 2, 3, 4), (4, 6))
+    assert Cutter(graph, [0], frozenset({6})).widen([0]) == Cut((0, 2, 3, 4), (0,))
+    assert Cutter(graph, [0], frozenset({1, 3, 6})).widen([0, 1]) == Cut((0, 1, 4), (4,))
+    assert cutter.widen([0, 3]) == Cut((0, 3, 4), (0, 6))  # 2 is not needed for it
+    assert cutter.widen([5]) == Cut((), ())
 
 
 @pytest.mark.parametrize("seed", range(100))
@@ -130,5 +130,5 @@ def test_actions_are_refused_one_by_one_as_the_definition_says(seed: int) -> Non
     assert not any(reaches(graph, admitted, [o]) for o in found.objects)
     for member in found.members:  # none of them is there for nothing
         assert reaches(graph, {*every} - forbidden.union(found.members) | {member}, cutter.targets)
-    assert cutter.among(found.members) == found.members
-    assert cutter.widened(found.objects).members == found.members
+    assert cutter.without_forbidden(found.members) == found.members
+    assert cutter.widen(found.objects).members == found.members

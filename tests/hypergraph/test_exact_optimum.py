@@ -20,7 +20,7 @@ def counts(*values: int) -> list[Vector]:
     return [(Fraction(value),) for value in values]
 
 
-def shares(
+def lp_values(
     rows: Sequence[Sequence[int]], columns: Sequence[int], tight: Sequence[int]
 ) -> dict[int, Fraction] | None:
     """Return the shares of a basis by Cramer's rule, ``None`` where it is singular or not feasible."""
@@ -52,11 +52,11 @@ def check(
     """Hold shares against weights: both are feasible, none is 0, and they come to the same."""
     assert all(share > 0 for share in found.x.values())
     assert all(sum(found.x.get(column, 0) for column in row) >= 1 for row in rows)
-    assert all(order.sign(weight) > 0 for weight in found.weights.values())
+    assert all(order.sign(weight) > 0 for weight in found.duals.values())
     for column, cost in enumerate(costs):
-        load = order.total(weight for row, weight in found.weights.items() if column in rows[row])
+        load = order.total(weight for row, weight in found.duals.items() if column in rows[row])
         assert order.compare(load, cost) <= 0
-    assert order.total(found.weights.values()) == found.value
+    assert order.total(found.duals.values()) == found.value
     paid = order.total(tuple(part * share for part in costs[column]) for column, share in found.x.items())
     assert order.compare(paid, found.value) == 0
 
@@ -73,7 +73,7 @@ def test_from_every_feasible_basis_the_optimum_is_found(seed: int) -> None:
         for columns in combinations(range(4), size):
             for tight in combinations(range(len(rows)), size):
                 found = exact_optimum(rows, costs, order, columns[::-1], tight[::-1])
-                assert (found is None) == (shares(rows, columns, tight) is None)
+                assert (found is None) == (lp_values(rows, columns, tight) is None)
                 if found is not None:
                     check(rows, costs, order, found)
                     optima.append(found.value)
@@ -87,7 +87,7 @@ def test_from_a_basis_that_is_best_for_other_costs_the_optimum_is_found(seed: in
     rows = [sorted(rng.sample(range(9), rng.randint(2, 4))) for _ in range(9)]
     other = Covering([rng.uniform(1, 2) for _ in range(9)])
     for row in rows:
-        other.add(row)
+        other.add_row(row)
     near = other.solve()
     costs = counts(*(rng.randint(1, 9) for _ in range(9)))
     found = exact_optimum(rows, costs, COUNT, near.columns, near.rows)

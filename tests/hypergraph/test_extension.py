@@ -7,7 +7,7 @@ from fractions import Fraction
 import pytest
 
 from foon_asp.hypergraph import ALL, SAFE, Reduction, reduce
-from foon_asp.hypergraph.extension import extended, extensions
+from foon_asp.hypergraph.extension import actions_of_extensions, extend_tree
 from foon_asp.hypergraph.goal_graph import GoalGraph, graph_of
 from foon_asp.problem import Objective, Problem, Restriction, levels
 from tests.hypergraph.test_reduction import Heard, interrupt_at
@@ -38,20 +38,20 @@ def requiring(*sets: set[int], problem: Problem = MADE) -> GoalGraph:
 
 def test_a_tree_is_extended_as_cheaply_as_it_can_be() -> None:
     graph = requiring({3, 6})
-    assert extended(graph, {1, 2}, lambda _: 1, 99) == {1, 2, 3}
-    assert extended(graph, {0}, lambda _: 1, 99) == {0, 1, 3}
-    assert extended(graph, {0, 4, 5}, lambda _: 1, 99) == {0, 4, 5, 6}
-    assert extended(graph, {0}, lambda unit: 5 if unit == 3 else 1, 99) == {0, 4, 5, 6}
-    assert extended(requiring({3}, {6}), {0}, lambda _: 1, 99) == {0, 1, 3, 4, 5, 6}
-    assert extended(requiring({0}), {0}, lambda _: 1, 99) == {0}
-    assert extended(requiring({7}), {0}, lambda _: 1, 99) is None
+    assert extend_tree(graph, {1, 2}, lambda _: 1, 99) == {1, 2, 3}
+    assert extend_tree(graph, {0}, lambda _: 1, 99) == {0, 1, 3}
+    assert extend_tree(graph, {0, 4, 5}, lambda _: 1, 99) == {0, 4, 5, 6}
+    assert extend_tree(graph, {0}, lambda unit: 5 if unit == 3 else 1, 99) == {0, 4, 5, 6}
+    assert extend_tree(requiring({3}, {6}), {0}, lambda _: 1, 99) == {0, 1, 3, 4, 5, 6}
+    assert extend_tree(requiring({0}), {0}, lambda _: 1, 99) == {0}
+    assert extend_tree(requiring({7}), {0}, lambda _: 1, 99) is None
 
 
 def test_what_an_extension_up_to_a_cost_can_have() -> None:
     graph = requiring({3, 6})
 
     def up_to(limit: int, *free: int) -> set[int]:
-        return extensions(graph, set(free), lambda _: 1, limit, lambda: False)
+        return actions_of_extensions(graph, set(free), lambda _: 1, limit, lambda: False)
 
     assert [up_to(limit) for limit in range(4)] == [set(), set(), {1, 3}, {1, 3, 4, 5, 6}]
     assert up_to(1, 1) == {3}  # what is free is there anyway
@@ -66,11 +66,11 @@ def test_what_an_extension_uses_twice_costs_it_once() -> None:
         *("chop: start > t", "dry: t > z"),
     )
     graph = requiring({4}, problem=fork)
-    found = [extensions(graph, set(), lambda _: 1, limit, lambda: False) for limit in (2, 3, 4)]
+    found = [actions_of_extensions(graph, set(), lambda _: 1, limit, lambda: False) for limit in (2, 3, 4)]
     assert found == [set(), {1, 2, 3, 4}, {1, 2, 3, 4}]
     # but where a tree is looked for, it counts twice: 5 rather than 3 by estimates, which 6 is between
     prices = [9, 1, 1, 1, 1, 2, 2].__getitem__
-    assert extended(requiring({4, 6}, problem=fork), {0}, prices, 99) == {0, 5, 6}
+    assert extend_tree(requiring({4, 6}, problem=fork), {0}, prices, 99) == {0, 5, 6}
 
 
 def test_of_a_large_required_set_the_units_stay_that_lack_least() -> None:
@@ -139,7 +139,9 @@ def test_a_tree_as_cheap_as_the_best_for_the_goals_alone_is_the_best(
     assert (found.tree, found.settled, found.units) == (best.tree, True, tuple(best.tree))
     assert found.costs is not None
     assert found.cuts is not None
-    assert found.costs.first(found.bound) == found.costs.first(sum(map(found.costs, best.tree)))
+    assert found.costs.first_objective_bound(found.bound) == found.costs.first_objective_bound(
+        sum(map(found.costs, best.tree))
+    )
     # not where what is as good counts, or what is left out may be in such a tree
     assert not reduce(asked, objectives, ALL - {Reduction.BOUNDS}).settled
 

@@ -36,9 +36,9 @@ def test_what_takes_something_back_gives_it_to_no_effect() -> None:
     achievers = FirstAchievers(graph)
     assert achievers.graph.gives == [[1], [2], [3], [], [4]]
     assert achievers.graph.needs == graph.needs
-    assert achievers.members(frozenset({2})) == [1]
-    assert achievers.widened(frozenset({2})) == {2, 3}  # which the last one needs
-    assert achievers.widened(frozenset({4})) == {4}
+    assert achievers.landmark_of(frozenset({2})) == [1]
+    assert achievers.widen(frozenset({2})) == {2, 3}  # which the last one needs
+    assert achievers.widen(frozenset({4})) == {4}
 
 
 def test_what_is_given_to_no_effect_is_what_no_need_is_reached_without() -> None:
@@ -69,11 +69,11 @@ def test_every_set_of_actions_makes_the_same_and_cuts_have_the_members_they_say(
             without = frozenset(a for a in everything if rng.random() < 0.4)
             assert achievers.graph.reach(without) == graph.reach(without)
         for cut in cuts(rng, graph):
-            wide = achievers.widened(cut)
+            wide = achievers.widen(cut)
             assert wide >= cut
             assert wide.isdisjoint(graph.start)
-            assert set(achievers.members(cut)) == crossing(graph, wide)
-            fewer += len(achievers.members(cut)) < len(crossing(graph, cut))
+            assert set(achievers.landmark_of(cut)) == crossing(graph, wide)
+            fewer += len(achievers.landmark_of(cut)) < len(crossing(graph, cut))
             wider += wide > cut
     assert (fewer > 9) == (bits != 0)
     assert (wider > 9) == (bits != 0)
@@ -89,5 +89,5 @@ def test_nothing_is_known_where_time_is_up(monkeypatch: pytest.MonkeyPatch) -> N
         late = FirstAchievers(graph, lambda: True)
         assert late.graph.gives == graph.gives
         for cut in cuts(rng, graph):
-            assert set(late.members(cut)) == crossing(graph, cut)
-            assert late.widened(cut) == cut
+            assert set(late.landmark_of(cut)) == crossing(graph, cut)
+            assert late.widen(cut) == cut

@@ -36,7 +36,7 @@ JUNK = without_never(
 
 def test_what_a_tree_up_to_a_cost_can_have() -> None:
     plain, spare = subproblem_of(JUNK), subproblem_of(JUNK, spare=True)
-    assert [{*subproblem.everything()} for subproblem in (plain, spare)] == [{0}, {0, 1, 2, 3, 4, 6}]
+    assert [{*subproblem.all_units()} for subproblem in (plain, spare)] == [{0}, {0, 1, 2, 3, 4, 6}]
     for units, expected in (
         ({0}, {0}),
         ({0, 1}, {0, 1, 6}),
@@ -48,7 +48,7 @@ def test_what_a_tree_up_to_a_cost_can_have() -> None:
     assert spare.units_within(0, lambda: False) == plain.units_within(0, lambda: False) == frozenset()
     assert spare.units_within(2, lambda: True) == {0, 1, 6}
     removed = subproblem_of(replace(JUNK, restriction=Restriction(lambda unit: unit in {1, 5})), spare=True)
-    assert within(removed, {0, 6}) == {*removed.everything()} == {0, 6}
+    assert within(removed, {0, 6}) == {*removed.all_units()} == {0, 6}
 
 
 # a has two makers, b a row of one each; start is grown, and at hand
@@ -98,7 +98,7 @@ def test_items_count_in_what_a_tree_costs_where_they_are_counted() -> None:
     # they are no units
     subproblem = subproblem_of(small("mix: a, b > end", "cut: a > end"), KITCHEN)
     assert {*subproblem.actions_within(99, lambda: False)} > {2, 3}
-    assert within(subproblem, {0}) == subproblem.everything() == subproblem.nearest(9) == {0, 1}
+    assert within(subproblem, {0}) == subproblem.all_units() == subproblem.nearest_units(9) == {0, 1}
     assert (subproblem.total({0}), subproblem.total({1})) == (
         2 * subproblem.costs(2) + 1,
         subproblem.costs(2) + 1,
@@ -128,8 +128,8 @@ def test_the_units_nearest_to_the_goals_make_them_sooner_or_later() -> None:
     """Whatever they cost: exact costs by success have forty digits."""
     rated = replace(MADE, rates=dict.fromkeys(MADE.network.motions, Fraction(1, 3)))
     for subproblem in (subproblem_of(MADE), subproblem_of(rated, Objective.SUCCESS)):
-        assert [{*subproblem.nearest(most)} for most in (1, 6, 7)] == [{*range(n)} for n in (5, 6, 7)]
-        assert subproblem.nearest(99) == subproblem.everything() == {*range(7)}
+        assert [{*subproblem.nearest_units(most)} for most in (1, 6, 7)] == [{*range(n)} for n in (5, 6, 7)]
+        assert subproblem.nearest_units(99) == subproblem.all_units() == {*range(7)}
 
 
 def test_ctrl_c_while_cuts_are_found_anew_ends_it() -> None:
@@ -141,4 +141,4 @@ def test_ctrl_c_while_cuts_are_found_anew_ends_it() -> None:
 def test_what_is_wide_is_what_was_there_before_anything_was_left_out() -> None:
     for seed in range(3):
         subproblem = subproblem_of(gap_problem(seed))
-        assert {*subproblem.remaining} == subproblem.everything() == subproblem.graph.cone()[0]
+        assert {*subproblem.remaining} == subproblem.all_units() == subproblem.graph.cone()[0]

@@ -119,7 +119,7 @@ def test_large_programs_have_the_same_solutions(monkeypatch: pytest.MonkeyPatch)
     assert program.whole_optimum({0: 2, 1: 3}) == [2.0, 0.0]
     covering = Covering([1.0] * 3)
     for row in ([0, 1], [1, 2], [0, 2]):
-        covering.add(row)
+        covering.add_row(row)
     amid = covering.interior_point()
     assert amid is not None
     assert amid.value == pytest.approx(1.5)

@@ -179,5 +179,5 @@ def test_cuts_of_a_long_chain_have_few_objects_of_their_own() -> None:
     graph = Hypergraph(size + 1, [[o] for o in range(size)], [[o + 1] for o in range(size)], [0])
     found = landmark_cuts(graph, [size], range(size), lambda _: 1, {}, lambda: False)
     assert found.bound == size
-    assert max(len(each.own) for each in found.cuts) == 1
+    assert max(len(each.added_objects) for each in found.cuts) == 1
     assert found.cuts[2].objects == {size, size - 1, size - 2}

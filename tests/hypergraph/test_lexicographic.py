@@ -7,7 +7,7 @@ from fractions import Fraction
 import pytest
 
 from foon_asp.hypergraph import lexicographic
-from foon_asp.hypergraph.coprime_base import coprime_base, powers
+from foon_asp.hypergraph.coprime_base import coprime_base, factor_exponents
 from foon_asp.hypergraph.lexicographic import Lexicographic, minus_log
 
 ONE, HALF = Fraction(1), Fraction(1, 2)
@@ -109,9 +109,9 @@ def test_numbers_are_taken_apart_into_coprime_ones() -> None:
     assert sorted(coprime_base([4, 16, 64])) == [4]
     assert sorted(coprime_base([10, 21, 35])) == [2, 3, 5, 7]
     assert sorted(coprime_base([8, 9])) == [8, 9]
-    assert powers(72, [2, 3, 5]) == {2: 3, 3: 2}
-    assert powers(64, [8]) == {8: 2}
-    assert powers(1, [2]) == {}
+    assert factor_exponents(72, [2, 3, 5]) == {2: 3, 3: 2}
+    assert factor_exponents(64, [8]) == {8: 2}
+    assert factor_exponents(1, [2]) == {}
 
 
 def test_totals_above_all_floats_are_ordered() -> None:
@@ -162,11 +162,11 @@ def test_costs_are_ordered_as_products_of_fractions_are(seed: int) -> None:
     assert order.width == 4
     share = Fraction(1, rng.choice([1, 2, 3]))
     for _ in range(20):
-        powers = [rng.randint(-3, 3) for _ in rates]
+        exponents = [rng.randint(-3, 3) for _ in rates]
         count = rng.choice([-1, 0, 0, 1])
-        product = math.prod(rate**power for rate, power in zip(rates, powers, strict=True))
+        product = math.prod(rate**power for rate, power in zip(rates, exponents, strict=True))
         by_rates = (product < 1) - (product > 1)
-        parts = [share * power for power in powers]
+        parts = [share * power for power in exponents]
         vector = (*parts, share * count) if first else (share * count, *parts)
         expected = by_rates or count if first else count or by_rates
         assert order.sign(vector) == expected

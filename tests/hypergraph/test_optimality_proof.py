@@ -12,8 +12,8 @@ import pytest
 
 from foon_asp.errors import BugError
 from foon_asp.hypergraph import optimality_proof, tuning
-from foon_asp.hypergraph.branch_and_bound import branched
-from foon_asp.hypergraph.covering import Covering, Relaxed
+from foon_asp.hypergraph.branch_and_bound import prove_by_branching
+from foon_asp.hypergraph.covering import BasicSolution, Covering
 from foon_asp.hypergraph.cut import Cut
 from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.lexicographic import Lexicographic
@@ -123,11 +123,11 @@ def test_what_is_proved_of_random_graphs_is_true(
     best = sum(price[a] for a in tree)
     drawn, solve = random.Random(seed), Covering.solve
 
-    def anything(covering: Covering, expired: Callable[[], bool] = lambda: False) -> Relaxed:
+    def anything(covering: Covering, expired: Callable[[], bool] = lambda: False) -> BasicSolution:
         found = solve(covering, expired)
         value, x = drawn.uniform(-9, 9), [drawn.choice([0, 0.5, 1, x]) for x in found.x]
         basis = [pair for pair in zip(found.columns, found.rows, strict=True) if drawn.random() < 0.9]
-        return Relaxed(value, x, [column for column, _ in basis], [row for _, row in basis])
+        return BasicSolution(value, x, [column for column, _ in basis], [row for _, row in basis])
 
     if wrong:
         monkeypatch.setattr(Covering, "solve", anything)
@@ -261,7 +261,7 @@ def test_a_bound_is_rounded_up_where_it_is_no_multiple() -> None:
     prover = Prover(KITCHEN, [4], [order.zero] * 4, order, multiples=multiples)
 
     def rounded(*bound: Fraction | int) -> tuple[list[object], int | None]:
-        found, place = prover.rounded(tuple(map(Fraction, bound)))
+        found, place = prover.round_up(tuple(map(Fraction, bound)))
         return [*found], place
 
     third = Fraction(1, 3)
@@ -269,7 +269,7 @@ def test_a_bound_is_rounded_up_where_it_is_no_multiple() -> None:
     assert rounded(7 * third, 5, 1) == ([4, 0, 0], 0)  # what comes after counts for nothing then
     assert rounded(-3, 5, 1) == ([-2, 0, 0], 0)
     assert rounded(6, 5, 2) == ([6, 5, 3], 2)
-    assert Prover(KITCHEN, [4], [order.zero] * 4, order).rounded(order.zero) == (order.zero, None)
+    assert Prover(KITCHEN, [4], [order.zero] * 4, order).round_up(order.zero) == (order.zero, None)
 
 
 @pytest.mark.parametrize("step", [1, 3])
@@ -299,10 +299,10 @@ def test_of_many_actions_rounded_weights_prove_each_of_the_cases_that_are_told_a
     met, answers = Counter[type](), list[Proof | None]()
 
     def search(*asked: Any) -> Proof | None:
-        answers.append(branched(*asked) if searched else None)
+        answers.append(prove_by_branching(*asked) if searched else None)
         return answers[-1]
 
-    monkeypatch.setattr(optimality_proof, "branched", search)
+    monkeypatch.setattr(optimality_proof, "prove_by_branching", search)
 
     pairs = list(combinations(range(5), 2))
     complete = [[e for e, pair in enumerate(pairs) if corner in pair] for corner in range(5)]
@@ -344,7 +344,7 @@ def test_what_a_search_proves_is_stated_of_all_actions_and_in_what_they_cost(
 
     monkeypatch.setattr(tuning, "PROOF", tuning.ProofTuning(rounded_actions=0))
     graph = Hypergraph(4, [[], [], []], [[1, 2], [2, 3], [1, 3]], [0])
-    monkeypatch.setattr(optimality_proof, "branched", lambda *_: proof(Cut((1,), (0,)), 1))
+    monkeypatch.setattr(optimality_proof, "prove_by_branching", lambda *_: proof(Cut((1,), (0,)), 1))
     prover = Prover(graph, [1, 2, 3], costs(3, 3, 3), COUNT, multiples=[Fraction(3)])
     found = prover.prove([0, 1, 2])
     assert found == proof(Cut((1,), (0, 2)), 3, rounded=0)
@@ -371,22 +371,22 @@ def test_time_may_be_up_at_any_step() -> None:
 
 def test_the_relaxation_gives_shares_and_its_basis() -> None:
     relaxation = Covering([1.0, 1.0, 1.0, 5.0])
-    assert relaxation.solve() == Relaxed(0.0, [0.0] * 4, [], [])
+    assert relaxation.solve() == BasicSolution(0.0, [0.0] * 4, [], [])
     for row in ([0, 1, 3], [1, 2], [0, 2, 3], [0, 1, 2]):
-        relaxation.add(row)
-    assert relaxation.solve() == Relaxed(1.5, [0.5, 0.5, 0.5, 0.0], [0, 1, 2], [0, 1, 2])
+        relaxation.add_row(row)
+    assert relaxation.solve() == BasicSolution(1.5, [0.5, 0.5, 0.5, 0.0], [0, 1, 2], [0, 1, 2])
     amid = relaxation.interior_point()
     assert amid is not None
     assert amid.value == pytest.approx(1.5, abs=1e-5)
-    assert [*amid.x, *amid.weights] == pytest.approx([0.5, 0.5, 0.5, 0.0] * 2, abs=1e-4)
-    relaxation.add([3])
+    assert [*amid.x, *amid.duals] == pytest.approx([0.5, 0.5, 0.5, 0.0] * 2, abs=1e-4)
+    relaxation.add_row([3])
     assert relaxation.solve().value == pytest.approx(6.0)
-    assert Covering([]).solve() == Relaxed(0.0, [], [], [])
+    assert Covering([]).solve() == BasicSolution(0.0, [], [], [])
 
 
 def test_a_row_that_nothing_covers_is_a_bug(capfd: pytest.CaptureFixture[str]) -> None:
     relaxation = Covering([1.0])
-    relaxation.add([])
+    relaxation.add_row([])
     with pytest.raises(BugError, match=r"HiGHS ends a covering problem with HighsModelStatus\.kInfeasible"):
         relaxation.solve()
     assert capfd.readouterr() == ("", "")

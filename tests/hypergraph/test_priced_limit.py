@@ -11,7 +11,7 @@ import pytest
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.deadline import Deadline
 from foon_asp.hypergraph import ALL, NONE, priced_limit, tuning
-from foon_asp.hypergraph.priced_limit import Limited
+from foon_asp.hypergraph.priced_limit import WithinLimit
 from foon_asp.network import UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.rules.passed_constraint import given_constraint
@@ -132,7 +132,7 @@ def test_ctrl_c_while_limits_are_looked_at(monkeypatch: pytest.MonkeyPatch) -> N
     def pressed(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(priced_limit, "limited", pressed)
+    monkeypatch.setattr(priced_limit, "search_within_limit", pressed)
     deadline = Deadline()
     outcome = solve(THREE, settings=within(cut=2)._replace(deadline=deadline))
     assert (outcome.status, outcome.units, deadline.interrupted) == (Status.UNKNOWN, None, True)
@@ -145,11 +145,11 @@ def test_a_tree_within_a_limit_that_is_found_as_time_is_up_is_not_lost(
 ) -> None:
     deadline = Deadline()
 
-    def late(*_: object) -> Limited:
+    def late(*_: object) -> WithinLimit:
         deadline.interrupt()
-        return Limited(frozenset({0, 1, 7, 8, 9}), units)
+        return WithinLimit(frozenset({0, 1, 7, 8, 9}), units)
 
-    monkeypatch.setattr(priced_limit, "limited", late)
+    monkeypatch.setattr(priced_limit, "search_within_limit", late)
     outcome = solve(THREE, settings=within(cut=2)._replace(deadline=deadline))
     assert (outcome.status, outcome.units) == (Status.FEASIBLE, (0, 1, 7, 8, 9))
 

@@ -12,12 +12,12 @@ import pytest
 
 from foon_asp.errors import UserError
 from foon_asp.hypergraph import ALL, NONE, SAFE, Reduction, parse_reductions, tuning
-from foon_asp.hypergraph.action_landmarks import relevant_beside_landmarks
-from foon_asp.hypergraph.dominance import undominated
+from foon_asp.hypergraph.action_landmarks import relevant_given_landmarks
+from foon_asp.hypergraph.dominance import undominated_actions
 from foon_asp.hypergraph.exact_costs import CoarseCosts
 from foon_asp.hypergraph.goal_graph import GoalGraph, graph_of
-from foon_asp.hypergraph.h_values import Derivations, derive
-from foon_asp.hypergraph.lazy_h_max import within_reach
+from foon_asp.hypergraph.h_values import Derivations, compute_h_values
+from foon_asp.hypergraph.lazy_h_max import lazy_h_max_test
 from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
 from foon_asp.hypergraph.restricted_subproblem import restricted_subproblem
 from foon_asp.network import NetworkBuilder, ObjectNode, Source, UnitPrices
@@ -61,7 +61,7 @@ def solvable(seeds: int) -> Iterator[tuple[GoalGraph, dict[int, int], list[int]]
             ]
             graph = plain(actions, rng.sample(range(1, 12), 6), [0])
         price = {a: rng.randint(0, 6) for a in range(len(graph.needs))}
-        made = derive(graph, price, price, h_add=False)
+        made = compute_h_values(graph, price, price, h_add=False)
         if made.tree(graph, graph.goals):
             yield graph, price, list(made.h_actions)
 
@@ -95,16 +95,16 @@ def test_estimates_are_what_they_are_defined_to_be(added: bool) -> None:
         graph = random_graph(seed)
         price = {a: rng.randint(seed % 2, 5) for a in range(9)}
         actions = rng.sample(range(9), 8)
-        found = derive(graph, actions, price, added)
-        assert (found.cost, found.h_actions) == costs_by_definition(graph, actions, price, added)
+        found = compute_h_values(graph, actions, price, added)
+        assert (found.h_objects, found.h_actions) == costs_by_definition(graph, actions, price, added)
         assert list(found.h_actions.values()) == sorted(found.h_actions.values())
-        assert all(found.h_actions[found.maker[o]] == cost for o, cost in found.cost.items())
+        assert all(found.h_actions[found.best_achievers[o]] == cost for o, cost in found.h_objects.items())
         tree = found.tree(graph, graph.goals)
-        if graph.start.union(found.cost).issuperset(graph.goals):
+        if graph.start.union(found.h_objects).issuperset(graph.goals):
             assert tree is not None
             assert executes(graph, tree)
             used = {*graph.goals}.union(*(graph.needs[a] for a in tree)) - graph.start
-            assert tree == {found.maker[o] for o in used}
+            assert tree == {found.best_achievers[o] for o in used}
             made += 1
         else:
             assert tree is None
@@ -114,7 +114,7 @@ def test_estimates_are_what_they_are_defined_to_be(added: bool) -> None:
 
 def test_what_is_there_from_the_start_is_made_by_nothing() -> None:
     graph = plain([([], [0, 1]), ([0], [2])], [0, 2], [0])
-    found = derive(graph, range(2), {0: 1, 1: 1}.__getitem__, h_add=True)
+    found = compute_h_values(graph, range(2), {0: 1, 1: 1}.__getitem__, h_add=True)
     assert found == Derivations({1: 1, 2: 1}, {1: 0, 2: 1}, {0: 1, 1: 1})
     assert [found.tree(graph, objects) for objects in ([0], [0, 2], [2, 3])] == [set(), {1}, None]
 
@@ -123,7 +123,7 @@ def test_of_a_tree_each_action_is_followed_once() -> None:
     # two of each of 60 steps, each of which needs both of the step before: 2 ** 60 ways back
     steps = [([2 * step, 2 * step + 1], [2 * step + 2 + side]) for step in range(60) for side in range(2)]
     graph = plain(steps, [120, 121], [0, 1])
-    found = derive(graph, range(120), dict.fromkeys(range(120), 1), h_add=False)
+    found = compute_h_values(graph, range(120), dict.fromkeys(range(120), 1), h_add=False)
     assert found.tree(graph, graph.goals) == set(range(120))
 
 
@@ -154,7 +154,7 @@ def test_what_is_near_is_what_it_is_defined_to_be() -> None:
         graph = random_graph(seed, actions=12)
         rest = {a: rng.randint(seed % 2, 5) for a in range(12)}
         allowed = set(rng.sample(range(12), 11))
-        before = derive(graph, allowed, rest, h_add=False).h_actions
+        before = compute_h_values(graph, allowed, rest, h_add=False).h_actions
         for limit in (0, 1, 2, 4, 7, 11):
             for known in (None, before):
                 found = neighbourhood(
@@ -170,7 +170,7 @@ def test_what_is_near_is_what_it_is_defined_to_be() -> None:
 def test_all_cheap_trees_are_near() -> None:
     for price, graph, slim in with_trees():
         cone, _ = graph.cone()
-        made = derive(graph, cone, price.__getitem__, h_add=False)
+        made = compute_h_values(graph, cone, price.__getitem__, h_add=False)
         for limit in (0, 1, 3, 6, 12, 100):
             cheap = [tree for tree in slim if sum(map(price.__getitem__, tree)) <= limit]
             close = neighbourhood(graph, set(cone), price.__getitem__, limit)
@@ -215,18 +215,18 @@ def test_what_is_within_reach_is_what_is_derived_at_once(
         allowed = set(rng.sample(range(14), 12))
         rest = {a: rng.randint(seed % 2, 4) for a in allowed}
         exact = (deep, looks, seed % 2) == (100, 1000, 1)
-        made = derive(graph, allowed, rest, h_add=False)
-        reach = within_reach(graph, allowed, rest.__getitem__)
+        made = compute_h_values(graph, allowed, rest, h_add=False)
+        reach = lazy_h_max_test(graph, allowed, rest.__getitem__)
         asked = [(o, limit) for o in range(graph.size) for limit in range(9)]
         rng.shuffle(asked)
         for o, limit in asked:
-            beyond = o not in graph.start and made.cost.get(o, math.inf) > limit
+            beyond = o not in graph.start and made.h_objects.get(o, math.inf) > limit
             said = not reach(o, limit)
             assert (beyond == said) if exact else (beyond or not said), (seed, o, limit)
             told += said
         for limit in (0, 2, 5):
             close = neighbourhood(graph, allowed, rest.__getitem__, limit, made.h_actions)
-            reach = within_reach(graph, allowed, rest.__getitem__)
+            reach = lazy_h_max_test(graph, allowed, rest.__getitem__)
             found = neighbourhood(graph, allowed, rest.__getitem__, limit, reachable=reach)
             assert found == close if exact else found >= close, (seed, limit)
     assert told > 500
@@ -244,7 +244,7 @@ def test_circles_are_not_gone_round_for_ever(monkeypatch: pytest.MonkeyPatch) ->
         return rests[action]
 
     monkeypatch.setattr(tuning, "CUTS", tuning.CutTuning(lazy_looks=500))
-    reach = within_reach(plain(actions, [1]), range(len(actions)), rest)
+    reach = lazy_h_max_test(plain(actions, [1]), range(len(actions)), rest)
     assert reach(1, 10**7)
     assert reach(2, 10**7)
     assert next(looked) < 700
@@ -252,7 +252,7 @@ def test_circles_are_not_gone_round_for_ever(monkeypatch: pytest.MonkeyPatch) ->
 
 def test_costs_may_be_larger_than_any_float() -> None:
     """Of an object that nothing makes, nothing is said, however much the action costs that needs it."""
-    reach = within_reach(plain([([], [2]), ([2, 3], [1])], [1]), range(2), lambda _: 10**400)
+    reach = lazy_h_max_test(plain([([], [2]), ([2, 3], [1])], [1]), range(2), lambda _: 10**400)
     asked = (1, 10**500), (1, 2 * 10**400), (2, 10**400), (2, 10**399)
     assert [reach(o, limit) for o, limit in asked] == [False, False, True, False]
 
@@ -306,7 +306,7 @@ def test_those_that_dominate_are_found_as_by_looking_at_all() -> None:
                 for other in left - {action}
             ):
                 left.discard(action)
-        assert undominated(graph, actions, prices.__getitem__) == left
+        assert undominated_actions(graph, actions, prices.__getitem__) == left
         gone += len(actions) - len(left)
     assert gone > 400
 
@@ -314,7 +314,7 @@ def test_those_that_dominate_are_found_as_by_looking_at_all() -> None:
 def test_what_others_dominate_costs_no_tree() -> None:
     for price, graph, slim in with_trees():
         cone, _ = graph.cone()
-        left = undominated(graph, cone, price.__getitem__)
+        left = undominated_actions(graph, cone, price.__getitem__)
         totals = {tree: sum(map(price.__getitem__, tree)) for tree in slim}
         assert min(totals[tree] for tree in slim if tree <= left) == min(totals.values())
 
@@ -322,9 +322,9 @@ def test_what_others_dominate_costs_no_tree() -> None:
 def test_all_trees_without_a_spare_unit_are_beside_what_is_forced() -> None:
     for _, graph, slim in with_trees():
         cone, _ = graph.cone()
-        assert frozenset().union(*slim) <= relevant_beside_landmarks(graph, set(cone))
+        assert frozenset().union(*slim) <= relevant_given_landmarks(graph, set(cone))
         for tree in slim:  # allowed is heard: nothing comes from units that are not
-            assert relevant_beside_landmarks(graph, tree) == tree
+            assert relevant_given_landmarks(graph, tree) == tree
 
 
 @pytest.mark.parametrize(
@@ -349,7 +349,7 @@ def test_all_trees_without_a_spare_unit_are_beside_what_is_forced() -> None:
 def test_beside_what_is_forced_nothing_else_stays(
     actions: list[Action], goals: list[int], expected: set[int]
 ) -> None:
-    assert relevant_beside_landmarks(plain(actions, goals, [0]), range(len(actions))) == expected
+    assert relevant_given_landmarks(plain(actions, goals, [0]), range(len(actions))) == expected
 
 
 # --- A question as plain arrays.

@@ -41,7 +41,7 @@ class Heard(Listener):
         self.trees.append(set(units))
 
     def bound(self, costs: ExactCosts, bound: int) -> None:
-        first = costs.first(bound)
+        first = costs.first_objective_bound(bound)
         assert isinstance(first, int)
         self.bounds.append(first)
 
@@ -151,7 +151,7 @@ def test_what_is_better_than_the_tree_in_hand_stays_and_what_is_dearer_goes(
     assert set(found.units) == (drawn | others if stays else drawn)
     assert found.costs is not None
     assert found.cuts is not None
-    assert (found.bound, found.costs.first(found.bound)) == (found.cuts.bound, 10)
+    assert (found.bound, found.costs.first_objective_bound(found.bound)) == (found.cuts.bound, 10)
     assert not found.settled
 
 
@@ -235,24 +235,28 @@ def test_cuts_settle_by_exact_costs_and_not_by_rounded_ones() -> None:
     assert costs.doubt > 0
     assert first > second + costs.doubt
     own = [WeightedCut(frozenset({1}), (0,), 0, first), WeightedCut(frozenset({2}), (1,), 1, second)]
-    assert costs.met(Cuts(first + second, {0: 0, 1: 0}, own), {0, 1})
+    assert costs.proves_optimal(Cuts(first + second, {0: 0, 1: 0}, own), {0, 1})
     # a cut of both, worth the first: the second has less than that, exactly, and is overloaded
     both = WeightedCut(frozenset({1}), (0, 1), 0, first)
-    assert not costs.met(Cuts(first, {0: 0, 1: second - first}, [both]), {0})
+    assert not costs.proves_optimal(Cuts(first, {0: 0, 1: second - first}, [both]), {0})
     # the other way round it is the first that has some left
     fair = WeightedCut(frozenset({1}), (0, 1), 1, second)
-    assert costs.met(Cuts(second, {0: first - second, 1: 0}, [fair]), {1})
-    assert not costs.met(Cuts(second, {0: first - second, 1: 0}, [fair]), {0})
+    assert costs.proves_optimal(Cuts(second, {0: first - second, 1: 0}, [fair]), {1})
+    assert not costs.proves_optimal(Cuts(second, {0: first - second, 1: 0}, [fair]), {0})
     # less than the tree costs proves nothing, and one cut may not be used twice
-    assert not costs.met(Cuts(first, {0: 0}, own[:1]), {0, 1})
-    assert not costs.met(Cuts(2 * first, {0: -first}, own[:1] * 2), {0, 1})
+    assert not costs.proves_optimal(Cuts(first, {0: 0}, own[:1]), {0, 1})
+    assert not costs.proves_optimal(Cuts(2 * first, {0: -first}, own[:1] * 2), {0, 1})
 
 
 def test_without_rates_costs_are_whole_numbers_and_bounds_are_compared_as_they_are() -> None:
     costs = ExactCosts(row_of("0.5", "0.5", "0.5"), (Objective.UNITS,), range(3))
     assert (costs.doubt, [*map(costs, range(3))]) == (0, [1, 1, 1])
-    assert [costs.met(Cuts(bound, {}, []), {0, 1, 2}) for bound in (2, 3, 4)] == [False, True, True]
-    assert [costs.first(total) for total in (0, 1, 7)] == [0, 1, 7]
+    assert [costs.proves_optimal(Cuts(bound, {}, []), {0, 1, 2}) for bound in (2, 3, 4)] == [
+        False,
+        True,
+        True,
+    ]
+    assert [costs.first_objective_bound(total) for total in (0, 1, 7)] == [0, 1, 7]
 
 
 @pytest.mark.parametrize("rate", ["0.5", "0.001", "0.999999", "1"])
@@ -260,9 +264,9 @@ def test_a_bound_on_success_is_near_the_product_and_never_below_it(rate: str) ->
     problem = row_of(rate, rate, "0.75")
     costs = ExactCosts(problem, (Objective.SUCCESS, Objective.UNITS), range(3))
     product = math.prod(map(problem.rate, range(3)))
-    bound = costs.first(sum(map(costs, range(3))))
+    bound = costs.first_objective_bound(sum(map(costs, range(3))))
     assert product <= bound <= min(1, product * (1 + 1 / 10**15))
-    assert costs.first(0) == 1
+    assert costs.first_objective_bound(0) == 1
 
 
 # --- What each reduction is for.
@@ -346,7 +350,7 @@ def test_whenever_time_is_up_what_is_left_has_the_best_tree() -> None:
             assert (found.settled, found.interrupted) == (False, False)
             assert found.costs is not None
             assert found.cuts is not None
-            assert found.costs.first(found.bound) <= 10
+            assert found.costs.first_objective_bound(found.bound) <= 10
             assert found.cuts.bound == found.bound  # and not what was found of others when time was up
             assert found.tree is not None
             assert found.tree < drawn
@@ -379,7 +383,7 @@ def test_ctrl_c_leaves_the_tree_in_hand_and_the_bound() -> None:
         assert found.settled is False
         assert tree_of(found) == heard.trees[-1]
         assert found.costs is not None
-        assert found.costs.first(found.bound) == max(heard.bounds, default=0)
+        assert found.costs.first_objective_bound(found.bound) == max(heard.bounds, default=0)
         bounds.append(found.bound)
     assert bounds == sorted(bounds)
     assert bounds[0] == 0

@@ -157,7 +157,7 @@ def test_what_is_left_has_the_optimum(seeds: range) -> None:
                 else:
                     assert_left(left.units, found, by, reductions)
                 if left.costs is not None:
-                    bound = left.costs.first(left.bound)
+                    bound = left.costs.first_objective_bound(left.bound)
                     assert (-bound if names[0] == "success" else bound) <= expected[0]
     assert fewer > len(seeds) / 12
 
@@ -181,7 +181,7 @@ def test_what_a_reduction_leaves_has_the_optimum_without_the_tree_in_hand(
     Where only what is better than it is searched for, something better has to be left, unless it is optimal;
     else an optimal tree always has to be.
     """
-    monkeypatch.setattr(greedy_stages, "improved", lambda _graph, _actions, tree, *_: tree)
+    monkeypatch.setattr(greedy_stages, "improve_locally", lambda _graph, _actions, tree, *_: tree)
     bad = 0
     for seed in seeds:
         problem, found = restricted(seed)
@@ -189,8 +189,8 @@ def test_what_a_reduction_leaves_has_the_optimum_without_the_tree_in_hand(
             objectives = levels(tuple(dict.fromkeys(map(Objective, some_names))))
             names = list(map(str, objectives))
             worst = dearest(problem, found, names)
-            monkeypatch.setattr(reduction, "irredundant", lambda *_, tree=worst: set(tree))
-            task = reduction._task(problem, objectives, reductions, lambda: False)
+            monkeypatch.setattr(reduction, "irredundant_subset", lambda *_, tree=worst: set(tree))
+            task = reduction._task_of(problem, objectives, reductions, lambda: False)
             presolve = reduction._Presolve(task, None, nullcontext)
             presolve.extend_or_run()
             reduced, gap = presolve.reduced(), presolve.gap
@@ -229,7 +229,7 @@ def test_all_that_trees_up_to_a_limit_have_is_within_it(seeds: range, redundant:
         ).subproblem
         if wide is None:
             continue
-        everything = wide.everything()
+        everything = wide.all_units()
         assert all(tree.units <= everything for tree in found)
         assert all(tree.units & each for tree in found for each in wide.landmarks())
         keys = {wide.total(tree.units): tree.key(by) for tree in found}
@@ -279,7 +279,7 @@ def test_whenever_it_is_stopped_the_bound_holds_and_nothing_better_is_lost(inter
             stopped += left.interrupted
             assert heard.trees[-1:] in ([], [left.tree])
             if left.costs is not None:
-                bound = left.costs.first(left.bound)
+                bound = left.costs.first_objective_bound(left.bound)
                 assert (-bound if names[0] == "success" else bound) <= best[0]
             if left.settled:
                 assert in_hand == best
@@ -367,7 +367,7 @@ def test_trees_get_better_and_bounds_rise_and_the_optimum_is_between(
 ) -> None:
     """So it is, too, where better trees are not looked for, and the one in hand is no good."""
     if not looked_for:
-        monkeypatch.setattr(greedy_stages, "improved", lambda graph, actions, tree, *_: tree)
+        monkeypatch.setattr(greedy_stages, "improve_locally", lambda graph, actions, tree, *_: tree)
         monkeypatch.setattr(tuning, "PRESOLVE", PresolveTuning(easy_actions=0))
     for seed in (*range(12), 48, 54, 69, 72, 84):
         problem = gap_problem(seed, corners=4 + seed % 4)
@@ -389,7 +389,7 @@ def test_trees_get_better_and_bounds_rise_and_the_optimum_is_between(
         assert all(earlier < later for earlier, later in pairwise([0, *heard.bounds]))
         assert heard.bounds[-1:] == ([found.bound] if found.bound else [])
         assert found.costs is not None
-        first = found.costs.first(found.bound)
+        first = found.costs.first_objective_bound(found.bound)
         assert (-first if names[0] == "success" else first) <= optimum[0]
         assert not found.settled or measures[-1] == optimum
         answer = solve(problem, objectives, Settings(reductions=ALL)).units

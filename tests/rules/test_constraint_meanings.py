@@ -11,7 +11,7 @@ import pytest
 from foon_asp.certificate import Coverage, NotBestError, certify, certify_infeasible
 from foon_asp.certificate.arrays import Arrays
 from foon_asp.certificate.certificate import subject_of
-from foon_asp.certificate.coverage import needed
+from foon_asp.certificate.coverage import without_unused_claims
 from foon_asp.certificate.own_rules import check_with_clingo
 from foon_asp.deadline import Deadline
 from foon_asp.network import NetworkBuilder, ObjectNode, Source, UnitPrices
@@ -57,13 +57,13 @@ def test_a_tree_keeps_to_a_constraint_by_its_words(seed: int) -> None:
             kept = keeps(problem, tree, rule)
             assert (arrays.ruled.fault(units, every - units) is None) == kept, (rule, units)
             actions = arrays.actions(sorted(units))
-            breaking = arrays.breaking(frozenset(actions))
+            breaking = arrays.breaking_actions(frozenset(actions))
             assert derives(arrays, actions) == (kept or bool(breaking)), (rule, units)
             assert not kept or not breaking
             # what is barred from some trees is in none of them
             used = frozenset(a for a in actions if rng.random() < 0.5)
             without = frozenset(u for u in every - units if rng.random() < 0.5)
-            for barred in arrays.bars(used, without).values():
+            for barred in arrays.barred_actions(used, without).values():
                 assert not kept or units.isdisjoint(barred), (rule, units, used, without)
 
 
@@ -106,7 +106,7 @@ def arrays_of(problem: Problem, *rules: dict[str, Any]) -> Arrays:
 
 
 def barred(arrays: Arrays, used: set[int], without: set[int]) -> frozenset[int]:
-    (found,) = arrays.bars(frozenset(used), frozenset(without)).values()
+    (found,) = arrays.barred_actions(frozenset(used), frozenset(without)).values()
     return found
 
 
@@ -124,9 +124,9 @@ def test_what_is_barred_where_a_motion_has_to_come_before_another() -> None:
     same = arrays_of(kitchen, {"rule": "before", "earlier_motion": "fry", "later_motion": "fry"})
     assert barred(same, set(), {3, 4, 5}) == frozenset()
     # a tree that breaks it is told by as few units as do, what they bar first
-    assert arrays.breaking(frozenset({0, 1, 3, 4})) == []
-    assert arrays.breaking(frozenset({0, 2, 3, 4})) == [3, 2]
-    assert arrays.breaking(frozenset({0, 1, 5})) == [5]
+    assert arrays.breaking_actions(frozenset({0, 1, 3, 4})) == []
+    assert arrays.breaking_actions(frozenset({0, 2, 3, 4})) == [3, 2]
+    assert arrays.breaking_actions(frozenset({0, 1, 5})) == [5]
 
 
 def test_what_is_barred_by_claims_of_units() -> None:
@@ -281,11 +281,11 @@ def test_of_what_is_claimed_a_certificate_has_what_its_cuts_need() -> None:
     kitchen = small("cut: start > a", "mix: a > end", "boil: start > end", "junk: start > x", "fry: b > x")
     own = owning([[2], []], [[3], []], [[], [1, 3]], [[4], [0]])
     motion = {"rule": "forbid_motion", "forbidden_motion": "boil"}
-    assert needed((motion, own), [0, 1, 2]) == (
+    assert without_unused_claims((motion, own), [0, 1, 2]) == (
         motion,
         {**own, "claims": [own["claims"][n] for n in (0, 2, 3)]},
     )
-    assert needed((own,), []) == ({**own, "claims": [own["claims"][n] for n in (2, 3)]},)
+    assert without_unused_claims((own,), []) == ({**own, "claims": [own["claims"][n] for n in (2, 3)]},)
     removed = owning([[2], []], [[3], []])
     certificate = certify(kitchen, (Objective.UNITS,), [0, 1], Coverage((removed,)))
     assert certificate is not None

@@ -185,7 +185,7 @@ def test_which_units_are_ruled_out() -> None:
     asked = Problem(network, frozenset({labels.index("salt")}), (labels.index("end"),), rates, frozenset())
 
     def gone(*rules: Rule) -> frozenset[int]:
-        return Coverage(rules).forbids(asked)
+        return Coverage(rules).forbidden_units(asked)
 
     assert gone() == frozenset()
     assert gone(*forbid(["pour"], ["end", "pepper"])) == {0, 1, 2, 3}
@@ -195,10 +195,10 @@ def test_which_units_are_ruled_out() -> None:
     assert gone({"rule": "require_motion", "required_motion": "mix"}) == frozenset()
     assert gone({"rule": "at_most_price", "max_price": 100}) == {0, 1, 2, 3}  # no price is known
     unknown = replace(asked, rates=None)
-    assert Coverage(({"rule": "least_rate", "least_rate": -1},)).forbids(unknown) == {0, 1, 2, 3}
-    assert Coverage((POUR, {"rule": "before", "earlier_motion": "a", "later_motion": "b"})).beyond() == [
-        "before"
-    ]
+    assert Coverage(({"rule": "least_rate", "least_rate": -1},)).forbidden_units(unknown) == {0, 1, 2, 3}
+    assert Coverage(
+        (POUR, {"rule": "before", "earlier_motion": "a", "later_motion": "b"})
+    ).rules_beyond_removal() == ["before"]
 
 
 def test_a_place_is_named_by_its_file_or_its_video() -> None:
@@ -214,6 +214,8 @@ def test_a_place_is_named_by_its_file_or_its_video() -> None:
         (["small.txt"], {0}),
         (["https://a.b"], {0}),
     ):
-        assert Coverage(({"rule": "only_sources", "allowed": names},)).forbids(asked) == gone
+        assert Coverage(({"rule": "only_sources", "allowed": names},)).forbidden_units(asked) == gone
     for least, without in ((1, {0}), (2, {0, 1})):
-        assert Coverage(({"rule": "at_least_videos", "least_videos": least},)).forbids(asked) == without
+        assert (
+            Coverage(({"rule": "at_least_videos", "least_videos": least},)).forbidden_units(asked) == without
+        )
