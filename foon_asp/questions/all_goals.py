@@ -15,7 +15,7 @@ from foon_asp.problem import Objective, Problem, for_each_goal
 from foon_asp.questions.answer import Answer, answered_nearby
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, limits_of, settings_of
-from foon_asp.questions.python_arguments import asked_with, chosen_objectives, read
+from foon_asp.questions.python_arguments import chosen_objectives, problem_for_rules, read_deferred
 from foon_asp.questions.question import asked_in_python
 from foon_asp.questions.result import Ending, Result
 from foon_asp.results.document import AboutGoals
@@ -153,7 +153,7 @@ def solve_all_goals(
             goal_settings = settings._replace(deadline=Deadline(*each_limits, within=outer))
             nearby = near_goals(goal, chosen, goal_settings)
             if nearby is None:
-                outcome = find(read(goal), chosen, goal_settings, caller().reporter, solved=others)
+                outcome = find(read_deferred(goal), chosen, goal_settings, caller().reporter, solved=others)
             else:
                 outcome = answered_nearby(nearby, chosen, goal_settings).outcome
             outcomes_of[number].append(outcome)
@@ -179,4 +179,4 @@ def _each_goal(problem: Problem, settings: Settings) -> list[Problem]:
     """Return a problem for each goal; without rules, only what an answer needs is read of a large store."""
     if isinstance(problem, NearbyProblem) and not settings.constraints and settings.replaced is None:
         return problem.each_goal()
-    return for_each_goal(asked_with(problem, settings))
+    return for_each_goal(problem_for_rules(problem, settings))

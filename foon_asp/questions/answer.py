@@ -17,7 +17,7 @@ from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, Problem, levels
 from foon_asp.problem.dead_ends import Cause
 from foon_asp.questions.caller import caller
-from foon_asp.questions.python_arguments import asked_with, read, reading
+from foon_asp.questions.python_arguments import limited_reading, problem_for_rules, read_deferred
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.stand_in import StandIn, stand_in_lines, stand_ins_in
 from foon_asp.questions.used_up_note import used_up_note
@@ -522,7 +522,7 @@ def _answered_reading(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, reporter: Reporter
 ) -> Answer:
     """Solve over the part that the goals can need, and over all data if a better tree may be outside it."""
-    problem = read(problem)
+    problem = read_deferred(problem)
     is_partial = problem.network.object_numbers and problem.items is None and settings.constraints
     if is_partial and settings.replaced is None and reach_of_rules(settings) is ReachOfRules.TREE:
         unconstrained = find(problem, objectives, settings._replace(constraints=(), constants=()), Reporter())
@@ -534,7 +534,7 @@ def _answered_reading(
                 return _answer_of(partial)
             try:
                 with settings.begun.watched("reading"):  # and not late, since there may be a tree already
-                    problem = asked_with(problem, settings, objectives)
+                    problem = problem_for_rules(problem, settings, objectives)
             except KeyboardInterrupt:
                 if partial.units is None:
                     raise
@@ -542,7 +542,7 @@ def _answered_reading(
                 bounds = {order[0]: unconstrained.costs.measure(order[0])}
                 partial = partial._replace(status=Status.FEASIBLE, proof=None, stopped=settings.begun.stopped)
                 return _answer_of(partial._replace(bounds=bounds))
-    return answered(asked_with(problem, settings, objectives), objectives, settings, reporter)
+    return answered(problem_for_rules(problem, settings, objectives), objectives, settings, reporter)
 
 
 def answered_nearby(nearby: "Nearby", objectives: Sequence[Objective], settings: Settings) -> Answer:
@@ -553,7 +553,7 @@ def answered_nearby(nearby: "Nearby", objectives: Sequence[Objective], settings:
     outcome = solve_nearby(nearby, objectives, settings, caller().reporter)
     if outcome is not None:
         return _answer_of(outcome)
-    with reading():
+    with limited_reading():
         problem = nearby.whole()
     return answered_under(problem, objectives, settings)
 

@@ -21,7 +21,7 @@ from foon_asp.problem import Objective, Problem, levels
 from foon_asp.proof.verifier import Subject
 from foon_asp.questions.answer import Answer, answered, answered_nearby
 from foon_asp.questions.certificate_text import bound_text, certificate_lines, looked_at
-from foon_asp.questions.python_arguments import asked_with, reading, whole
+from foon_asp.questions.python_arguments import limited_reading, over_whole_network, problem_for_rules
 from foon_asp.questions.result import Ending
 from foon_asp.questions.tree import Tree
 from foon_asp.results.figure_text import costs_text
@@ -40,11 +40,13 @@ def certified(
     ruled = settings.constraints or settings.constants or settings.encodings
     plain = not ruled and problem.items is None and Objective.PRICE not in objectives
     nearby = near_goals(problem, objectives, settings) if plain else None
-    with reading():
+    with limited_reading():
         subject = nearby.subject() if nearby is not None else _subject(problem) if plain else None
     if nearby is None:
-        only_best = problem.stand_ins is not None and asked_with(problem, settings, objectives) is problem
-        complete = problem if only_best or subject is not None else whole(problem)
+        only_best = (
+            problem.stand_ins is not None and problem_for_rules(problem, settings, objectives) is problem
+        )
+        complete = problem if only_best or subject is not None else over_whole_network(problem)
         answer = answered(complete, objectives, settings)
         proved = answer.problem
     else:

@@ -17,8 +17,8 @@ from foon_asp.proof.simulation import Obstacle, Simulation, Verdict, simulate_fo
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.options import AMOUNT, CONTAINERS, GOAL_OF_PLAN, ITEMS, OBJECTIVES
 from foon_asp.questions.posing import Command
-from foon_asp.questions.posing_plan import a_plan
-from foon_asp.questions.python_arguments import Objectives, chosen_objectives, whole
+from foon_asp.questions.posing_plan import pose_plan
+from foon_asp.questions.python_arguments import Objectives, chosen_objectives, over_whole_network
 from foon_asp.questions.question import Kind, Option, Role, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree, posed_tree, read_answer
@@ -176,7 +176,7 @@ def _posed(command: Command, tree: Path, **named: Any) -> tuple[Problem, Tree]:
     """Read a tree, and pose its problem; for ``--repair``, a tree without goals is one more network."""
     if command.given("repair") and not read_answer(tree).goals:
         command.add_sources([tree])
-    return a_plan(command, tree=tree, **named)
+    return pose_plan(command, tree=tree, **named)
 
 
 def check_or_repair(
@@ -286,7 +286,7 @@ def check(
         raise UserError("objectives are those of a certificate: add --certificate FILE")
     rule_check = _user_rule_check(rules, used_up) if rules.constraints or rules.constants else None
     if certificate is not None or (rule_check is not None and not rule_check.local):
-        problem = whole(problem)
+        problem = over_whole_network(problem)
     chosen = () if certificate is None else chosen_objectives(problem, objectives or "units")
     listed = posed_tree(problem, tree)
     checked = Checked.of(listed, chosen)

@@ -25,8 +25,8 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, limits_of, settings_of
 from foon_asp.questions.comparison_tables import comparison_table, published_table, summary_tables, tidy_rows
 from foon_asp.questions.options import CHART, CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, JOBS
-from foon_asp.questions.posing import Command, one_problem
-from foon_asp.questions.python_arguments import asked_with, at_least
+from foon_asp.questions.posing import Command, pose_problem
+from foon_asp.questions.python_arguments import problem_for_rules, require_at_least
 from foon_asp.questions.question import TABLES, Kind, Option, Role, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.search import Retrieved
@@ -146,7 +146,7 @@ def _posed(
     if all_makeable:
         used_up = items_of(command.dataset, items, stock, stays)
         return (command.dataset.problem((0,), containers, everything=True, items=used_up),)
-    return one_problem(command, goals_named, containers, items, stock, stays, all_goals=True)
+    return pose_problem(command, goals_named, containers, items, stock, stays, all_goals=True)
 
 
 @question(
@@ -223,11 +223,11 @@ def compare(
         caller().reporter.warning("greedy-success is left out, and so is success: no success rates are known")
     each_limit = limits_of(options)
     settings = search_settings(ties, count, depth_limit, published, *each_limit)
-    at_least(jobs, 1, "jobs")
+    require_at_least(jobs, 1, "jobs")
     rules = settings_of(options)._replace(deadline=None)
     if rules.replaced is not None:
         raise UserError(f"{rules.replaced}: searches know nothing of other encodings: leave them out")
-    problem = asked_with(problem, rules)
+    problem = problem_for_rules(problem, rules)
     assemble(rules, caller().reporter.warning, problem=problem)  # what is wrong with files is said at once
     if all_makeable or results is not None:  # results are kept with a digest of all the data
         problem = problem.whole

@@ -16,8 +16,8 @@ from foon_asp.planning.unified import unified_problem
 from foon_asp.problem import Problem
 from foon_asp.questions.common_options import Posed, begin
 from foon_asp.questions.options import AMOUNT, CONTAINERS, GOALS, ITEMS, OBJECTIVES
-from foon_asp.questions.posing import Command, one_problem
-from foon_asp.questions.python_arguments import Objectives, chosen_objectives, whole
+from foon_asp.questions.posing import Command, pose_problem
+from foon_asp.questions.python_arguments import Objectives, chosen_objectives, over_whole_network
 from foon_asp.questions.question import Kind, Option, Role, asked_in_python, question
 from foon_asp.questions.result import Result
 from foon_asp.results.document import AboutGoals, Unserialized
@@ -115,7 +115,7 @@ def _posed(
     command: Command, goals_named: Sequence[str], containers: str, items: str | None, **files: Any
 ) -> tuple[Problem]:
     items = "used-up" if items == _MERGED else items or "lasting"
-    return one_problem(command, goals_named, containers, items, **files)
+    return pose_problem(command, goals_named, containers, items, **files)
 
 
 def _merged(problem: Problem, items: str | None) -> bool:
@@ -207,7 +207,7 @@ def export(
         raise UserError(f"found target={target!r}, expected pddl")
     chosen = chosen_objectives(problem, objectives)
     if every_unit:
-        problem = whole(problem)
+        problem = over_whole_network(problem)
     with begin(options).watched("writing"):
         task = planning_task(problem, chosen, every_unit, _merged(problem, items))
         exported = Exported(
@@ -254,6 +254,6 @@ def to_unified_planning(
         5
     """
     chosen = chosen_objectives(problem, objectives)
-    problem = whole(problem) if every_unit else problem
+    problem = over_whole_network(problem) if every_unit else problem
     with begin(options).watched("writing"):
         return unified_problem(problem, chosen, every_unit, _merged(problem, items))

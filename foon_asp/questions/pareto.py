@@ -18,7 +18,12 @@ from foon_asp.problem import Costs, Objective, Problem, multiplies
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.options import AMOUNT, CHART, CONTAINERS, GOALS, ITEMS, OBJECTIVES
-from foon_asp.questions.python_arguments import Objectives, asked_with, chosen_objectives, usual_objectives
+from foon_asp.questions.python_arguments import (
+    Objectives,
+    chosen_objectives,
+    problem_for_rules,
+    usual_objectives,
+)
 from foon_asp.questions.question import TABLES, Option, question
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.tree import Tree
@@ -273,7 +278,7 @@ def pareto(
             f"expected {_MIN_OBJECTIVES} or {_MAX_OBJECTIVES} to trade against each other"
         )
     settings = settings_of(options)
-    problem = asked_with(problem, settings)
+    problem = problem_for_rules(problem, settings)
     # Lexicographic epsilon-constraint method. The leading objective is success, if it is chosen, since no
     # sum can bound it; else an objective with fractions, which a bound would round; else the first. Each
     # tree is optimal by the leading objective, then by the others, among the trees that are better than

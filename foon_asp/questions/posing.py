@@ -62,7 +62,7 @@ Pose = Callable[..., tuple[object, ...]]
 problem by name."""
 
 
-def one_problem(
+def pose_problem(
     command: Command,
     goals_named: Sequence[str],
     containers: str,
@@ -88,14 +88,14 @@ def one_problem(
         return (dataset.nearby(tuple(dict.fromkeys(named)), containers, used_up),)
 
 
-def the_data(command: Command) -> "tuple[Foon]":
+def pose_data(command: Command) -> "tuple[Foon]":
     """Return the data as the subject of a question."""
     from foon_asp.foon import Foon  # noqa: PLC0415 (for few questions)
 
     return (Foon(command.dataset, "the data"),)
 
 
-def is_for_goals(command: Command, goals_named: Sequence[str]) -> bool:
+def is_picture_of_tree(command: Command, goals_named: Sequence[str]) -> bool:
     """Return whether a picture is of a tree: goals are named, or a recipe is named without an option.
 
     Raises :class:`UserError` for a recipe with several goals, since a picture is of one tree.
@@ -111,6 +111,6 @@ def is_for_goals(command: Command, goals_named: Sequence[str]) -> bool:
     return True
 
 
-def no_data(command: Command, **named: object) -> tuple[object, ...]:
+def pose_without_data(command: Command, **named: object) -> tuple[object, ...]:
     """Return only the values of the question's own options, for a command without options for data."""
     return tuple(named.values())

@@ -11,12 +11,12 @@ from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, counted, unit_at_level
 from foon_asp.problem import Problem, UsedUp
 from foon_asp.questions.caller import caller
-from foon_asp.questions.posing import Command, one_problem
+from foon_asp.questions.posing import Command, pose_problem
 from foon_asp.questions.tree import Tree, read_answer
 from foon_asp.text.answer_file import ListedTree
 
 
-def a_plan(
+def pose_plan(
     command: Command,
     goals_named: Sequence[str],
     containers: str,
@@ -47,7 +47,7 @@ def a_plan(
     return tree.problem, tree
 
 
-def a_plan_or_state(
+def pose_plan_or_state(
     command: Command, goals_named: Sequence[str], state: Path | None, plan: Path | None, **options: Any
 ) -> tuple[Problem, Tree | None]:
     """Read a plan, and pose its problem; with a ``state``, pose the goals named, and return no plan.
@@ -57,12 +57,12 @@ def a_plan_or_state(
     if state is None:
         if plan is None:
             raise UserError("found no plan: name a file with one, or a state with --state")
-        return a_plan(command, goals_named, plan=plan, **options)
+        return pose_plan(command, goals_named, plan=plan, **options)
     if command.given("items") and options["items"] != "lasting":
         raise UserError("trace --state is not built for items that are used up (--items used-up)")
     if plan is not None:
         command.add_sources((plan,))
-    return *one_problem(command, goals_named, options["containers"]), None
+    return *pose_problem(command, goals_named, options["containers"]), None
 
 
 def listed_tree(

@@ -26,7 +26,7 @@ def chosen_objectives(problem: Problem, names: Objectives) -> tuple[Objective, .
     objectives = parse_objectives([names] if isinstance(names, str) else names, problem.measures)
     if problem.stand_ins is not None:
         objectives = with_dissimilarity(objectives)
-    with reading():
+    with limited_reading():
         problem.require_known_for(objectives)
     return objectives
 
@@ -47,39 +47,39 @@ def usual_objectives(
     return instead
 
 
-def given_constraints(constraints: Files) -> tuple[Constraint, ...]:
+def read_constraints(constraints: Files) -> tuple[Constraint, ...]:
     """Read one constraint or several: paths, rules, and names of ready-made ones."""
     one = isinstance(constraints, str | PathLike)
     return tuple(map(given_constraint, [constraints] if one else constraints))  # type: ignore[arg-type]
 
 
-def asked_with(problem: Problem, settings: Settings, objectives: Sequence[Objective] = ()) -> Problem:
+def problem_for_rules(problem: Problem, settings: Settings, objectives: Sequence[Objective] = ()) -> Problem:
     """Return the problem over all data if the settings have rules that may be about any unit.
 
     The result also has all stand-ins, unless only the best tree by ``objectives`` is wanted and
     dissimilarity is the first of them.
     """
     if not problem.has_stand_ins_for(objectives):
-        return whole(problem)
+        return over_whole_network(problem)
     from foon_asp.asp.assembly import need_whole_network  # noqa: PLC0415 (where there may be rules)
 
-    return whole(problem) if need_whole_network(problem, settings) else problem
+    return over_whole_network(problem) if need_whole_network(problem, settings) else problem
 
 
-def whole(problem: Problem) -> Problem:
+def over_whole_network(problem: Problem) -> Problem:
     """Return a problem over the whole network; a command stops reading it at its limits."""
-    with reading():
+    with limited_reading():
         return problem.whole
 
 
-def read(problem: Problem) -> Problem:
+def read_deferred(problem: Problem) -> Problem:
     """Read everything that a problem can need, if that was deferred; a command stops it at its limits."""
-    with reading():
+    with limited_reading():
         assert problem.goals
     return problem
 
 
-def reading() -> AbstractContextManager[object]:
+def limited_reading() -> AbstractContextManager[object]:
     """Return a context in which reading stops at the limits of the command that asks, if it has any."""
     deadline = caller().deadline
     return nullcontext() if deadline is None else deadline.watched("reading", late=True)
@@ -103,7 +103,7 @@ def constraint_weights(weight_of_file: Mapping[File, int]) -> dict[Constraint, i
     return weights
 
 
-def read_as(problem: Problem, items: str) -> Problem:
+def with_items(problem: Problem, items: str) -> Problem:
     """Return a problem with items that are ``used-up`` or ``lasting``, as a plan for it is read."""
     if items not in ITEMS:
         raise UserError(f"found the items {items!r}, expected one of {', '.join(ITEMS)}")
@@ -117,7 +117,7 @@ def read_as(problem: Problem, items: str) -> Problem:
     return replace(problem, items=used_up)
 
 
-def at_least(number: int, least: int, what: str) -> int:
+def require_at_least(number: int, least: int, what: str) -> int:
     """Return a number; raises :class:`UserError` if it is below a minimum."""
     if number < least:
         raise UserError(f"found {what}={number}, expected a whole number from {least}")

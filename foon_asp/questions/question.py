@@ -10,7 +10,7 @@ from typing import NamedTuple, ParamSpec, TypeVar, get_args
 from foon_asp.errors import UserError
 from foon_asp.problem import DEFAULT_RULE, Problem
 from foon_asp.questions.docstring import complete_docstring, docstring_entries
-from foon_asp.questions.posing import Pose, one_problem
+from foon_asp.questions.posing import Pose, pose_problem
 from foon_asp.questions.python_call import HELP, called_in_python
 from foon_asp.questions.result import Result
 
@@ -126,7 +126,7 @@ def question(
     help_: str,
     formats: tuple[str, ...] = ("text", "json"),
     suffixes: Mapping[str, str] | None = None,
-    pose: Pose = one_problem,
+    pose: Pose = pose_problem,
     command: Callable[..., Result] | None = None,
     used_up: bool = False,
 ) -> Callable[[Callable[P, R]], Callable[P, R]]:

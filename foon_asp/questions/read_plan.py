@@ -17,7 +17,7 @@ from foon_asp.questions.check import Checked
 from foon_asp.questions.common_options import Posed, begin
 from foon_asp.questions.posing import Command
 from foon_asp.questions.posing_plan import units_in
-from foon_asp.questions.python_arguments import whole
+from foon_asp.questions.python_arguments import over_whole_network
 from foon_asp.questions.question import Kind, Option, Role, question
 from foon_asp.questions.result import Ending
 from foon_asp.questions.tree import Tree
@@ -140,7 +140,7 @@ def read_plan(
         <Tree for ice; crushed; in [drinking glass]: 2 units>
     """
     if names is None:
-        problem = whole(problem)
+        problem = over_whole_network(problem)
         named = map_of(planning_task(problem, whole=True))
     else:
         named = read_name_map(Path(names))

@@ -21,7 +21,12 @@ from foon_asp.questions.answer import Answer, WithAnswer
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.options import AMOUNT, ITEMS, TREE
-from foon_asp.questions.python_arguments import Objectives, asked_with, chosen_objectives, whole
+from foon_asp.questions.python_arguments import (
+    Objectives,
+    chosen_objectives,
+    over_whole_network,
+    problem_for_rules,
+)
 from foon_asp.questions.question import TABLES, Kind, Option, question
 from foon_asp.questions.result import Ending
 from foon_asp.results.figure_text import costs_text, success_text
@@ -188,7 +193,7 @@ def regret(
     """
     chosen, settings = chosen_objectives(problem, objectives), settings_of(options)
     numbers, moved = tuple(units), tuple([motions] if isinstance(motions, str) else motions)
-    problem = whole(problem) if numbers or moved else asked_with(problem, settings)
+    problem = over_whole_network(problem) if numbers or moved else problem_for_rules(problem, settings)
     network = problem.network
     asked_units = [network.unit_of_number(number) for number in numbers]
     if None in asked_units:

@@ -18,7 +18,7 @@ from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.questions.answer import Answer, answered, of_status
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import Limits, begin
-from foon_asp.questions.posing import no_data
+from foon_asp.questions.posing import pose_without_data
 from foon_asp.questions.question import Kind, Option, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.results.document import Unserialized
@@ -171,7 +171,7 @@ class Relaxed(Result, frozen=True, kw_only=True, tag=schema_name("relax")):
 
 
 @question(
-    pose=no_data,
+    pose=pose_without_data,
     formats=("text", "json", "pddl"),
     help_="""
     \b

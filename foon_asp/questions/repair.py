@@ -21,7 +21,7 @@ from foon_asp.questions.answer import of_status
 from foon_asp.questions.caller import caller
 from foon_asp.questions.certificate_text import certificate_lines
 from foon_asp.questions.common_options import CommonOptions, settings_of
-from foon_asp.questions.python_arguments import whole
+from foon_asp.questions.python_arguments import over_whole_network
 from foon_asp.questions.question import asked_in_python
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.stand_in import StandIn, stand_in_lines, stand_ins_in
@@ -168,7 +168,7 @@ def repair(
         raise UserError("a tree is repaired without rules and encodings: leave them out")
     table = StandInTable.usual() if problem.stand_ins is None else problem.stand_ins.table
     listed = posed_tree(problem, tree)
-    base = whole(problem) if problem.stand_ins is None else problem
+    base = over_whole_network(problem) if problem.stand_ins is None else problem
     if certificate is not None and any(base.network.unit_id(unit) is None for unit in listed.units):
         raise UserError(
             "a certificate is about the network, and that lacks units of the tree: name the tree, too"

@@ -27,8 +27,8 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import Posed, begin
 from foon_asp.questions.durations import Durations, duration_of, stated_durations
 from foon_asp.questions.options import AMOUNT, CHART, CONTAINERS, GOAL_OF_PLAN, PLAN_ITEMS
-from foon_asp.questions.posing_plan import a_plan
-from foon_asp.questions.python_arguments import at_least, read_as
+from foon_asp.questions.posing_plan import pose_plan
+from foon_asp.questions.python_arguments import require_at_least, with_items
 from foon_asp.questions.question import TABLES, Kind, Option, Role, question
 from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result
 from foon_asp.questions.tree import OTHER_READING, Tree, posed_tree
@@ -219,7 +219,7 @@ def _schedule_or_template(
     *PLAN_ITEMS,
     AMOUNT,
     CHART._replace(help="A file for a Gantt chart (.svg or .png)."),
-    pose=a_plan,
+    pose=pose_plan,
     command=_schedule_or_template,
     formats=TABLES,
     help_="""
@@ -305,8 +305,8 @@ def schedule(
         ('optimal', '40')
     """
     deadline = begin(options)
-    at_least(agents, 1, "agents")
-    problem = read_as(problem, items)
+    require_at_least(agents, 1, "agents")
+    problem = with_items(problem, items)
     tree = _in_order(posed_tree(problem, plan))
     replayed = replayable(tree.problem, tree)
     replay = replay_for(replayed, tree)

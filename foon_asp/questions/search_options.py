@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from foon_asp.errors import UserError
-from foon_asp.questions.python_arguments import at_least
+from foon_asp.questions.python_arguments import require_at_least
 from foon_asp.questions.question import Kind, Option
 from foon_asp.searches import Count, Search, SearchSettings, Ties, find_searches
 
@@ -57,5 +57,5 @@ def search_settings(
         if value not in choices:
             raise UserError(f"found {name}={value!r}, expected one of {', '.join(choices)}")
     if depth_limit is not None:
-        at_least(depth_limit, 0, "depth_limit")
+        require_at_least(depth_limit, 0, "depth_limit")
     return SearchSettings(Ties(ties), Count(count), published, depth_limit, time_limit, memory_limit)

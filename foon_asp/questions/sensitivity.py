@@ -15,7 +15,7 @@ from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.envelope import End, Envelope
 from foon_asp.questions.flip import Flip, decimal_text
 from foon_asp.questions.options import CONTAINERS, GOALS
-from foon_asp.questions.python_arguments import asked_with
+from foon_asp.questions.python_arguments import problem_for_rules
 from foon_asp.questions.question import TABLES, question
 from foon_asp.questions.result import Ending
 from foon_asp.results.figure_text import success_text
@@ -236,7 +236,7 @@ def sensitivity(problem: Problem, **options: Unpack[CommonOptions]) -> Sensitivi
             "a constraint uses risk/2, which changes with the rates asked about: use rate/2, "
             "which stays as given, or leave the constraint out"
         )
-    problem = asked_with(problem, settings)
+    problem = problem_for_rules(problem, settings)
     outcome = solve(problem, _SUCCESS, settings, caller().reporter)
     answer, head = Answer.of(outcome), head_of(problem, _SUCCESS)
     if outcome.units is None or outcome.status is not Status.OPTIMAL:

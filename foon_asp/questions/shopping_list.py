@@ -34,7 +34,12 @@ from foon_asp.questions.answer import Answer, WithAnswer
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.options import AMOUNT, ITEMS, TREE
-from foon_asp.questions.python_arguments import Objectives, at_least, chosen_objectives, whole
+from foon_asp.questions.python_arguments import (
+    Objectives,
+    chosen_objectives,
+    over_whole_network,
+    require_at_least,
+)
 from foon_asp.questions.question import TABLES, Kind, Option, question
 from foon_asp.questions.result import Ending
 from foon_asp.results.figure_text import costs_text
@@ -250,8 +255,8 @@ def shopping_list(
         11
     """
     chosen, settings = chosen_objectives(problem, objectives), settings_of(options)
-    max_lists = at_least(lists, 1, "lists")
-    problem = whole(problem)
+    max_lists = require_at_least(lists, 1, "lists")
+    problem = over_whole_network(problem)
     priced = None if prices is None else _priced(problem, _listed(prices))
     if problem.items is not None:
         return _with_copies(problem, chosen, settings, priced, max_lists)

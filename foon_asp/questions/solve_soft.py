@@ -9,7 +9,7 @@ from foon_asp.asp.soft import solve_soft as find
 from foon_asp.problem import Objective, Problem
 from foon_asp.questions.answer import Answer, SoftConstraint
 from foon_asp.questions.caller import caller
-from foon_asp.questions.python_arguments import whole
+from foon_asp.questions.python_arguments import over_whole_network
 from foon_asp.rules.passed_constraint import Constraint
 
 
@@ -18,7 +18,9 @@ def softly_answered(
 ) -> Answer:
     """Solve a problem under soft constraints with their weights."""
     who = caller()
-    outcome, penalty, constraints = find(whole(problem), objectives, settings, weights, who.reporter)
+    outcome, penalty, constraints = find(
+        over_whole_network(problem), objectives, settings, weights, who.reporter
+    )
     if who.read_seconds is not None:
         outcome.seconds["read"] = who.read_seconds
     listed = tuple(

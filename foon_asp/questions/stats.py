@@ -17,7 +17,7 @@ from foon_asp.network.statistics import MANY, Statistics, most_connected_labels,
 from foon_asp.problem import DEFAULT_RULE, ContainerRule, UsedUp, container_rule, needed_inputs
 from foon_asp.questions.common_options import Limits, begin
 from foon_asp.questions.options import CONTAINERS, ITEMS
-from foon_asp.questions.posing import the_data
+from foon_asp.questions.posing import pose_data
 from foon_asp.questions.question import TABLES, Kind, Option, Role, question
 from foon_asp.questions.result import Result
 from foon_asp.results.table import Block, Table
@@ -267,7 +267,7 @@ class ListedUnits(Result, frozen=True, kw_only=True, tag=schema_name("units")):
 
     Exits with 0.
     """,
-    pose=the_data,
+    pose=pose_data,
 )
 def stats(
     foon: Foon | File,

@@ -17,8 +17,8 @@ from foon_asp.proof.replay import Replay, replay_for, replayable
 from foon_asp.questions.answer import Answer, answered
 from foon_asp.questions.common_options import Posed, begin
 from foon_asp.questions.options import AMOUNT, CONTAINERS, GOAL_OF_PLAN, OBJECTIVES, PLAN_ITEMS
-from foon_asp.questions.posing_plan import a_plan_or_state
-from foon_asp.questions.python_arguments import Objectives, chosen_objectives, read_as
+from foon_asp.questions.posing_plan import pose_plan_or_state
+from foon_asp.questions.python_arguments import Objectives, chosen_objectives, with_items
 from foon_asp.questions.question import TABLES, Kind, Option, Role, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import OTHER_READING, Tree, posed_tree
@@ -253,7 +253,7 @@ def _trace_and_write(
     CONTAINERS,
     *PLAN_ITEMS,
     AMOUNT,
-    pose=a_plan_or_state,
+    pose=pose_plan_or_state,
     formats=TABLES,
     command=_trace_and_write,
     help_="""
@@ -306,7 +306,7 @@ def trace(
         (9, 6)
     """
     chosen = chosen_objectives(problem, objectives)
-    problem = read_as(problem, items)
+    problem = with_items(problem, items)
     tree = posed_tree(problem, plan)
     network = tree.problem.network
     replay = replay_for(replayable(tree.problem, tree), tree)

@@ -11,7 +11,12 @@ from foon_asp.problem import Problem
 from foon_asp.questions.answer import Answer, WithAnswer
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
-from foon_asp.questions.python_arguments import Objectives, asked_with, at_least, chosen_objectives
+from foon_asp.questions.python_arguments import (
+    Objectives,
+    chosen_objectives,
+    problem_for_rules,
+    require_at_least,
+)
 from foon_asp.questions.question import asked_in_python, not_built
 from foon_asp.questions.result import Ending
 from foon_asp.results.table import Block
@@ -116,9 +121,9 @@ def unit_union(
         >>> {str(unit.trees) for unit in found.units}, len(found.units)
         ({'every'}, 9)
     """
-    at_least(within, 0, "within")
+    require_at_least(within, 0, "within")
     chosen, settings = chosen_objectives(problem, objectives), settings_of(options)
-    problem = asked_with(problem, settings)
+    problem = problem_for_rules(problem, settings)
     if problem.items is not None:
         raise not_built("alternatives --union")
     union = tree_union(problem, chosen, settings, caller().reporter, Fraction(within, 100))

@@ -5,7 +5,7 @@ from dataclasses import replace
 from foon_asp.problem import Problem, reach
 from foon_asp.problem.dead_ends import Cause, dead_ends
 from foon_asp.questions.answer import SkippedGoal
-from foon_asp.questions.python_arguments import read
+from foon_asp.questions.python_arguments import read_deferred
 from foon_asp.results.values_of import node_of
 
 
@@ -14,7 +14,7 @@ def without_unreachable(problem: Problem) -> tuple[Problem, tuple[SkippedGoal, .
 
     Constraints are ignored, and items last. Where no goal is reachable, all stay: there is no tree.
     """
-    problem = read(problem)
+    problem = read_deferred(problem)
     available = reach(problem).available
     reached = tuple(goal for goal in problem.goals if available[goal])
     unreached = [goal for goal in problem.goals if not available[goal]] if reached else []

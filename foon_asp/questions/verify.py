@@ -21,7 +21,7 @@ from foon_asp.proof.rule_meaning import ALL_STEPS, OWN, Rule
 from foon_asp.proof.verify_plan import is_of_plan, verify_any
 from foon_asp.questions.certificate_text import bound_text, looked_at, trusted_text
 from foon_asp.questions.common_options import Limits, begin
-from foon_asp.questions.posing import DATA, Command, the_data
+from foon_asp.questions.posing import DATA, Command, pose_data
 from foon_asp.questions.question import Kind, Option, Role, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.results.document import AboutGoals
@@ -232,7 +232,7 @@ def _posed(command: Command, data_paths: Sequence[Path]) -> tuple[Foon | Problem
     """Pose the data that are named, or the relaxation of a planning task."""
     if not any(map(_is_task, data_paths)):
         command.add_sources(data_paths)
-        return the_data(command)
+        return pose_data(command)
     if any(map(command.given, DATA)):
         raise UserError("found options for data beside a planning task: a certificate is about one of them")
     from foon_asp.planning.task_files import read_task  # noqa: PLC0415 (it loads clingo)

@@ -35,8 +35,13 @@ from foon_asp.questions.common_options import CommonOptions, Limits, begin, sett
 from foon_asp.questions.options import AMOUNT, CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.page_data import PageData, UnitRate
 from foon_asp.questions.pareto import Front, pareto
-from foon_asp.questions.posing import Command, is_for_goals, one_problem, the_data
-from foon_asp.questions.python_arguments import Objectives, asked_with, chosen_objectives, whole
+from foon_asp.questions.posing import Command, is_picture_of_tree, pose_data, pose_problem
+from foon_asp.questions.python_arguments import (
+    Objectives,
+    chosen_objectives,
+    over_whole_network,
+    problem_for_rules,
+)
 from foon_asp.questions.question import Kind, Option, Role, question
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.search import Retrieved, search
@@ -255,17 +260,17 @@ def _posed(
 ) -> tuple[Problem | Foon]:
     """Pose the goals that are named or that a recipe has; without goals, return the data."""
     listed = tree is not None or bool(units)
-    for_goals = bool(goals_named) or (not listed and is_for_goals(command, goals_named))
+    for_goals = bool(goals_named) or (not listed and is_picture_of_tree(command, goals_named))
     for option, flag in _FOR_THE_BEST.items():
         if command.given(option) and (listed or not for_goals):
             raise UserError(f"{flag} is for the best tree for a --goal; nothing is solved here")
     if command.given("beside") and caller().form in _PICTURES:
         raise UserError("--beside is for a page: end the file in .html")
     if for_goals:
-        return one_problem(command, goals_named, containers, **items)
+        return pose_problem(command, goals_named, containers, **items)
     if command.given("items"):
         raise UserError("--items is for a plan for a --goal: name one")
-    return the_data(command)
+    return pose_data(command)
 
 
 @question(
@@ -435,8 +440,10 @@ def pages(
     ruled = bool(settings.constraints) or settings.encodings is not None
     plans, endless = problem.items is not None, replace(problem, items=None)
     proof = certified(problem, chosen, settings) if PagePart.PROOF in wanted and not plans else None
-    answer = answered(asked_with(problem, settings), chosen, settings) if proof is None else proof
-    page = View(answer, certified=proof, network=whole(problem) if PagePart.NETWORK in wanted else None)
+    answer = answered(problem_for_rules(problem, settings), chosen, settings) if proof is None else proof
+    page = View(
+        answer, certified=proof, network=over_whole_network(problem) if PagePart.NETWORK in wanted else None
+    )
     yield page
 
     def remaining_limits() -> Limits:

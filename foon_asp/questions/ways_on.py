@@ -13,7 +13,7 @@ from foon_asp.problem.relevance import reach, relevant
 from foon_asp.questions.answer import Answer, WithAnswer, answered
 from foon_asp.questions.caller import asked_by, caller
 from foon_asp.questions.common_options import Posed, begin
-from foon_asp.questions.python_arguments import Objectives, chosen_objectives, whole
+from foon_asp.questions.python_arguments import Objectives, chosen_objectives, over_whole_network
 from foon_asp.questions.question import asked_in_python, not_built
 from foon_asp.questions.result import Ending
 from foon_asp.questions.shopping_list import shopping_list
@@ -122,7 +122,7 @@ def ways_on(
     if problem.items is not None:
         raise not_built("trace --state")
     named: Any = as_path(state) if isinstance(state, str | PathLike) else tuple(state)
-    problem = whole(problem.vary(kitchen=named))
+    problem = over_whole_network(problem.vary(kitchen=named))
     chosen, limits = chosen_objectives(problem, objectives), Settings(deadline=begin(options))
     answer: Answer | None = answered(problem, chosen, limits)
     lacks: tuple[Node, ...] | None = ()

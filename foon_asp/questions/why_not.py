@@ -17,7 +17,7 @@ from foon_asp.problem.dead_ends import Root as FoundRoot
 from foon_asp.problem.for_sale import Shop
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.options import CONTAINERS, GOALS
-from foon_asp.questions.python_arguments import constraint_weights, whole
+from foon_asp.questions.python_arguments import constraint_weights, over_whole_network
 from foon_asp.questions.question import Kind, Option, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.stand_in import StandIn, stand_ins_in
@@ -331,7 +331,7 @@ def why_not(
         (2, 1)
     """
     settings, prices = settings_of(options), constraint_weights(weights) if weights else {}
-    problem, deadline = whole(problem), settings.begun
+    problem, deadline = over_whole_network(problem), settings.begun
     network = problem.network
     with deadline.watched("looking for the reason", late=True):
         analysis = dead_ends(problem)
