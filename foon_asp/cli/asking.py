@@ -23,7 +23,7 @@ from foon_asp.questions.each_goal import EachGoal
 from foon_asp.questions.index import module_name, question_name
 from foon_asp.questions.options import GOAL_OF_PLAN
 from foon_asp.questions.posing import pose_problem, pose_without_data
-from foon_asp.questions.posing_plan import pose_plan, settle_data
+from foon_asp.questions.posing_plan import data_for_trees, pose_plan
 from foon_asp.questions.question import Question, Role, question_of
 from foon_asp.questions.result import Result
 from foon_asp.questions.tree import read_answer
@@ -92,7 +92,7 @@ def _subjects(question: Question, command: "_Command", values: Mapping[str, Any]
     tree = values.get("tree")
     if question.pose is not pose_plan and tree is not None and tree.is_file():  # a pipe is read once
         listed = read_answer(tree)
-        settle_data(command, {tree: listed})
+        data_for_trees(command, {tree: listed})
         if problem_options.get("goals_named") == ():
             problem_options["goals_named"] = tuple(map(str, listed.goals))
     # the question itself reports them, or has none

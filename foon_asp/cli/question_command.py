@@ -24,7 +24,7 @@ from foon_asp.problem import ITEMS
 from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.questions.index import INDEX
 from foon_asp.questions.posing import pose_without_data
-from foon_asp.questions.question import Question, Role, not_built
+from foon_asp.questions.question import Question, Role, not_for_used_up_items
 from foon_asp.questions.result import NothingToDrawError, NoTreeError, Result, format_method
 
 _LIMITS = frozenset({"time_limit", "memory_limit"})
@@ -67,7 +67,7 @@ def _without_used_up(verb: str) -> Callable[[Command], Command]:
 
     def refuse(_: click.Context, __: click.Parameter, value: str) -> None:
         if value != "lasting":
-            raise not_built(verb)
+            raise not_for_used_up_items(verb)
 
     return click.option(
         "--items",

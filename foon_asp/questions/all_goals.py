@@ -16,7 +16,7 @@ from foon_asp.questions.answer import Answer, answered_nearby
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, limits_of, settings_of
 from foon_asp.questions.python_arguments import chosen_objectives, problem_for_rules, read_deferred
-from foon_asp.questions.question import asked_in_python
+from foon_asp.questions.question import python_question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.figure_text import figure_text
@@ -117,7 +117,7 @@ def _is_short_of_copies(answer: Answer) -> bool:
     return answer.used_up is not None and answer.used_up.runs is False
 
 
-@asked_in_python
+@python_question
 def solve_all_goals(
     problem: Problem, objectives: str | Iterable[str] = "units", **options: Unpack[CommonOptions]
 ) -> Optima:

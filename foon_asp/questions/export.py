@@ -18,7 +18,7 @@ from foon_asp.questions.common_options import Posed, begin
 from foon_asp.questions.options import AMOUNT, CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.posing import Command, pose_problem
 from foon_asp.questions.python_arguments import Objectives, chosen_objectives, over_whole_network
-from foon_asp.questions.question import Kind, Option, Role, asked_in_python, question
+from foon_asp.questions.question import Kind, Option, Role, python_question, question
 from foon_asp.questions.result import Result
 from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block
@@ -219,7 +219,7 @@ def export(
     return exported.knowing(task=task)
 
 
-@asked_in_python
+@python_question
 def to_unified_planning(
     problem: Problem,
     objectives: Objectives = "units",

@@ -29,9 +29,9 @@ class PageData(Document, frozen=True, kw_only=True, tag=schema_name("view")):
         answer: null for a whole network.
         rates: The success rate of every unit in the trees, where rates are known.
         searches: What the published searches return.
-        lasting: Beside a plan, in which items are used up: the answer where they are not.
+        lasting: Where items are used up: the answer if they lasted; else null.
         without_rules: The answer without your rules, where there are some.
-        proof: A certificate, taken apart.
+        proof: The cases and cuts of a certificate.
     """
 
     answer: Answer | None

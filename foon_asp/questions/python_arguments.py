@@ -1,4 +1,4 @@
-"""Arguments of Python callers, converted for the other rooms; errors use the words of Python."""
+"""Arguments of Python callers, checked and converted; errors use the words of Python."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
@@ -15,13 +15,14 @@ from foon_asp.questions.caller import caller
 from foon_asp.rules.passed_constraint import Constraint, find_constraint, given_constraint
 
 Objectives = str | Iterable[str]
-"""An objective, a list by commas, or several: the first counts most."""
+"""Names of objectives: a text with one or several, separated by commas, or several texts. The first counts
+most."""
 
 
 def chosen_objectives(problem: Problem, names: Objectives) -> tuple[Objective, ...]:
-    """Return parsed objectives; raises :class:`UserError` for one without its rates or prices.
+    """Return the named objectives; raises :class:`UserError` for one whose rates or prices are not known.
 
-    With stand-ins, dissimilarity comes first, unless it is named.
+    In a problem with stand-ins, dissimilarity is put first, unless it is named.
     """
     objectives = parse_objectives([names] if isinstance(names, str) else names, problem.measures)
     if problem.stand_ins is not None:
@@ -34,9 +35,9 @@ def chosen_objectives(problem: Problem, names: Objectives) -> tuple[Objective, .
 def usual_objectives(
     problem: Problem, names: Objectives, usual: Sequence[str], instead: Sequence[str]
 ) -> Objectives:
-    """Return the named objectives, or else the usual ones of a question.
+    """Return the names if there are any, or else the ``usual`` objectives of a question.
 
-    Where no success rates are known, the usual ones are ``instead``, and a warning says so.
+    If no success rates are known, ``instead`` are the usual objectives, and a warning says so.
     """
     if names:
         return names
@@ -47,17 +48,17 @@ def usual_objectives(
     return instead
 
 
-def read_constraints(constraints: Files) -> tuple[Constraint, ...]:
-    """Read one constraint or several: paths, rules, and names of ready-made ones."""
+def as_constraints(constraints: Files) -> tuple[Constraint, ...]:
+    """Return one constraint or several as a tuple: paths, texts of rules, and names of ready-made ones."""
     one = isinstance(constraints, str | PathLike)
     return tuple(map(given_constraint, [constraints] if one else constraints))  # type: ignore[arg-type]
 
 
 def problem_for_rules(problem: Problem, settings: Settings, objectives: Sequence[Objective] = ()) -> Problem:
-    """Return the problem over all data if the settings have rules that may be about any unit.
+    """Return the problem over the whole network if rules or stand-ins need this, else unchanged.
 
-    The result also has all stand-ins, unless only the best tree by ``objectives`` is wanted and
-    dissimilarity is the first of them.
+    Rules in ``settings`` need it if they may be about units beyond those that the goals can need. Stand-ins
+    need it unless only the best tree by ``objectives`` is wanted, and dissimilarity is the first objective.
     """
     if not problem.has_stand_ins_for(objectives):
         return over_whole_network(problem)
@@ -67,26 +68,32 @@ def problem_for_rules(problem: Problem, settings: Settings, objectives: Sequence
 
 
 def over_whole_network(problem: Problem) -> Problem:
-    """Return a problem over the whole network; a command stops reading it at its limits."""
+    """Return the problem over the whole network, which is read; reading stops at the limits of the caller."""
     with limited_reading():
         return problem.whole
 
 
 def read_deferred(problem: Problem) -> Problem:
-    """Read everything that a problem can need, if that was deferred; a command stops it at its limits."""
+    """Read the units that the goals can need, if that was deferred, and return the same problem.
+
+    Reading stops at the limits of the caller.
+    """
     with limited_reading():
         assert problem.goals
     return problem
 
 
 def limited_reading() -> AbstractContextManager[object]:
-    """Return a context in which reading stops at the limits of the command that asks, if it has any."""
+    """Return a context in which reading stops at the limits of the caller, if it has any."""
     deadline = caller().deadline
     return nullcontext() if deadline is None else deadline.watched("reading", late=True)
 
 
 def constraint_weights(weight_of_file: Mapping[File, int]) -> dict[Constraint, int]:
-    """Read the weights of constraints, whole numbers from 1."""
+    """Return the weight of each constraint; raises :class:`UserError` if it is no whole number from 1.
+
+    A constraint that two names stand for also raises.
+    """
     from foon_asp.asp.search_tuning import SEARCH  # noqa: PLC0415 (where there are rules)
 
     weights: dict[Constraint, int] = {}
@@ -104,7 +111,11 @@ def constraint_weights(weight_of_file: Mapping[File, int]) -> dict[Constraint, i
 
 
 def with_items(problem: Problem, items: str) -> Problem:
-    """Return a problem with items that are ``used-up`` or ``lasting``, as a plan for it is read."""
+    """Return the problem with items that are ``used-up`` or ``lasting``, the default of its data for used up.
+
+    A problem whose items are used up already stays as it is for ``used-up``. Raises :class:`UserError` for
+    another word, and for used-up items at a level without contents.
+    """
     if items not in ITEMS:
         raise UserError(f"found the items {items!r}, expected one of {', '.join(ITEMS)}")
     if items == "lasting":
@@ -118,7 +129,7 @@ def with_items(problem: Problem, items: str) -> Problem:
 
 
 def require_at_least(number: int, least: int, what: str) -> int:
-    """Return a number; raises :class:`UserError` if it is below a minimum."""
+    """Return a number; raises :class:`UserError` about the argument ``what`` if it is below ``least``."""
     if number < least:
         raise UserError(f"found {what}={number}, expected a whole number from {least}")
     return number

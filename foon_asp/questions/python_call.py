@@ -1,4 +1,4 @@
-"""The wrapper of public functions: paths or data for a problem, limits, progress and cancelling."""
+"""The wrapper of public functions, which take a path or data for a problem, and report progress."""
 
 import functools
 import inspect
@@ -35,42 +35,45 @@ HELP = {
 class _Listener(Reporter):
     """A reporter that passes progress to a function, and warnings to the caller."""
 
-    def __init__(self, tell: OnProgress, warned: Reporter) -> None:
-        self._tell, self._warned = tell, warned
+    def __init__(self, on_progress: OnProgress, reporter: Reporter) -> None:
+        self._on_progress, self._reporter = on_progress, reporter
         self._progress = Progress()
 
     def warning(self, message: str) -> None:
-        """Pass on a warning."""
-        self._warned.warning(message)
+        """Pass a warning on to the caller's reporter."""
+        self._reporter.warning(message)
 
     def tree(self, costs: Costs) -> None:
-        """Report a tree."""
+        """Report the progress with the costs of a new incumbent."""
         self._report(self._progress._replace(costs=costs))
 
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
-        """Report a bound."""
+        """Report the progress with a new bound by an objective."""
         self._report(self._progress._replace(bounds={**self._progress.bounds, objective: bound}))
 
     def step(self, word: str, done: int, total: int) -> None:
-        """Report an answer."""
+        """Report the progress with the numbers of answers that are done and in total."""
         self._report(self._progress._replace(done=done, total=total))
 
     def _report(self, progress: Progress) -> None:
+        """Keep the progress for the next report, and call the function with it."""
         self._progress = progress
-        self._tell(progress)
+        self._on_progress(progress)
 
 
-def called_in_python(ask: Callable[P, T], signature: inspect.Signature) -> Callable[P, T]:
-    """Wrap a function so that it takes a path or data for a problem, ``cancel`` and ``on_progress``.
+def wrap_for_python(ask: Callable[P, T], signature: inspect.Signature) -> Callable[P, T]:
+    """Return a function that also takes a path or data for a problem, ``cancel`` and ``on_progress``.
 
-    Arguments are checked by the ``signature``.
+    In a call from Python, arguments are checked against the ``signature``; a command has read them already.
+    Cancelling and Ctrl-C end the call at its next check of the time.
     """
     name, check = ask.__name__, checker(ask, signature)
 
     @functools.wraps(ask)
     def wrapped(*about: P.args, **named: P.kwargs) -> T:
+        """Pose the problem, check the arguments, and call the function with its limits and reporter."""
         if is_python():  # commands hand over what they have read
-            about = posed_in_python(name, signature.parameters, about, named)
+            about = arguments_with_problem(name, signature.parameters, about, named)
             check(about, named)
         token: Any = named.pop("cancel", None)
         tell: Any = named.pop("on_progress", None)
@@ -89,13 +92,14 @@ def called_in_python(ask: Callable[P, T], signature: inspect.Signature) -> Calla
     return wrapped
 
 
-def posed_in_python(
+def arguments_with_problem(
     name: str, parameters: Mapping[str, object], about: tuple[Any, ...], named: dict[str, Any]
 ) -> Any:
-    """Return the arguments of a question, with a problem in place of a path or of data.
+    """Return the positional arguments of a question, with a problem in place of a path or of data.
 
-    Removes the names that pose the problem from ``named``. Raises :class:`UserError` for a call without a
-    subject, or with a goal beside a problem, which has its own.
+    ``named`` is changed in place: the goal and the container rule of the problem are removed, and
+    ``objective`` becomes ``objectives``. Raises :class:`UserError` for a call without a subject, and for a
+    goal beside a problem, which has its own.
     """
     from foon_asp.foon import Foon, load  # noqa: PLC0415 (commands ask about what they have read)
 

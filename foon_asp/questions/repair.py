@@ -22,7 +22,7 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.certificate_text import certificate_lines
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.python_arguments import over_whole_network
-from foon_asp.questions.question import asked_in_python
+from foon_asp.questions.question import python_question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.stand_in import StandIn, stand_in_lines, stand_ins_in
 from foon_asp.questions.tree import Tree, posed_tree
@@ -132,7 +132,7 @@ class Repaired(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("r
             yield from (f"  {node}" for node in self.lacking)
 
 
-@asked_in_python
+@python_question
 def repair(
     problem: Problem,
     tree: str | PathLike[str] | Iterable[FunctionalUnit],

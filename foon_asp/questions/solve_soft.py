@@ -13,7 +13,7 @@ from foon_asp.questions.python_arguments import over_whole_network
 from foon_asp.rules.passed_constraint import Constraint
 
 
-def softly_answered(
+def solve_under_soft_constraints(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, weights: Mapping[Constraint, int]
 ) -> Answer:
     """Solve a problem under soft constraints with their weights."""

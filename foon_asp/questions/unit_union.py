@@ -17,7 +17,7 @@ from foon_asp.questions.python_arguments import (
     problem_for_rules,
     require_at_least,
 )
-from foon_asp.questions.question import asked_in_python, not_built
+from foon_asp.questions.question import not_for_used_up_items, python_question
 from foon_asp.questions.result import Ending
 from foon_asp.results.table import Block
 from foon_asp.results.values import Mention
@@ -93,7 +93,7 @@ class UnitUnion(WithAnswer, frozen=True, kw_only=True, tag=schema_name("unit-uni
             yield from (f"  {unit.id}  {unit}" for unit in units)
 
 
-@asked_in_python
+@python_question
 def unit_union(
     problem: Problem,
     objectives: Objectives = "units",
@@ -125,7 +125,7 @@ def unit_union(
     chosen, settings = chosen_objectives(problem, objectives), settings_of(options)
     problem = problem_for_rules(problem, settings)
     if problem.items is not None:
-        raise not_built("alternatives --union")
+        raise not_for_used_up_items("alternatives --union")
     union = tree_union(problem, chosen, settings, caller().reporter, Fraction(within, 100))
     network = problem.network
 

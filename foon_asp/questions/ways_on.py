@@ -14,7 +14,7 @@ from foon_asp.questions.answer import Answer, WithAnswer, answered
 from foon_asp.questions.caller import asked_by, caller
 from foon_asp.questions.common_options import Posed, begin
 from foon_asp.questions.python_arguments import Objectives, chosen_objectives, over_whole_network
-from foon_asp.questions.question import asked_in_python, not_built
+from foon_asp.questions.question import not_for_used_up_items, python_question
 from foon_asp.questions.result import Ending
 from foon_asp.questions.shopping_list import shopping_list
 from foon_asp.results.table import Block
@@ -89,7 +89,7 @@ class WaysOn(WithAnswer, frozen=True, kw_only=True, tag=schema_name("state")):
             yield from self.answer.findings()
 
 
-@asked_in_python
+@python_question
 def ways_on(
     problem: Problem,
     state: str | PathLike[str] | Iterable[str | ObjectNode],
@@ -120,7 +120,7 @@ def ways_on(
         (['drinking glass; contains {ice}'], [])
     """
     if problem.items is not None:
-        raise not_built("trace --state")
+        raise not_for_used_up_items("trace --state")
     named: Any = as_path(state) if isinstance(state, str | PathLike) else tuple(state)
     problem = over_whole_network(problem.vary(kitchen=named))
     chosen, limits = chosen_objectives(problem, objectives), Settings(deadline=begin(options))

@@ -21,7 +21,7 @@ from foon_asp.questions.diff.trees import TreeDifference as TreeDifference
 from foon_asp.questions.diff.trees import compare_trees
 from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.posing import Command
-from foon_asp.questions.posing_plan import listed_tree, own_networks, settle_data
+from foon_asp.questions.posing_plan import data_for_trees, listed_tree, own_networks
 from foon_asp.questions.question import TABLES, Kind, Option, Role, question
 from foon_asp.questions.result import ENDINGS, NoTreeError
 from foon_asp.questions.tree import Tree, read_answer
@@ -46,7 +46,7 @@ def _posed(
     """Read two files; networks and kitchens are read only if the files are task trees."""
     chosen = containers if command.given("containers") else None
     with command.reading():
-        return (*_of_files((a, b), goals_named, chosen, partial(settle_data, command)), command.level)
+        return (*_of_files((a, b), goals_named, chosen, partial(data_for_trees, command)), command.level)
 
 
 def _of_files(
