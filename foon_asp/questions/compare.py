@@ -30,7 +30,14 @@ from foon_asp.questions.python_arguments import problem_for_rules, require_at_le
 from foon_asp.questions.question import TABLES, Kind, Option, Role, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.search import Retrieved
-from foon_asp.questions.search_options import COUNT, DEPTH, TIES, known_searches, search_settings, searched
+from foon_asp.questions.search_options import (
+    COUNT,
+    DEPTH,
+    TIES,
+    search_settings,
+    searches_named,
+    usable_searches,
+)
 from foon_asp.resources import published_table as published_file
 from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block
@@ -217,9 +224,9 @@ def compare(
         (10, 'executes in another order')
     """
     searches = tuple(searches)
-    chosen = searched(searches)
+    chosen = searches_named(searches)
     if problem.rates is None and not searches:
-        chosen = known_searches(rated=False)
+        chosen = usable_searches(rated=False)
         caller().reporter.warning("greedy-success is left out, and so is success: no success rates are known")
     each_limit = limits_of(options)
     settings = search_settings(ties, count, depth_limit, published, *each_limit)

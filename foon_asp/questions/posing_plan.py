@@ -41,7 +41,7 @@ def pose_plan(
     with command.reading():
 
         def used_up(goals: Sequence[int]) -> UsedUp | None:
-            """Return how items are used up for goals, by id, with the named amounts or those of the answer."""
+            """Return how items are used up for goals, by id, in the amounts named or of the answer."""
             wanted = [answer.wanted.get(dataset.names.node(goal), 1) for goal in goals]
             stated = amounts or (wanted if answer.wanted and items != "lasting" else ())
             return items_for(dataset, goals, stated, items, stock, stays)

@@ -111,9 +111,10 @@ def constraint_weights(weight_of_file: Mapping[File, int]) -> dict[Constraint, i
 
 
 def with_items(problem: Problem, items: str) -> Problem:
-    """Return the problem with items that are ``used-up`` or ``lasting``, the default of its data for used up.
+    """Return the problem with ``items``, which are ``used-up`` or ``lasting``.
 
-    A problem whose items are used up already stays as it is for ``used-up``. Raises :class:`UserError` for
+    A problem whose items are used up already stays as it is for ``used-up``. For another problem, the stock
+    and what stays are those of its data. Raises :class:`UserError` for
     another word, and for used-up items at a level without contents.
     """
     if items not in ITEMS:

@@ -90,7 +90,7 @@ class Repaired(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("r
     """What the certificate proves, where one was asked for."""
 
     def remark(self, format_: str) -> str:
-        """Return the notes on the certificate."""
+        """Return the notes on the certificate, one on each line; empty without any."""
         return "\n".join(self.notes)
 
     def foon(self) -> str:
@@ -173,13 +173,13 @@ def repair(
         raise UserError(
             "a certificate is about the network, and that lacks units of the tree: name the tree, too"
         )
-    needed = Repair.of(base, listed.units, listed.places, table, _is_in_kitchen(problem))
+    needed = Repair.of(base, listed.units, listed.places, table, _kitchen_lists(problem))
     verdict = simulate_for(needed.shown, listed).verdict
     outcome = find(needed.posed, _OBJECTIVES, settings, caller().reporter)
     proof: Certificate | None = None
     notes: tuple[str, ...] = ()
     if certificate is not None:
-        outcome, proof = _certified(needed, outcome, settings)
+        outcome, proof = _certify_repair(needed, outcome, settings)
         notes = tuple(certificate_lines(outcome, proof, str(certificate)))
         if proof is not None:
             write_whole(Path(certificate), proof.text().encode())
@@ -206,10 +206,13 @@ def repair(
     )
 
 
-def _certified(needed: Repair, outcome: Outcome, settings: Settings) -> tuple[Outcome, Certificate | None]:
-    """Return the outcome of a repair, and a certificate about the trees that have all of its steps.
+def _certify_repair(
+    needed: Repair, outcome: Outcome, settings: Settings
+) -> tuple[Outcome, Certificate | None]:
+    """Return the outcome of a repair, and a certificate that no tree with all steps of the repair is better.
 
-    The certificate is ``None`` where the repair is not proved, or none is found in time.
+    The outcome has the certificate as its proof if that covers all objectives. The certificate is ``None`` if
+    the repair is not proved, or if none is found in time. Raises :class:`BugError` if a better tree exists.
     """
     covered = Coverage(({"rule": ALL_STEPS, "units": sorted(needed.steps)},))
     deadline, problem, certificate = settings.begun, needed.shown, None
@@ -228,8 +231,11 @@ def _certified(needed: Repair, outcome: Outcome, settings: Settings) -> tuple[Ou
     return outcome._replace(proof=proof, certified=certificate.certified), certificate
 
 
-def _is_in_kitchen(problem: Problem) -> Callable[[ObjectNode], bool]:
-    """Return a function that says whether the kitchen file lists a node that the network lacks."""
+def _kitchen_lists(problem: Problem) -> Callable[[ObjectNode], bool]:
+    """Return a function that says whether an entry of the kitchen file matches a node.
+
+    The node may be absent from the network.
+    """
     data = problem.origin.data if isinstance(problem.origin, Dataset) else None
     items = () if data is None else data.kitchen_items
     return lambda node: any(item.pattern.matches(node) for item in items)

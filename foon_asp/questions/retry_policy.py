@@ -13,16 +13,17 @@ from foon_asp.results.values_of import costed_tree
 
 
 def with_policy(answer: Answer, retries: int, settings: Settings, **options: Unpack[CommonOptions]) -> Answer:
-    """Return an answer with the policy of greatest chance over its tree and the best trees by success.
+    """Return an answer with the retry policy that has the greatest chance of success.
 
-    The other trees are those that :func:`alternatives` finds. The policy is ``None`` if the answer has no
-    tree, or if a limit came first.
+    The policy chooses among the tree of the answer and the best trees by success, which
+    :func:`alternatives` finds; up to four trees in all. It is ``None`` if the answer has no tree, or if a
+    limit came first, which a note of the answer says.
 
     Parameters:
         answer: The answer.
         retries: How many executions may fail in a run that succeeds.
         settings: The settings of the question, whose time has begun.
-        options: The rules that the trees keep to.
+        options: The rules that the trees keep to; limits among them are ignored.
     """
     max_trees = 4  # that a policy follows
     problem = answer.problem

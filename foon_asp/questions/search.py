@@ -13,7 +13,7 @@ from foon_asp.proof.simulation import Simulation, Verdict
 from foon_asp.questions.common_options import Posed, begin
 from foon_asp.questions.question import question
 from foon_asp.questions.result import Ending, Result
-from foon_asp.questions.search_options import COUNT, DEPTH, TIES, search_settings, searched
+from foon_asp.questions.search_options import COUNT, DEPTH, TIES, search_settings, searches_named
 from foon_asp.questions.tree import Tree
 from foon_asp.questions.used_up_note import used_up_note
 from foon_asp.questions.verdict import Stop, simulation_fields, verdict_lines
@@ -195,7 +195,7 @@ def search(
         >>> foon_asp.search(foon_asp.load().problem("macaroni"), "bfs")
         <Retrieved: bfs, executes in another order>
     """
-    (wanted,) = searched([search])
+    (wanted,) = searches_named([search])
     deadline = begin(options)
     settings = search_settings(ties, count, depth_limit, published, deadline.left, deadline.memory)
     outcome = wanted.run(replace(problem, items=None), settings)

@@ -16,7 +16,10 @@ from foon_asp.rules.passed_constraint import Constraint
 def solve_under_soft_constraints(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, weights: Mapping[Constraint, int]
 ) -> Answer:
-    """Solve a problem under soft constraints with their weights."""
+    """Return the best answer under soft constraints; breaking one costs its weight.
+
+    The answer has the total penalty, and for each constraint how it is broken.
+    """
     who = caller()
     outcome, penalty, constraints = find(
         over_whole_network(problem), objectives, settings, weights, who.reporter

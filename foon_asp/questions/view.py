@@ -45,7 +45,7 @@ from foon_asp.questions.python_arguments import (
 from foon_asp.questions.question import Kind, Option, Role, question
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.search import Retrieved, search
-from foon_asp.questions.search_options import known_searches
+from foon_asp.questions.search_options import usable_searches
 from foon_asp.questions.shopping_list import Shopping, shopping_list
 from foon_asp.questions.tree import posed_tree, read_listed
 from foon_asp.questions.why_not import Explanation, why_not
@@ -476,7 +476,7 @@ def pages(
         yield structs.replace(page, why_not=explained, shopping_list=helped)
         return
     if PagePart.SEARCHES in wanted:
-        methods = known_searches(problem.rates is not None)
+        methods = usable_searches(problem.rates is not None)
         page = structs.replace(
             page, searches=tuple(search(problem, method.name, **remaining_limits()) for method in methods)
         )
