@@ -180,7 +180,7 @@ def judge(
         stuck_at = None if retrieval.stuck_at is None else node_of(network, retrieval.stuck_at)
         return SearchResult(search.name, retrieval.ending, stuck_at)
     tree = problem.tree(retrieval.units)
-    simulation = simulated(problem, retrieval.units, tree)
+    simulation = simulate_retrieval(problem, retrieval.units, tree)
     obstruction = None
     if simulation.obstacle is not None:
         position, missing, cycle = simulation.obstacle[:3]
@@ -217,7 +217,7 @@ def _ratio(measure: Figure, optimum: Optimum | None) -> Fraction | None:
     return Fraction(measure) / optimum.value
 
 
-def simulated(problem: Problem, units: Sequence[int], tree: TaskTree) -> Simulation:
+def simulate_retrieval(problem: Problem, units: Sequence[int], tree: TaskTree) -> Simulation:
     """Return the simulation of a tree; where items are used up, of a plan that executes each unit once."""
     simulation = simulate_for(problem, tree)
     if problem.items is None or simulation.verdict is Verdict.NEVER:

@@ -1,4 +1,4 @@
-"""When to do each step of a plan, and who does it: the shortest schedule."""
+"""The shortest schedule of a plan: when each step is done, who does it, and with which tools."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
@@ -53,10 +53,10 @@ Tools = str | PathLike[str] | Mapping[ToolName, int | None]
 
 
 class MotionTime(Value, frozen=True):
-    """How long a motion takes.
+    """How long a motion takes, in seconds.
 
     Attributes:
-        passive: Whether nobody has to stand by.
+        passive: Whether it goes on without an agent.
     """
 
     motion: str
@@ -70,7 +70,7 @@ class LackingTool(Value, frozen=True):
     Attributes:
         tool: A label, or a vessel with what is in it.
         there: The number available.
-        needed: The least number that a schedule needs (infeasible), or a sufficient one (unknown).
+        needed: If infeasible, the least number that a schedule needs; if unknown, a number that is enough.
     """
 
     tool: str
@@ -79,7 +79,7 @@ class LackingTool(Value, frozen=True):
 
 
 class Schedule(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("schedule")):
-    """When the steps of a plan are done, and by whom.
+    """A schedule: when each step of a plan is done, by whom, and with which tools.
 
     Attributes:
         status: optimal: proved a shortest schedule; infeasible: proved that no schedule exists; feasible and
@@ -113,16 +113,19 @@ class Schedule(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("s
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if the schedule is proved shortest."""
+        """``DONE`` if the schedule is proved shortest, ``NEGATIVE`` if it is proved that there is none."""
         return of_status(self.status)
 
     @property
     def gantt(self) -> Gantt:
-        """The steps as a chart shows them."""
+        """The data of a Gantt chart: title, steps and makespan."""
         return Gantt(" + ".join(map(str, self.goals)), self.timetable, self.makespan or Fraction(0))
 
     def show(self) -> Iterator[Block]:
-        """Return the makespan, the claim, a table of the steps, and the working time of each agent."""
+        """Return the makespan with what is proved of it, a table of the steps, and the time each agent works.
+
+        Without a schedule, the tools that are lacking are listed, and how many are needed.
+        """
         yield from self.goal_lines()
         agents = counted(self.agents, "agent")
         if self.makespan is not None:
@@ -167,17 +170,17 @@ class Schedule(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("s
 
 
 class WrittenDurations(Result, frozen=True, kw_only=True, tag=schema_name("durations")):
-    """A file of durations that was written to be filled in.
+    """A file of durations, written for the user to fill in.
 
     Attributes:
-        unknown: How many durations are to be said.
+        unknown: How many durations are to be filled in.
     """
 
     file: Path
     unknown: int
 
     def show(self) -> Iterator[Block]:
-        """Return the next step: which durations to fill in."""
+        """Return one line: the file, and how many durations to fill in."""
         todo = f"say {counted(self.unknown, 'duration')} in place of SECONDS" if self.unknown else "change it"
         yield f"wrote {self.file}: {todo}, and give it as --durations"
 
@@ -185,7 +188,10 @@ class WrittenDurations(Result, frozen=True, kw_only=True, tag=schema_name("durat
 def _schedule_or_template(
     problem: Problem, plan: Tree, *, durations_template: Path | None = None, **options: Any
 ) -> Result:
-    """Schedule as ``foon-asp schedule`` does, or write a file of durations to be filled in."""
+    """Return the schedule; with ``durations_template``, only write that file of durations to be filled in.
+
+    Durations that are known are in the file already. Raises :class:`UserError` if the file exists.
+    """
     if durations_template is None:
         return schedule(problem, plan, **options)
     if durations_template.exists():
@@ -307,12 +313,13 @@ def schedule(
     deadline = begin(options)
     require_at_least(agents, 1, "agents")
     problem = with_items(problem, items)
-    tree = _in_order(posed_tree(problem, plan))
+    tree = _executable_tree(posed_tree(problem, plan))
     replayed = replayable(tree.problem, tree)
     replay = replay_for(replayed, tree)
     if replay.shortage is not None:
         raise NoTreeError(_shortage_text(tree, replay.shortage))
-    means = Means(_durations(tree, durations, from_video, default_duration), agents, _tools(tools))
+    known_durations = _durations_of_plan(tree, durations, from_video, default_duration)
+    means = Means(known_durations, agents, _tool_counts(tools))
     task = schedule_task(replayed, tree.units, replay, means)
     solution = shortest(task, deadline)
     timed = () if solution.starts is None else tuple(timed_steps(task, solution.starts))
@@ -330,7 +337,7 @@ def schedule(
             MotionTime(motion, Fraction(duration.seconds), duration.passive)
             for motion, duration in means.durations.items()
         ),
-        timetable=tuple(_timed_steps(tree, timed, after)),
+        timetable=tuple(_timed_step_values(tree, timed, after)),
         lacking=tuple(
             LackingTool(str(name), means.number_of(tree.problem, name), needed)
             for name, needed in solution.lacking.items()
@@ -338,8 +345,13 @@ def schedule(
     )
 
 
-def _timed_steps(tree: Tree, timed: Sequence[Timed], after: Sequence[tuple[int, ...]]) -> Iterator[TimedStep]:
-    """Yield the steps of a schedule as values."""
+def _timed_step_values(
+    tree: Tree, timed: Sequence[Timed], after: Sequence[tuple[int, ...]]
+) -> Iterator[TimedStep]:
+    """Yield the steps of a schedule as values for a result.
+
+    ``timed`` has the times of each step, and ``after`` the numbers, from 1, of the steps that it waits for.
+    """
     problem = tree.problem
     for number, (unit, step, earlier) in enumerate(zip(tree.units, timed, after, strict=False), 1):
         named = tree.step_unit(number)
@@ -361,13 +373,14 @@ def _timed_steps(tree: Tree, timed: Sequence[Timed], after: Sequence[tuple[int, 
 
 
 def _status(solution: BestSchedule) -> Status:
+    """Return the status of a result from whether a schedule was found, and whether something is proved."""
     if solution.proved:
         return Status.INFEASIBLE if solution.starts is None else Status.OPTIMAL
     return Status.UNKNOWN if solution.starts is None else Status.FEASIBLE
 
 
-def _in_order(tree: Tree) -> Tree:
-    """Return a tree in an order that executes, or else in the listed order.
+def _executable_tree(tree: Tree) -> Tree:
+    """Return a tree in an order that executes; in the listed order if items last and no order executes.
 
     Raises :class:`NoTreeError` if items are used up and no order executes.
     """
@@ -384,13 +397,17 @@ def _in_order(tree: Tree) -> Tree:
 
 
 def _shortage_text(tree: Tree, shortage: Shortage) -> str:
+    """Return the message that a plan does not run, with the copy that is missing."""
     return f"the plan does not run: {tree.lack_text(lack_of(tree.problem.network, shortage))}"
 
 
-def _durations(
+def _durations_of_plan(
     tree: Tree, stated: Durations | None, from_video: bool, default: Number | None
 ) -> dict[str, Duration]:
-    """Return the durations of the motions of a plan; raises :class:`UserError` for motions without one."""
+    """Return the duration of each motion of a plan; raises :class:`UserError` for motions without one.
+
+    The parameters are those of :func:`_known_durations`.
+    """
     known_durations = _known_durations(tree, stated, from_video, default)
     motions = dict.fromkeys(unit.motion for unit in tree.units)
     missing = [motion for motion in motions if motion not in known_durations]
@@ -418,8 +435,8 @@ def _known_durations(
 ) -> dict[str, Duration]:
     """Return the known durations by motion.
 
-    A duration is stated, or the median of clips, or the default. Warnings name the motions with a median or
-    the default.
+    A stated duration comes first; then, with ``from_video``, the median of the video clips of the motion;
+    then the default. Warnings name the motions that have a median or the default.
     """
     durations = stated_durations(stated)
     motions = dict.fromkeys(unit.motion for unit in tree.units)
@@ -449,8 +466,11 @@ def _known_durations(
     return durations
 
 
-def _tools(stated: Tools | None) -> dict[ToolName, int | None]:
-    """Return the stated numbers of tools by label or node; ``None`` is an unlimited number."""
+def _tool_counts(stated: Tools | None) -> dict[ToolName, int | None]:
+    """Return the stated numbers of tools by label or node, read from a file or checked.
+
+    ``None`` in the result is an unlimited number. Raises :class:`UserError` for a wrong number or label.
+    """
     if stated is None:
         return {}
     if isinstance(stated, str | PathLike):

@@ -41,7 +41,10 @@ def solve_or_each(
     all_goals: bool = False,
     **options: Unpack[CommonOptions],
 ) -> Result:
-    """Solve as ``foon-asp solve`` does: all goals by one tree, or each by itself."""
+    """Return the best tree for all goals, or with ``all_goals`` the best tree for each goal by itself.
+
+    Raises :class:`UserError` for options that do not go with ``all_goals``.
+    """
     if not all_goals:
         return solve(
             problem,
