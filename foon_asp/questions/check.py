@@ -21,7 +21,7 @@ from foon_asp.questions.posing_plan import pose_plan
 from foon_asp.questions.python_arguments import Objectives, chosen_objectives, over_whole_network
 from foon_asp.questions.question import Kind, Option, Role, question
 from foon_asp.questions.result import Ending, Result
-from foon_asp.questions.tree import Tree, posed_tree, read_answer
+from foon_asp.questions.tree import Tree, as_tree, read_answer
 from foon_asp.questions.verdict import Stop, simulation_fields, verdict_lines
 from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block
@@ -288,7 +288,7 @@ def check(
     if certificate is not None or (rule_check is not None and not rule_check.local):
         problem = over_whole_network(problem)
     chosen = () if certificate is None else chosen_objectives(problem, objectives or "units")
-    listed = posed_tree(problem, tree)
+    listed = as_tree(problem, tree)
     checked = Checked.of(listed, chosen)
     if rule_check is not None:
         broken = None

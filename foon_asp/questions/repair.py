@@ -25,7 +25,7 @@ from foon_asp.questions.python_arguments import over_whole_network
 from foon_asp.questions.question import python_question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.stand_in import StandIn, stand_in_lines, stand_ins_in
-from foon_asp.questions.tree import Tree, posed_tree
+from foon_asp.questions.tree import Tree, as_tree
 from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block
 from foon_asp.results.values import Node, Step
@@ -167,7 +167,7 @@ def repair(
     if settings.constraints or settings.replaced is not None:
         raise UserError("a tree is repaired without rules and encodings: leave them out")
     table = StandInTable.usual() if problem.stand_ins is None else problem.stand_ins.table
-    listed = posed_tree(problem, tree)
+    listed = as_tree(problem, tree)
     base = over_whole_network(problem) if problem.stand_ins is None else problem
     if certificate is not None and any(base.network.unit_id(unit) is None for unit in listed.units):
         raise UserError(

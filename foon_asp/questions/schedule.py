@@ -31,7 +31,7 @@ from foon_asp.questions.posing_plan import pose_plan
 from foon_asp.questions.python_arguments import require_at_least, with_items
 from foon_asp.questions.question import TABLES, Kind, Option, Role, question
 from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result
-from foon_asp.questions.tree import OTHER_READING, Tree, posed_tree
+from foon_asp.questions.tree import OTHER_READING, Tree, as_tree
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.table import Block, Table
 from foon_asp.results.timed_step import TimedStep, Tool
@@ -313,7 +313,7 @@ def schedule(
     deadline = begin(options)
     require_at_least(agents, 1, "agents")
     problem = with_items(problem, items)
-    tree = _executable_tree(posed_tree(problem, plan))
+    tree = _executable_tree(as_tree(problem, plan))
     replayed = replayable(tree.problem, tree)
     replay = replay_for(replayed, tree)
     if replay.shortage is not None:

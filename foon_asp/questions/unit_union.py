@@ -1,4 +1,4 @@
-"""Units of every optimal tree and of some, proved without a list of the trees."""
+"""The units that are in every optimal tree or in some of them, proved without a list of the trees."""
 
 from collections.abc import Iterator
 from enum import StrEnum
@@ -26,7 +26,7 @@ from foon_asp.text.json_value import schema_name
 
 
 class Membership(StrEnum):
-    """In which of the trees a unit is."""
+    """Whether a unit is in every one of the trees, in some, or not decided."""
 
     EVERY = "every"
     NOT_EVERY = "some"
@@ -41,7 +41,7 @@ _HEADINGS = {
 
 
 class UnitOfTrees(Mention, frozen=True, kw_only=True):
-    """A unit, and in which of the trees it is.
+    """A unit that is in some of the trees, or in all.
 
     Attributes:
         trees: Whether ``every`` tree has it, or only ``some``; ``unknown`` where a limit came first.
@@ -51,13 +51,13 @@ class UnitOfTrees(Mention, frozen=True, kw_only=True):
 
 
 class UnitUnion(WithAnswer, frozen=True, kw_only=True, tag=schema_name("unit-union")):
-    """The units of every optimal tree, and those of some.
+    """The units that are in every optimal tree, and those that are in some of them.
 
     Attributes:
         within: How much worse than the best tree a tree may be by the first objective, in percent; 0 for
             optimal trees.
-        complete: Whether all units are listed, and of each it is proved in which trees it is.
-        units: Those of every tree first, then those of some, by id.
+        complete: Whether it is proved for each unit in which trees it is.
+        units: The units of every tree first, then the others, in the order of their ids.
         answer: The best tree.
 
     Example:
@@ -130,6 +130,7 @@ def unit_union(
     network = problem.network
 
     def membership(unit: int) -> Membership:
+        """Return whether a unit of the union, by id, is in every tree, in some, or not decided."""
         if unit in union.undecided:
             return Membership.UNKNOWN
         return Membership.EVERY if unit in union.in_every else Membership.NOT_EVERY
