@@ -457,12 +457,10 @@ def pages(
         return {"time_limit": deadline.left, "memory_limit": deadline.memory}
 
     if is_of_plan and not has_rules:
-        is_bounded = (
-            Objective.KITCHEN not in chosen
-        )  # a plan need not take from the kitchen items that it makes
-        proof = (
-            certified(lasting_problem, chosen, settings) if PagePart.PROOF in wanted and is_bounded else None
-        )
+        # a plan need not take from the kitchen items that it makes
+        is_bounded = Objective.KITCHEN not in chosen
+        wants_proof = is_bounded and PagePart.PROOF in wanted
+        proof = certified(lasting_problem, chosen, settings) if wants_proof else None
         lasting = answered(lasting_problem, chosen, settings) if proof is None else proof
         if is_bounded:
             Postconditions(lasting_problem, levels(tuple(chosen)), settings).no_better(
@@ -481,12 +479,10 @@ def pages(
         explained = why_not(lasting_problem, **rules, **remaining_limits())
         if is_of_plan and explained.tree_exists:
             return  # items run out, which why_not does not explain
-        helped = (
-            None
-            if explained.tree_exists
-            else shopping_list(lasting_problem, chosen, **rules, **remaining_limits())
-        )
-        yield structs.replace(page, why_not=explained, shopping_list=helped)
+        shopping = None
+        if not explained.tree_exists:
+            shopping = shopping_list(lasting_problem, chosen, **rules, **remaining_limits())
+        yield structs.replace(page, why_not=explained, shopping_list=shopping)
         return
     if PagePart.SEARCHES in wanted:
         methods = usable_searches(problem.rates is not None)
