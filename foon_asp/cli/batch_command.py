@@ -106,7 +106,7 @@ def command(
     interrupted = False
     began = time.monotonic()
     with RowsFile(rows_file, ANSWERS, common) as results:
-        for text in results.twice:
+        for text in results.duplicate_warnings:
             warn(text)
         answered_before = [results.done[question] for question in distinct if question in results.done]
         open_questions = [question for question in distinct if question not in results.done]

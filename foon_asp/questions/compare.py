@@ -292,7 +292,7 @@ def _compared_goals(
             begun_for = comparisons_question(problem, searches, settings, rules)
             file = stack.enter_context(RowsFile(Path(results), COMPARISONS, begun_for))
             done = file.done
-            for text in file.twice:
+            for text in file.duplicate_warnings:
                 caller().reporter.warning(text)
         remaining = [goal for name, goal in goals.items() if name not in done]
         before = len(goals) - len(remaining)
