@@ -10,6 +10,7 @@ def breadth_first(problem: Problem, settings: SearchSettings) -> Retrieval:
     """Retrieve a tree breadth-first.
 
     For each object, the first achiever in file order is chosen, or the last by ``ties`` of the settings, even
-    if it can never execute. So the tree has only the guarantees of :func:`~foon_asp.searches.retrieval.retrieve_backward`.
+    if it can never execute. So the tree has only the guarantees of
+    :func:`~foon_asp.searches.retrieval.retrieve_backward`.
     """
     return retrieve_backward(problem, least_chooser(settings.ties))
