@@ -43,9 +43,9 @@ COMPARISONS = RowForm("compare-row", plain, read_comparison, lambda comparison: 
 def comparisons_question(
     problem: Problem, searches: Sequence[Search], settings: SearchSettings, rules: Settings | None = None
 ) -> Json:
-    """Return the first line of a file of comparisons: a digest of the data, searches, settings and rules.
+    """Return the question of a file of comparisons: a digest of the data, searches, settings and rules.
 
-    A run continues a file only if the first line is equal.
+    The first line of the file states it. A run continues a file only if the question is equal.
     """
     subject = Subject(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
     data: list[object] = [subject.digests()]

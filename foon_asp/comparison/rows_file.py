@@ -41,8 +41,8 @@ class RowsFile(Generic[Row]):
     rows by key. ``duplicate_warnings`` has a warning for each row with the key of an earlier row. The file is
     locked until it is closed or the process ends.
 
-    Raises :class:`UserError`, and leaves the file unchanged, where another run writes it, where it was begun
-    for another question, where its lines are of another version, and where it has other contents.
+    Raises :class:`UserError`, and leaves the file unchanged, if another run writes it, or if it has another
+    question, lines of another version, or other contents.
     """
 
     def __init__(self, path: Path, form: RowForm[Row], question: Json) -> None:

@@ -11,10 +11,11 @@ from foon_asp.problem import Objective, multiplies
 
 
 class Distance(NamedTuple):
-    """Statistics of the ratio to the optimum, over the trees that execute and break no rule; 1 is optimal.
+    """Statistics of the ratios of the costs of trees to the optimum; 1 is optimal, and more is worse.
 
-    The ratio is the cost divided by the optimum. For ``success`` it is the optimum divided by the rate, so
-    that a higher ratio is always worse. ``share`` is the fraction of trees that are optimal, and
+    Only trees that execute and break no rule count. The ratio is the cost divided by the optimum; for
+    ``success``, it is the optimum divided by the rate. ``share`` is the fraction of trees that are optimal,
+    and
     ``worst_goal`` is the goal with the worst ratio. The 90th percentile is the least ratio that at least nine
     tenths of the trees do not exceed.
     """

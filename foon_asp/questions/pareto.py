@@ -119,7 +119,7 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if the front is complete, ``NEGATIVE`` if no tree exists."""
+        """``DONE`` if the front is complete, ``NEGATIVE`` if no tree exists, else ``LIMIT``."""
         if not self.complete:
             return Ending.LIMIT
         return Ending.DONE if self.points else Ending.NEGATIVE
@@ -399,6 +399,7 @@ def _divide_boxes(boxes: Sequence[Box], point: Sequence[int | Fraction]) -> list
             divided.add(box)
 
     def contains(box: Box, inner: Box) -> bool:
+        """Return whether all costs in another box are in ``box``, too."""
         return box != inner and all(
             bound is None or (inner_bound is not None and inner_bound <= bound)
             for bound, inner_bound in zip(box, inner, strict=True)
@@ -410,7 +411,7 @@ def _divide_boxes(boxes: Sequence[Box], point: Sequence[int | Fraction]) -> list
 def _require_incomparable(
     postconditions: Postconditions, point: _FoundTree, points: Sequence[_FoundTree]
 ) -> None:
-    """Require that ``point`` is better than each other point by an objective, and worse by another one."""
+    """Require that ``point`` is better than each other point by some objective, and worse by another."""
     key = point.costs.key(postconditions.levels)
     for other in points:
         other_key = other.costs.key(postconditions.levels)

@@ -32,7 +32,7 @@ class Command(Protocol):
         """Whether the command names a network."""
 
     def given(self, option: str) -> bool:
-        """Return whether an option, by the name of its parameter, is on the command line and no default."""
+        """Return whether an option, by the name of its parameter, is on the command line itself."""
 
     def unnamed_goals(self) -> list[ObjectNode]:
         """Return the goals of a command that names none; each goal is then answered by itself."""
@@ -75,8 +75,8 @@ def pose_problem(
     """Return the problem of the named goals, as a tuple of one; a tree of it makes all of them.
 
     With ``all_goals``, the goals of the problem are those named, or all of the goals file; the caller solves
-    for each goal by itself. With ``amounts``, the copies wanted of each goal, items are used up. Without
-    ``items``, which is for questions without this option, items last. Of a large store, the units that the
+    for each goal by itself. With ``amounts``, the copies wanted of each goal, items are used up. ``items`` is
+    ``None`` for questions without this option; items then last. Of a large store, the units that the
     goals can need are read on first access. Raises :class:`UserError` if there is no goal.
     """
     dataset = command.dataset

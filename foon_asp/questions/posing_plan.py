@@ -104,10 +104,10 @@ def listed_tree(
 
 
 def data_for_trees(command: Command, files: Mapping[Path, ListedTree]) -> Dataset:
-    """Return the data for trees in files; a command that names data keeps them.
+    """Return the data that trees in ``files`` are about.
 
-    Otherwise, the files of :func:`own_networks` are added to the command as its data. If there are none, the
-    data are the bundled kitchen.
+    If the command names data, it is these. Otherwise, the files of :func:`own_networks` are added to the
+    command as its data; without such files, the data are the bundled kitchen.
     """
     if not command.names_data:
         command.add_sources(own_networks(command.dataset.data.network, files))
@@ -118,9 +118,9 @@ def own_networks(kitchen: Network, files: Mapping[Path, ListedTree]) -> Sequence
     """Return the files with trees that serve as the network, too, for a command that names no data.
 
     There is no such file if the bundled ``kitchen`` has at least half of the units: then it is the network.
-    Fewer shared units may be chance; more may be missing where a program made up units. A warning names the
-    network, unless the bundled kitchen has all units. Raises :class:`UserError` for an answer about other
-    data, since an answer holds only a part of its data.
+    Sharing fewer units may be chance; the others may be made up by the program that wrote the tree. A warning
+    names the network, unless the bundled kitchen has all units. Raises :class:`UserError` for an answer about
+    other data, since an answer holds only a part of its data.
     """
     listed = [listed_unit for tree in files.values() for listed_unit in tree.units or ()]
     bundled = count_units_in(kitchen, [unit for unit, _ in listed])

@@ -90,9 +90,10 @@ def limited_reading() -> AbstractContextManager[object]:
 
 
 def constraint_weights(weight_of_file: Mapping[File, int]) -> dict[Constraint, int]:
-    """Return the weight of each constraint; raises :class:`UserError` if it is no whole number from 1.
+    """Return the weights by constraint in place of its file or name.
 
-    A constraint that two names stand for also raises.
+    Raises :class:`UserError` for a weight that is no whole number from 1, and for a constraint with two
+    weights.
     """
     from foon_asp.asp.search_tuning import SEARCH  # noqa: PLC0415 (where there are rules)
 
@@ -114,8 +115,8 @@ def with_items(problem: Problem, items: str) -> Problem:
     """Return the problem with ``items``, which are ``used-up`` or ``lasting``.
 
     A problem whose items are used up already stays as it is for ``used-up``. For another problem, the stock
-    and what stays are those of its data. Raises :class:`UserError` for
-    another word, and for used-up items at a level without contents.
+    and what stays are those of its data. Raises :class:`UserError` for another word, and for used-up items at
+    a level without contents.
     """
     if items not in ITEMS:
         raise UserError(f"found the items {items!r}, expected one of {', '.join(ITEMS)}")

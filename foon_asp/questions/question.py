@@ -133,7 +133,7 @@ def question(
 ) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """Return a decorator that wraps a function for Python, and describes it for a command line.
 
-    :func:`question_of` returns the description, a :class:`Question`, which has the other arguments. The
+    :func:`question_of` returns the description, a :class:`Question`, whose fields the arguments are. The
     options of the command are ``options``, and after them those in the annotations of the parameters. A
     question supports items that are used up if it has an option for them, or if ``used_up`` says so.
     """
@@ -169,7 +169,7 @@ def python_question(ask: Callable[P, T], options: Sequence[Option] | None = None
 def expanded_signature(ask: Callable[..., object]) -> inspect.Signature:
     """Return the signature of a function, with a parameter for each key of an ``Unpack`` annotation.
 
-    They replace a parameter such as ``**options: Unpack[CommonOptions]``.
+    These parameters replace one such as ``**options: Unpack[CommonOptions]``.
     """
     signature = inspect.signature(ask)
     parameters: list[inspect.Parameter] = []
@@ -204,7 +204,7 @@ def _without_options(signature: inspect.Signature) -> inspect.Signature:
 
 
 def _options_of(ask: Callable[..., object]) -> Iterator[Option]:
-    """Yield the options in the annotations of the parameters of a function, with no value missing."""
+    """Yield the options in the annotations of a function's parameters, completed from the parameters."""
     texts = docstring_entries(ask)
     for parameter in expanded_signature(ask).parameters.values():
         for option in getattr(parameter.annotation, "__metadata__", ()):
@@ -236,6 +236,7 @@ def _for_lasting_items(ask: Callable[P, R]) -> Callable[P, R]:
 
     @functools.wraps(ask)
     def wrapped(*about: P.args, **named: P.kwargs) -> R:
+        """Check the problems among the arguments, and call the question."""
         if any(isinstance(argument, Problem) and argument.items is not None for argument in about):
             raise not_for_used_up_items(ask.__module__.removeprefix("foon_asp.questions."))
         return ask(*about, **named)

@@ -44,7 +44,7 @@ class PlanRead(Checked, frozen=True, kw_only=True, tag=schema_name("read-plan"))
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` for a sound plan."""
+        """``DONE`` for a sound plan, ``NEGATIVE`` for one that is refused."""
         return Ending.DONE if self.sound else Ending.NEGATIVE
 
     def show(self) -> Iterator[Block]:

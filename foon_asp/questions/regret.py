@@ -75,7 +75,7 @@ class Regret(Value, frozen=True):
 
     @property
     def part(self) -> Removal:
-        """The kind of the part left out."""
+        """The kind of part that is left out."""
         if self.item is not None:
             return Removal.ITEM if self.second_item is None else Removal.PAIR
         return Removal.MOTION if self.unit is None else Removal.UNIT
@@ -127,7 +127,7 @@ class Regrets(WithAnswer, frozen=True, kw_only=True, tag=schema_name("regret")):
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if every optimum is proved."""
+        """The ending of the best tree; ``LIMIT`` if the optimum without some part is not proved."""
         proved = all(regret.status in {Status.OPTIMAL, Status.INFEASIBLE} for regret in self.regrets)
         return self.answer.ending if proved else Ending.LIMIT
 

@@ -250,7 +250,7 @@ class _StopWhenProved(Reporter):
         self._lower_bound: int | Fraction | None = None
 
     def tree(self, costs: Costs) -> None:
-        """Forward the costs of a new incumbent, and record the one to be proved."""
+        """Forward the costs of a new incumbent, and record its cost by the objective to prove."""
         self._reporter.tree(costs)
         self._cost = costs.measure(self._objective)
         self._compare()

@@ -74,7 +74,7 @@ class Repaired(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("r
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if the repair is proved to be the cheapest."""
+        """``DONE`` if the repair is proved the cheapest, ``NEGATIVE`` if none exists, else ``LIMIT``."""
         return of_status(self.status)
 
     tree = Unserialized[Tree | None](None)
@@ -101,7 +101,7 @@ class Repaired(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("r
         return write_units(self.tree.units, comments, self.tree.problem.amounts)
 
     def show(self) -> Iterator[Block]:
-        """Return what has to change, and the steps of the repaired tree."""
+        """Return what has to change, and the steps of the repaired tree; or why there is no repair."""
         yield from self.goal_lines()
         yield f"as it is: {self.verdict}"
         if self.units is None:

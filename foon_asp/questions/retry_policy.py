@@ -16,8 +16,8 @@ def with_policy(answer: Answer, retries: int, settings: Settings, **options: Unp
     """Return an answer with the retry policy that has the greatest chance of success.
 
     The policy chooses among the tree of the answer and the best trees by success, which
-    :func:`alternatives` finds; up to four trees in all. It is ``None`` if the answer has no tree, or if a
-    limit came first, which a note of the answer says.
+    :func:`alternatives` finds; up to four trees in all. The policy is ``None`` if the answer has no
+    tree, or if a limit came first; a note of the answer says the latter.
 
     Parameters:
         answer: The answer.

@@ -373,7 +373,7 @@ def _timed_step_values(
 
 
 def _status(solution: BestSchedule) -> Status:
-    """Return the status of a result from whether a schedule was found, and whether something is proved."""
+    """Return the status: of a schedule optimal or feasible, without one infeasible or unknown."""
     if solution.proved:
         return Status.INFEASIBLE if solution.starts is None else Status.OPTIMAL
     return Status.UNKNOWN if solution.starts is None else Status.FEASIBLE

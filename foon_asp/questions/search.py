@@ -119,7 +119,7 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if the tree executes, ``LIMIT`` if the search was stopped."""
+        """``DONE`` if the tree executes, ``LIMIT`` if a limit stopped the search, else ``NEGATIVE``."""
         if self.ended is Searched.UNKNOWN:
             return Ending.LIMIT
         return Ending.DONE if self.executes else Ending.NEGATIVE

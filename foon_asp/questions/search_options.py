@@ -40,7 +40,7 @@ def searches_named(names: Iterable[str]) -> list[Search]:
 
 
 def usable_searches(rated: bool) -> list[Search]:
-    """Return all searches; if no rates are known (``rated``), without the search that needs them."""
+    """Return all searches, without the one that needs success rates unless these are known (``rated``)."""
     return [search for search in searches_named(()) if rated or search.name != "greedy-success"]
 
 

@@ -63,8 +63,8 @@ class RateEnd(Value, frozen=True):
 
     Attributes:
         proved: Whether this is the end; if not, a limit came first, and the end may be nearer to the rate.
-        at: Where another tree is as good; null where no rate on that side makes another tree better.
-        beyond: The tree that is the best beyond.
+        at: The rate at which another tree is as good; null if no rate on that side makes another tree better.
+        beyond: The tree that is the best beyond this rate; null without such a rate.
     """
 
     proved: bool
@@ -134,7 +134,7 @@ class Sensitivity(WithAnswer, frozen=True, kw_only=True, tag=schema_name("sensit
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if both ends of every interval are proved."""
+        """The ending of the best tree; ``LIMIT`` if an end of an interval is not proved."""
         proved = all(interval.proved for interval in self.intervals)
         return self.answer.ending if proved else Ending.LIMIT
 

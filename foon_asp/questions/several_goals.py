@@ -13,10 +13,10 @@ from foon_asp.results.values_of import node_of, nodes_of
 
 
 class GoalsApartTuning(NamedTuple):
-    """When the goals of a tree are also solved one by one.
+    """The limit up to which the goals of a tree are also solved one by one.
 
-    ``goals`` is the greatest number of such goals, since each goal is one more search and one more line.
-    For more goals there is the option ``--all-goals``.
+    ``goals`` is the greatest number of goals, since each takes one more search and one more line. For more
+    goals there is the option ``--all-goals``.
     """
 
     goals: int = 8
@@ -26,7 +26,7 @@ def with_goals_apart(answer: Answer, settings: Settings, posed: Problem) -> Answ
     """Return an answer with the goals that each unit is needed for.
 
     For up to eight goals, the answer also has the optimum for each goal by itself. ``posed`` is the problem
-    before the units that it needs were read, so that only the units for one goal are read at a time.
+    as the question had it; of a large store, only the units for one goal are then read at a time.
     """
     problem, network = answer.problem, answer.problem.network
     serves = tuple(

@@ -119,7 +119,7 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if every list and the tree are proved optimal, ``NEGATIVE`` if proved that none helps."""
+        """``DONE`` if all lists and the tree are proved, ``NEGATIVE`` if no list helps, else ``LIMIT``."""
         if not self.lists:
             return Ending.NEGATIVE if self.complete else Ending.LIMIT
         proved = all(bought.proved for bought in self.lists)

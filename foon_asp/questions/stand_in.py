@@ -15,8 +15,8 @@ class NodeEdit(Value, frozen=True):
 
     Attributes:
         edit: The kind of edit in the table of stand-ins.
-        served: The text of the node that is stood in for; empty where it has none.
-        serving: The text of the node that is used; empty where it has none.
+        served: The differing part of the node that is replaced; empty where it has none.
+        serving: The differing part of the node that is used; empty where it has none.
         price: The price in the table.
     """
 

@@ -106,7 +106,7 @@ class Stats(Result, frozen=True, kw_only=True, tag=schema_name("stats")):
         files: The files that they were read from.
         videos: The addresses of the annotated videos.
         reached_from: The nodes from which depth and reach are counted.
-        starting_kitchen: null where a kitchen was given.
+        starting_kitchen: The starting kitchen; null where a kitchen was given.
         levels: The counts at the levels of detail 1 to 3; for data below level 3, only at their own level.
             ``producers`` are the numbers of nodes that 0, 1, 2, 3 and 4 or more units make.
         most_connected_labels: The labels that most units have.
@@ -234,7 +234,7 @@ class ListedUnits(Result, frozen=True, kw_only=True, tag=schema_name("units")):
     units: tuple[ExplainedUnit, ...]
 
     def show(self) -> Iterator[Block]:
-        """Return the units; where asked for, with each input, whether it stays, and the outputs."""
+        """Return a line for each unit; on request, also its inputs, with why they stay or not, and its outputs."""
         for unit in self.units:
             yield from step_lines([unit])
             explained = [node for node in unit.inputs if node.why is not UNSET]

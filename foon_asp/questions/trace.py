@@ -88,7 +88,7 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
 
     @property
     def ending(self) -> Ending:
-        """The ending of the new plan, if a step failed; else ``DONE`` if the plan runs."""
+        """The ending of the new plan, if a step failed; else ``DONE`` if the plan runs, or ``NEGATIVE``."""
         if self.answer is not None:
             return self.answer.ending
         return Ending.DONE if self.stopped is None else Ending.NEGATIVE

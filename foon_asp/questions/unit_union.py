@@ -75,7 +75,7 @@ class UnitUnion(WithAnswer, frozen=True, kw_only=True, tag=schema_name("unit-uni
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if everything is proved, ``NEGATIVE`` if no tree exists."""
+        """The ending of the best tree; ``LIMIT`` unless everything is proved."""
         return self.answer.ending if self.complete else Ending.LIMIT
 
     def show(self) -> Iterator[Block]:

@@ -10,11 +10,11 @@ from foon_asp.proof.used_up_run import used_up_run
 
 
 def used_up_note(problem: Problem, tree: Iterable[FunctionalUnit]) -> list[str]:
-    """Return a list with one note if the tree, for which items last, would not run with items used up.
+    """Return a note, in a list, that a tree for lasting items would not run if items were used up.
 
-    Otherwise, the list is empty; so it is for a problem whose items are used up, and if no step uses up the
-    copy that is missing. If units, the kitchen or the goals have amounts that matter for the tree, the note
-    says that amounts are not counted.
+    The list is empty if the tree would run, or if no step uses up the copy that is missing. It is also empty
+    for a problem whose items are used up. If the tree has units, items or goals with amounts, the note says
+    instead that amounts are not counted.
     """
     units = tuple(tree)
     if problem.items is not None:
@@ -31,9 +31,9 @@ def used_up_note(problem: Problem, tree: Iterable[FunctionalUnit]) -> list[str]:
 
 
 def _amount_text(problem: Problem, units: Sequence[FunctionalUnit]) -> str:
-    """Return where the first amount stands that matters for the tree: ``of flour in the kitchen``.
+    """Return in words the first amount that concerns a tree: ``of flour in the kitchen``.
 
-    It is of a unit, an item of the kitchen or a goal; the text is empty without one.
+    Amounts are those of its units, its items in the kitchen, and the goals. The text is empty without one.
     """
     if problem.amounts:
         for unit in units:

@@ -49,9 +49,9 @@ _NAMED_BY = {
 
 
 class OtherDataError(proof.RefusedError):
-    """The certificate is about other data than those named; ``differing`` is the part that differs.
+    """The certificate is about other data than those named.
 
-    It is a key of ``_NAMED_BY``, for example ``kitchen``.
+    ``differing`` is the name of the part that differs, for example ``kitchen``.
     """
 
     def __init__(self, differing: str, message: str) -> None:

@@ -204,7 +204,7 @@ class Explanation(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name
     """Why some goals cannot be made, or that all can.
 
     Attributes:
-        tree_exists: Whether there is a tree, rules left aside.
+        tree_exists: Whether there is a tree if rules are ignored.
         unreachable_goals: The goals that cannot be made.
         roots: The causes; those on the easiest path to the goals come first.
         dead_ends: Every object node that cannot be had and that some path to an unreachable goal needs.
@@ -232,7 +232,7 @@ class Explanation(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if there is a tree, under the rules, too; ``NEGATIVE`` if there is none."""
+        """``DONE`` if there is a tree that keeps to the rules, ``NEGATIVE`` if not, else ``LIMIT``."""
         if not self.tree_exists:
             return Ending.NEGATIVE
         return Ending.DONE if self.clash is None else self.clash.ending

@@ -92,7 +92,7 @@ def schema_of_rows(kind: str, row: type[Struct]) -> Json:
 
 
 def _constrain_keys(schema: Any) -> None:
-    """Add to each object with free keys, names of objectives or phases, a pattern for them, in place."""
+    """Add, in place, a pattern for the free keys of objects, which are names of objectives or phases."""
     for inner in schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else ():
         _constrain_keys(inner)
     if isinstance(schema, dict) and isinstance(schema.get("additionalProperties"), dict):

@@ -26,7 +26,7 @@ class Choice(Value, frozen=True):
 
 
 class WeighedCut(Value, frozen=True):
-    """A cut with its weight by the first objective; null for a cut without landmark actions.
+    """A cut, and its weight by the first objective; the weight is null without landmark actions.
 
     Attributes:
         members: The landmark actions: units that make a node of the cut and need none.

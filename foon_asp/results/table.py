@@ -107,7 +107,7 @@ def _cell_text(cell: str | Cell) -> str:
 
 
 def _colour(text: str, cell: str | Cell, coloured: bool, heading: bool) -> str:
-    """Return a text in the terminal codes of the cell's style, or of a heading; unchanged without colours."""
+    """Return a text with terminal codes for the style of its cell, or of a heading, if ``coloured``."""
     style = "strong" if heading else cell.style if isinstance(cell, Cell) else ""
     return f"\x1b[{_COLOURS[style]}m{text}\x1b[0m" if coloured and style else text
 

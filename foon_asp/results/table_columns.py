@@ -104,7 +104,7 @@ def csv_text(rows: Iterable[Json], names: Sequence[str] | None = None) -> str:
 
 
 def safe_cell(text: str) -> str:
-    """Return the text of a cell, escaped, and behind an apostrophe if spreadsheets would read a formula."""
+    """Return the escaped text of a cell, behind an apostrophe if spreadsheets take it for a formula."""
     text = escaped(text)  # of what begins a formula, tabs and line ends
     return f"'{text}" if text[:1] in {"=", "+", "-", "@"} and not _WRITTEN_NUMBER.fullmatch(text) else text
 

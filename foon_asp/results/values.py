@@ -313,7 +313,7 @@ class UsedUpRun(Value, frozen=True):
 
     Attributes:
         runs: Whether they run; null if that was not decided, and below level 3.
-        shortage: The missing copy, if the steps do not run.
+        shortage: The missing copy, if the steps do not run; else null.
     """
 
     runs: bool | None

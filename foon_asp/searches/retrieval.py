@@ -36,7 +36,7 @@ class Retrieval(NamedTuple):
 
 
 class Count(StrEnum):
-    """The inputs that are counted: input object nodes and their ingredients, or the nodes alone."""
+    """What is counted as inputs: input object nodes and their ingredients, or the nodes alone."""
 
     INGREDIENTS = "ingredients"
     NODES = "nodes"
