@@ -30,8 +30,8 @@ def answer_all(
         """Return after how many seconds a process counts as late; ``None`` without a time limit."""
         return None if question.time_limit is None else question.time_limit + grace
 
-    begin = partial(_answer_function, opener, memory_limit, settings)
-    for question, row, error in share(begin, questions, jobs, seconds):
+    start_worker = partial(_answer_function, opener, memory_limit, settings)
+    for question, row, error in share(start_worker, questions, jobs, seconds):
         if isinstance(error, LostError) and error.is_late:
             yield failed_row(question, f"no answer within the time limit and {grace:g} seconds more")
         elif isinstance(error, LostError | UserError):

@@ -101,8 +101,8 @@ class RowsFile(Generic[Row]):
 
         Raises :class:`UserError` for other contents, and for a file that was begun for another question.
         """
-        first, newline, rows = content.partition(b"\n")
-        header = self._read_line(first, 1, dict) if newline else {}
+        first_line, newline, rows = content.partition(b"\n")
+        header = self._read_line(first_line, 1, dict) if newline else {}
         if header.keys() != {"question"}:
             raise UserError(
                 f"{self.path}: contains something other than results of foon-asp, and was not changed; "

@@ -367,8 +367,10 @@ def _best_plans(
     while True:
         for box in boxes:
             if box not in solved:
-                below = tuple({o: bound} for o, bound in zip(others, box, strict=True) if bound is not None)
-                bounded_settings = settings._replace(bounded=Bounded(below=below))
+                upper_bounds = tuple(
+                    {o: bound} for o, bound in zip(others, box, strict=True) if bound is not None
+                )
+                bounded_settings = settings._replace(bounded=Bounded(below=upper_bounds))
                 solved[box] = solve(
                     problem, order, bounded_settings, _WithoutWarnings(reporter) if points else reporter
                 )

@@ -94,12 +94,12 @@ def listed_tree(
     elif listed and ordered:
         goals = dataset.named_goals(_goals_of_last_unit(listed[-1][0]))
     else:
-        why = "use(U) names no goal, and has no last step" if listed else "there is no step"
-        raise UserError(f"{file}: {why}; name a goal with --goal")
+        fault = "use(U) names no goal, and has no last step" if listed else "there is no step"
+        raise UserError(f"{file}: {fault}; name a goal with --goal")
     problem = dataset.problem(goals, containers, items=used_up and used_up(goals))
     if not goals_named and not answer.goals and (len(dataset.listed) != 1 or dataset.goals_from):
-        shown = " + ".join(map(str, problem.goal_nodes))
-        caller().reporter.warning(f"No --goal: using what the last step makes: {shown}")
+        goals_text = " + ".join(map(str, problem.goal_nodes))
+        caller().reporter.warning(f"No --goal: using what the last step makes: {goals_text}")
     return Tree.given(problem, [unit for unit, _ in listed], [source for _, source in listed])
 
 
@@ -123,21 +123,21 @@ def own_networks(kitchen: Network, files: Mapping[Path, ListedTree]) -> Sequence
     other data, since an answer holds only a part of its data.
     """
     listed = [listed_unit for tree in files.values() for listed_unit in tree.units or ()]
-    bundled = count_units_in(kitchen, [unit for unit, _ in listed])
-    names = ", ".join(map(str, files))
-    if bundled == len(listed):
+    bundled_count = count_units_in(kitchen, [unit for unit, _ in listed])
+    file_names = ", ".join(map(str, files))
+    if bundled_count == len(listed):
         return ()
-    if 2 * bundled >= len(listed):
+    if 2 * bundled_count >= len(listed):
         caller().reporter.warning(
-            f"{names}: no --network: using the bundled kitchen, which has {bundled} of "
+            f"{file_names}: no --network: using the bundled kitchen, which has {bundled_count} of "
             f"{counted(len(listed), 'unit')}"
         )
         return ()
-    if texts := [file for file, tree in files.items() if not tree.goals]:
-        caller().reporter.warning(f"No --network: using {' and '.join(map(str, texts))}")
-        return texts
-    places = ", ".join(dict.fromkeys(source.file for _, source in listed))
-    raise UserError(f"{names}: not of the bundled kitchen; name the data with --network: {places}")
+    if text_files := [file for file, tree in files.items() if not tree.goals]:
+        caller().reporter.warning(f"No --network: using {' and '.join(map(str, text_files))}")
+        return text_files
+    source_files = ", ".join(dict.fromkeys(source.file for _, source in listed))
+    raise UserError(f"{file_names}: not of the bundled kitchen; name the data with --network: {source_files}")
 
 
 def count_units_in(network: Network, units: Collection[FunctionalUnit]) -> int:

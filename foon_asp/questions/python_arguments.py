@@ -50,8 +50,8 @@ def usual_objectives(
 
 def as_constraints(constraints: Files) -> tuple[Constraint, ...]:
     """Return one constraint or several as a tuple: paths, texts of rules, and names of ready-made ones."""
-    one = isinstance(constraints, str | PathLike)
-    return tuple(map(given_constraint, [constraints] if one else constraints))  # type: ignore[arg-type]
+    is_single = isinstance(constraints, str | PathLike)
+    return tuple(map(given_constraint, [constraints] if is_single else constraints))  # type: ignore[arg-type]
 
 
 def problem_for_rules(problem: Problem, settings: Settings, objectives: Sequence[Objective] = ()) -> Problem:
@@ -130,8 +130,8 @@ def with_items(problem: Problem, items: str) -> Problem:
     return replace(problem, items=used_up)
 
 
-def require_at_least(number: int, least: int, what: str) -> int:
-    """Return a number; raises :class:`UserError` about the argument ``what`` if it is below ``least``."""
-    if number < least:
-        raise UserError(f"found {what}={number}, expected a whole number from {least}")
+def require_at_least(number: int, minimum: int, argument: str) -> int:
+    """Return a number; raises :class:`UserError` about ``argument``, its name, if it is below ``minimum``."""
+    if number < minimum:
+        raise UserError(f"found {argument}={number}, expected a whole number from {minimum}")
     return number

@@ -76,15 +76,23 @@ def wrap_for_python(ask: Callable[P, T], signature: inspect.Signature) -> Callab
             about = arguments_with_problem(name, signature.parameters, about, named)
             check(about, named)
         token: Any = named.pop("cancel", None)
-        tell: Any = named.pop("on_progress", None)
-        if token is None and tell is None:
+        on_progress: Any = named.pop("on_progress", None)
+        if token is None and on_progress is None:
             with stoppable(None, None, f"asking {name}") if is_python() else nullcontext():
                 return ask(*about, **named)
-        who = caller()
-        reporter = who.reporter if tell is None else _Listener(tell, who.reporter)
+        current_caller = caller()
+        reporter = (
+            current_caller.reporter
+            if on_progress is None
+            else _Listener(on_progress, current_caller.reporter)
+        )
         with (
             stoppable(None, token, f"asking {name}") as deadline,
-            asked_by(who._replace(reporter=reporter, deadline=who.deadline or Deadline(within=deadline))),
+            asked_by(
+                current_caller._replace(
+                    reporter=reporter, deadline=current_caller.deadline or Deadline(within=deadline)
+                )
+            ),
         ):
             return ask(*about, **named)
 
@@ -108,22 +116,22 @@ def arguments_with_problem(
     subject = next(iter(parameters))
     if subject not in {"problem", "about"}:
         return about
-    first = about[0] if about else named.pop(subject, None)
-    if first is None:
+    subject_value = about[0] if about else named.pop(subject, None)
+    if subject_value is None:
         raise UserError(f"{name} of what? {name}('eggs.txt'), or {name}(foon_asp.load(), goal='macaroni')")
     is_whole = subject == "about" and "goal" not in named  # the data themselves are the subject
-    names = [option for option in _POSING if option in named and option in parameters and not is_whole]
-    posing = {option: named.pop(option) for option in names}
-    if isinstance(first, Problem) and posing:
+    names_given = [option for option in _POSING if option in named and option in parameters and not is_whole]
+    posing = {option: named.pop(option) for option in names_given}
+    if isinstance(subject_value, Problem) and posing:
         raise UserError(f"{name}: a problem has its own {' and '.join(posing)}; Foon.problem takes them")
-    if not isinstance(first, str | PathLike | Foon):
-        return (first, *about[1:])
-    if isinstance(first, str) and not Path(first).exists():
-        hint = f"a goal of the bundled kitchen: {name}(foon_asp.load(), goal={first!r})"
-        raise UserError(f"no such file or folder: {first} ({hint})")
-    foon = first if isinstance(first, Foon) else load(first)
+    if not isinstance(subject_value, str | PathLike | Foon):
+        return (subject_value, *about[1:])
+    if isinstance(subject_value, str) and not Path(subject_value).exists():
+        hint = f"a goal of the bundled kitchen: {name}(foon_asp.load(), goal={subject_value!r})"
+        raise UserError(f"no such file or folder: {subject_value} ({hint})")
+    foon = subject_value if isinstance(subject_value, Foon) else load(subject_value)
     if is_whole:
         return (foon, *about[1:])
     goals = posing.pop("goal", ())
-    one = isinstance(goals, str | ObjectNode)
-    return (foon.problem(*([goals] if one else goals), **posing), *about[1:])
+    is_single = isinstance(goals, str | ObjectNode)
+    return (foon.problem(*([goals] if is_single else goals), **posing), *about[1:])

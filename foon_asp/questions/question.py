@@ -115,11 +115,11 @@ class Question:
 
     def format_of(self, file: Path) -> str:
         """Return the format that the ending of a file name stands for; raises :class:`UserError` if none."""
-        form = self.suffixes.get(file.suffix.lower())
-        if form is None:
+        format_ = self.suffixes.get(file.suffix.lower())
+        if format_ is None:
             ends = " ".join(self.suffixes)
             raise UserError(f"{file}: the name says no format: end it in {ends}, or name one (--format)")
-        return form
+        return format_
 
 
 def question(

@@ -144,17 +144,17 @@ def read_plan(
     """
     if names is None:
         problem = over_whole_network(problem)
-        named = map_of(planning_task(problem, whole=True))
+        name_map = map_of(planning_task(problem, whole=True))
     else:
-        named = read_name_map(Path(names))
+        name_map = read_name_map(Path(names))
     with begin(options).watched("reading"):
         if isinstance(plan, str | PathLike):
-            steps = read_plan_text(read_plain_text(Path(plan)), str(plan), named)
+            steps = read_plan_text(read_plain_text(Path(plan)), str(plan), name_map)
         else:  # as unified-planning writes it
-            steps = read_plan_text(str(plan), "the plan", named)
+            steps = read_plan_text(str(plan), "the plan", name_map)
     if problem.items is None:
-        places = dict(reversed(steps))  # of the first execution
-        steps = [PlanStep(unit, places[unit]) for unit in dict.fromkeys(unit for unit, _ in steps)]
+        place_of_unit = dict(reversed(steps))  # of the first execution
+        steps = [PlanStep(unit, place_of_unit[unit]) for unit in dict.fromkeys(unit for unit, _ in steps)]
     tree = Tree.given(problem, [unit for unit, _ in steps], [source for _, source in steps])
     checked = Checked.of(tree)
     sound = checked.verdict is Verdict.AS_LISTED and not checked.not_in_network

@@ -206,7 +206,7 @@ def regret(
     regrets: list[Regret] = []
     # under rules, the optimum may be better without a part: they may require what is missing
     unrestricted = settings.constraints == () and settings.replaced is None
-    holds = Postconditions(problem, levels(chosen), settings)
+    postconditions = Postconditions(problem, levels(chosen), settings)
 
     def solve_without(leave_out: Callable[[], Problem], **parts: Any) -> Regret:
         """Solve the problem that ``leave_out`` returns; append the regret of ``parts``, and return it."""
@@ -220,7 +220,7 @@ def regret(
         regrets.append(_regret(best, remaining, **parts))
         # a missing item is not taken from the kitchen, so a tree that makes it costs less by ``kitchen``
         if remaining and unrestricted and ("item" not in parts or Objective.KITCHEN not in chosen):
-            holds.no_better(remaining, best, f"without {regrets[-1]}")
+            postconditions.no_better(remaining, best, f"without {regrets[-1]}")
         return regrets[-1]
 
     for unit in sorted({*best.units, *(unit for unit in asked_units if unit is not None)}):
@@ -228,10 +228,10 @@ def regret(
     for motion, motion_units in units_by_motion.items():
         solve_without(partial(_without_units, problem, motion_units), motion=motion)
     kitchen_items = sorted({o for unit in best.units for o in problem.needs[unit] if o in problem.kitchen})
-    alone = {
+    regret_of_item = {
         o: solve_without(partial(_without_items, problem, o), item=node_of(network, o)) for o in kitchen_items
     }
-    dispensable = [o for o in kitchen_items if alone[o].costs is not None]
+    dispensable = [o for o in kitchen_items if regret_of_item[o].costs is not None]
     for o, other in combinations(dispensable if pairs else (), 2):
         nodes = {"item": node_of(network, o), "second_item": node_of(network, other)}
         solve_without(partial(_without_items, problem, o, other), **nodes)

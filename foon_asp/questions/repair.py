@@ -168,41 +168,46 @@ def repair(
         raise UserError("a tree is repaired without rules and encodings: leave them out")
     table = StandInTable.usual() if problem.stand_ins is None else problem.stand_ins.table
     listed = as_tree(problem, tree)
-    base = over_whole_network(problem) if problem.stand_ins is None else problem
-    if certificate is not None and any(base.network.unit_id(unit) is None for unit in listed.units):
+    base_problem = over_whole_network(problem) if problem.stand_ins is None else problem
+    if certificate is not None and any(base_problem.network.unit_id(unit) is None for unit in listed.units):
         raise UserError(
             "a certificate is about the network, and that lacks units of the tree: name the tree, too"
         )
-    needed = Repair.of(base, listed.units, listed.places, table, _kitchen_lists(problem))
+    needed = Repair.of(base_problem, listed.units, listed.places, table, _kitchen_lists(problem))
     verdict = simulate_for(needed.shown, listed).verdict
     outcome = find(needed.posed, _OBJECTIVES, settings, caller().reporter)
-    proof: Certificate | None = None
+    found_certificate: Certificate | None = None
     notes: tuple[str, ...] = ()
     if certificate is not None:
-        outcome, proof = _certify_repair(needed, outcome, settings)
-        notes = tuple(certificate_lines(outcome, proof, str(certificate)))
-        if proof is not None:
-            write_whole(Path(certificate), proof.text().encode())
-    shown, units = needed.shown, outcome.units
+        outcome, found_certificate = _certify_repair(needed, outcome, settings)
+        notes = tuple(certificate_lines(outcome, found_certificate, str(certificate)))
+        if found_certificate is not None:
+            write_whole(Path(certificate), found_certificate.text().encode())
+    shown_problem, units = needed.shown, outcome.units
     if units is None:
-        lacking = nodes_of(shown.network, needed.lacking()) if outcome.status is Status.INFEASIBLE else ()
+        lacking = (
+            nodes_of(shown_problem.network, needed.lacking()) if outcome.status is Status.INFEASIBLE else ()
+        )
     else:
         lacking = ()
     positions = {unit: number for number, unit in enumerate(units or (), 1)}
     repaired = Repaired(
-        **head_of(shown, _OBJECTIVES),
+        **head_of(shown_problem, _OBJECTIVES),
         verdict=verdict,
         status=outcome.status,
         proof=outcome.proof,
-        costs=None if units is None else shown.costs(units),
-        stand_ins=() if units is None else stand_ins_in(shown, units),
+        costs=None if units is None else shown_problem.costs(units),
+        stand_ins=() if units is None else stand_ins_in(shown_problem, units),
         added=tuple(positions[unit] for unit in needed.added(units or ())),
         order=tuple(positions[unit] for unit in needed.steps) if positions else (),
         lacking=lacking,
-        units=None if units is None else steps_of(shown, units),
+        units=None if units is None else steps_of(shown_problem, units),
     )
     return repaired.knowing(
-        tree=None if units is None else Tree.of(shown, units), outcome=outcome, certificate=proof, notes=notes
+        tree=None if units is None else Tree.of(shown_problem, units),
+        outcome=outcome,
+        certificate=found_certificate,
+        notes=notes,
     )
 
 

@@ -125,16 +125,16 @@ class Result(Document, frozen=True, kw_only=True):
         from foon_asp.whole_file import utf_8, write_whole  # noqa: PLC0415 (most results are printed)
 
         formats = {
-            suffix: form for suffix, form in self.SUFFIXES.items() if hasattr(self, format_method(form))
+            suffix: chosen for suffix, chosen in self.SUFFIXES.items() if hasattr(self, format_method(chosen))
         }
-        form = format_ or formats.get(Path(file).suffix.lower())
-        if form is None:
+        chosen = format_ or formats.get(Path(file).suffix.lower())
+        if chosen is None:
             raise UserError(f"{file}: the name says no format: end it in {' '.join(formats)}")
-        if form not in formats.values():
+        if chosen not in formats.values():
             raise UserError(
-                f"found the format {form!r}, expected one of {', '.join(dict.fromkeys(formats.values()))}"
+                f"found the format {chosen!r}, expected one of {', '.join(dict.fromkeys(formats.values()))}"
             )
-        content: str | bytes = getattr(self, format_method(form))()
+        content: str | bytes = getattr(self, format_method(chosen))()
         write_whole(Path(file), utf_8(content) if isinstance(content, str) else content)
 
     def write_chart(self, file: File) -> None:
@@ -190,6 +190,6 @@ class Result(Document, frozen=True, kw_only=True):
         return page_bundle(self, pictures)
 
 
-def format_method(form: str) -> str:
+def format_method(format_: str) -> str:
     """Return the name of the method of a result that returns a format: ``json_text`` for ``json``."""
-    return "json_text" if form == "json" else form.replace("-", "_")
+    return "json_text" if format_ == "json" else format_.replace("-", "_")

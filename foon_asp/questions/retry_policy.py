@@ -33,9 +33,9 @@ def with_policy(answer: Answer, retries: int, settings: Settings, **options: Unp
     for limit in ("time_limit", "memory_limit"):  # hold for the whole question
         options.pop(limit, None)  # type: ignore[misc]
     with asked_by(caller()._replace(deadline=settings.begun)):
-        others = alternatives(problem, Objective.SUCCESS, best=max_trees, **options)
+        best_trees = alternatives(problem, Objective.SUCCESS, best=max_trees, **options)
     trees = [answer.ids]
-    for tree in others.trees:
+    for tree in best_trees.trees:
         units = problem.network.units_of_numbers(tree.ids)
         if len(trees) < max_trees and set(units) not in map(set, trees):
             trees.append(units)

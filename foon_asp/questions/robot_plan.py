@@ -82,6 +82,6 @@ def _clips(problem: Problem, plans: Iterable[Collection[int]]) -> Iterator[Liste
 
     Missing files and unclear lines are skipped.
     """
-    places = (source for plan in plans for unit in plan for source in problem.network.sources[unit])
-    files = dict.fromkeys(Path(source.file) for source in places)
+    sources = (source for plan in plans for unit in plan for source in problem.network.sources[unit])
+    files = dict.fromkeys(Path(source.file) for source in sources)
     return listed_clips((file for file in files if file.is_file()), lenient=True)

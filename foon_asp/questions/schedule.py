@@ -413,7 +413,7 @@ def _durations_of_plan(
     missing = [motion for motion in motions if motion not in known_durations]
     if missing:
         where = "in a file for --durations (durations=)" if stated is None else "in the durations"
-        ways = [
+        advice = [
             *(
                 []
                 if from_video
@@ -425,7 +425,7 @@ def _durations_of_plan(
         lines = "".join(f"\n  {escaped(motion)}\tSECONDS" for motion in missing)
         raise UserError(
             f"no duration is known of {counted(len(missing), 'motion')} of the plan: say how long they take, "
-            f"{where}, a tab before the seconds{lines}\n" + "\n".join(ways)
+            f"{where}, a tab before the seconds{lines}\n" + "\n".join(advice)
         )
     return {motion: known_durations[motion] for motion in motions}
 
@@ -446,9 +446,9 @@ def _known_durations(
         clips = median_clips((file for file in files if file.is_file()), caller().lenient)
         timed = [motion for motion in motions if motion in clips and motion not in durations]
         if timed:
-            shown = ", ".join(f"{escaped(motion)} {time_text(Fraction(clips[motion]))}" for motion in timed)
+            medians = ", ".join(f"{escaped(motion)} {time_text(Fraction(clips[motion]))}" for motion in timed)
             caller().reporter.warning(
-                f"warning: these durations are medians of clips, and not of what happens in them: {shown}"
+                f"warning: these durations are medians of clips, and not of what happens in them: {medians}"
             )
         durations |= {motion: Duration(clips[motion]) for motion in timed}
     if default is not None:
@@ -457,12 +457,12 @@ def _known_durations(
             if isinstance(default, str)
             else duration_of(default, "default")
         )
-        others = [motion for motion in motions if motion not in durations]
-        if others:
-            time = time_text(Fraction(duration.seconds))
-            motions_named = ", ".join(map(escaped, others))
-            caller().reporter.warning(f"warning: these motions count as {time} each: {motions_named}")
-        durations |= dict.fromkeys(others, duration)
+        untimed_motions = [motion for motion in motions if motion not in durations]
+        if untimed_motions:
+            default_text = time_text(Fraction(duration.seconds))
+            motions_named = ", ".join(map(escaped, untimed_motions))
+            caller().reporter.warning(f"warning: these motions count as {default_text} each: {motions_named}")
+        durations |= dict.fromkeys(untimed_motions, duration)
     return durations
 
 

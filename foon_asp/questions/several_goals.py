@@ -62,9 +62,9 @@ def _solve_apart(answer: Answer, settings: Settings, posed: Problem) -> list[Out
         problems = for_each_goal(problem)
         apart = [solve(goal_problem, objectives, settings, Reporter()) for goal_problem in problems]
     if settings.constraints == () and settings.replaced is None:  # else goals may have rules of their own
-        holds = Postconditions(problem, levels(objectives), settings)
+        postconditions = Postconditions(problem, levels(objectives), settings)
         for goal, alone in zip(problem.goals, apart, strict=True):
-            holds.no_better(together, alone, f"for goal {goal} alone")
+            postconditions.no_better(together, alone, f"for goal {goal} alone")
     return apart
 
 

@@ -176,11 +176,11 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
         """Return one line on whether there are further lists."""
         if not self.complete:
             return "there are more lists than these: --lists finds more"
-        shown = "this list" if len(self.lists) == 1 else "one of these lists"
+        lists = "this list" if len(self.lists) == 1 else "one of these lists"
         if self.items != "lasting":
-            return f"that is all: any other list that makes a plan possible has each thing of {shown}"
+            return f"that is all: any other list that makes a plan possible has each thing of {lists}"
         return (
-            f"that is all: any other set of things on offer that makes a tree possible holds all of {shown}"
+            f"that is all: any other set of things on offer that makes a tree possible holds all of {lists}"
         )
 
     def _price_text(self, bought: ShoppingList) -> str:

@@ -20,14 +20,14 @@ def solve_under_soft_constraints(
 
     The answer has the total penalty, and for each constraint how it is broken.
     """
-    who = caller()
+    current_caller = caller()
     outcome, penalty, constraints = find(
-        over_whole_network(problem), objectives, settings, weights, who.reporter
+        over_whole_network(problem), objectives, settings, weights, current_caller.reporter
     )
-    if who.read_seconds is not None:
-        outcome.seconds["read"] = who.read_seconds
+    if current_caller.read_seconds is not None:
+        outcome.seconds["read"] = current_caller.read_seconds
     listed = tuple(
-        SoftConstraint(**asdict(rule.listed), weight=weight, broken=ways)
-        for rule, weight, ways in constraints
+        SoftConstraint(**asdict(rule.listed), weight=weight, broken=broken)
+        for rule, weight, broken in constraints
     )
     return Answer.of(outcome, penalty=penalty, soft_constraints=listed)

@@ -190,8 +190,8 @@ class Stats(Result, frozen=True, kw_only=True, tag=schema_name("stats")):
                 rows.append(f"reach from the {self.reached_from}" if group == "reach" else group)
                 heading = group
             figures = [figure(statistics) for statistics in self.levels]
-            shown = [f"{value:,}" if isinstance(value, int) else str(value) for value in figures]
-            rows.append([f"  {name}" if group else name, *shown])
+            figure_texts = [f"{value:,}" if isinstance(value, int) else str(value) for value in figures]
+            rows.append([f"  {name}" if group else name, *figure_texts])
         return Table(["at level", *(str(level.level) for level in self.levels)], rows, frozenset({0}))
 
 
@@ -234,7 +234,7 @@ class ListedUnits(Result, frozen=True, kw_only=True, tag=schema_name("units")):
     units: tuple[ExplainedUnit, ...]
 
     def show(self) -> Iterator[Block]:
-        """Return a line for each unit; on request, also its inputs, with why they stay or not, and its outputs."""
+        """Return a line for each unit; on request, also its inputs, with why they stay, and its outputs."""
         for unit in self.units:
             yield from step_lines([unit])
             explained = [node for node in unit.inputs if node.why is not UNSET]
@@ -321,8 +321,8 @@ def _list_units(
     items = items_of(dataset, "used-up", None, stays) if explains else None
     network = (dataset.part((), numbers)[0] if numbers else dataset.data).network
     unit_ids = [network.unit_of_number(number) for number in numbers]
-    ids = [u for u in unit_ids if u is not None] if numbers else range(len(network))
-    listed = tuple(_explained_unit(network, u, rule, dataset.utensils, items) for u in ids)
+    ids = [unit for unit in unit_ids if unit is not None] if numbers else range(len(network))
+    listed = tuple(_explained_unit(network, unit, rule, dataset.utensils, items) for unit in ids)
     return ListedUnits(containers=rule, level=network.level, units=listed)
 
 

@@ -216,11 +216,11 @@ def read_answer(file: Path) -> ListedTree:
     Units that the file gives by id are not looked up. Assumptions of the reader are warnings. Raises
     :class:`NoTreeError` for an answer without a tree.
     """
-    who = caller()
-    reader = FoonReader(who.lenient)
+    current_caller = caller()
+    reader = FoonReader(current_caller.lenient)
     listed = read_listed_tree(file, reader)
     for remark in summarize(reader.diagnostics):
-        who.reporter.warning(remark)
+        current_caller.reporter.warning(remark)
     if listed.units is None:
         raise NoTreeError(f"{file}: the answer has no tree ({listed.status})")
     return listed

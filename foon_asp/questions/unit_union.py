@@ -143,6 +143,9 @@ def unit_union(
         **head_of(problem, chosen),
         within=within,
         complete=not union.undecided and union.best.proof is not None,
-        units=tuple(UnitOfTrees(m.id, m.motion, m.source, trees=trees) for m, trees in mentions),
+        units=tuple(
+            UnitOfTrees(mention.id, mention.motion, mention.source, trees=trees)
+            for mention, trees in mentions
+        ),
         answer=Answer.of(union.best),
     )

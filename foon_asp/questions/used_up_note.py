@@ -25,9 +25,9 @@ def used_up_note(problem: Problem, tree: Iterable[FunctionalUnit]) -> list[str]:
     run = used_up_run(problem, units)
     if run.shortage is None or not run.shortage.consumers:
         return []
-    text = _shortage_text(problem, units, run.shortage)
-    text += "" if run.proved else ", and no other order was found"
-    return [f"note: {text}: with each item used once, see --items used-up"]
+    shortage_text = _shortage_text(problem, units, run.shortage)
+    shortage_text += "" if run.proved else ", and no other order was found"
+    return [f"note: {shortage_text}: with each item used once, see --items used-up"]
 
 
 def _amount_text(problem: Problem, units: Sequence[FunctionalUnit]) -> str:

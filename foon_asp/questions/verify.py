@@ -443,10 +443,12 @@ def _differing_part(content: Any, subject: proof.Subject) -> str | None:
             if "stand-ins" in {*stated} ^ {*actual}:
                 return "stand-ins"
             del actual["sources"]  # only some rules depend on them
-            other = next(
+            differing = next(
                 (name for name, digest in actual.items() if stated.get(name, digest) != digest), None
             )
-            return other and ("task" if _are_facts(goal["node"] for goal in content["goals"]) else other)
+            return differing and (
+                "task" if _are_facts(goal["node"] for goal in content["goals"]) else differing
+            )
     return None
 
 

@@ -170,18 +170,23 @@ class View(Result, frozen=True):
 
     def _trees(self) -> Iterator[tuple[Problem, Iterable[int]]]:
         """Yield the problem and the unit ids of each tree that the page shows."""
-        bought = None if self.shopping_list is None else self.shopping_list.answer
-        for answer in (self.answer, self.lasting, self.without_rules, bought):
+        shopping_answer = None if self.shopping_list is None else self.shopping_list.answer
+        for answer in (self.answer, self.lasting, self.without_rules, shopping_answer):
             if answer is not None:
                 yield answer.problem, answer.ids or ()
         for retrieved in self.searches:
             yield retrieved.problem, retrieved.ids
         if self.alternatives is not None:
-            other = self.alternatives.problem
-            yield from ((other, other.network.units_of_numbers(tree.ids)) for tree in self.alternatives.trees)
+            problem = self.alternatives.problem
+            yield from (
+                (problem, problem.network.units_of_numbers(tree.ids)) for tree in self.alternatives.trees
+            )
         if self.front is not None:
-            front = self.front.problem
-            yield from ((front, front.network.units_of_numbers(point.ids)) for point in self.front.points)
+            front_problem = self.front.problem
+            yield from (
+                (front_problem, front_problem.network.units_of_numbers(point.ids))
+                for point in self.front.points
+            )
 
     def html(self) -> str:
         """Return the page as one HTML document, which loads no other files."""

@@ -124,8 +124,8 @@ def ways_on(
     """
     if problem.items is not None:
         raise not_for_used_up_items("trace --state")
-    named: Any = as_path(state) if isinstance(state, str | PathLike) else tuple(state)
-    problem = over_whole_network(problem.vary(kitchen=named))
+    state_source: Any = as_path(state) if isinstance(state, str | PathLike) else tuple(state)
+    problem = over_whole_network(problem.vary(kitchen=state_source))
     chosen, limits = chosen_objectives(problem, objectives), Settings(deadline=begin(options))
     answer: Answer | None = answered(problem, chosen, limits)
     lacks: tuple[Node, ...] | None = ()

@@ -72,10 +72,10 @@ def _cause_lines(problem: Problem, shown: int = 3) -> Iterator[str]:
                 yield f"the cause: {objects[root.object]} is not in the kitchen, and no unit makes it"
             continue
         first, *others = [str(objects[o]) for o, _ in reversed(root.cycle.steps)]
-        back = (*others, first)
-        cycle_text = "".join(f", and that only from {other}" for other in back[1:3])
-        if len(back) > 3:
-            cycle_text += f", and so on: {len(back)} object nodes wait for each other"
-        yield f"the cause: {first} can only be made from {back[0]}{cycle_text}"
+        needed_nodes = (*others, first)
+        cycle_text = "".join(f", and that only from {other}" for other in needed_nodes[1:3])
+        if len(needed_nodes) > 3:
+            cycle_text += f", and so on: {len(needed_nodes)} object nodes wait for each other"
+        yield f"the cause: {first} can only be made from {needed_nodes[0]}{cycle_text}"
     if len(roots) > shown:
         yield f"  ... and {len(roots) - shown} more"

@@ -391,11 +391,11 @@ def _cheapest_stand_ins(problem: Problem, settings: "Settings") -> tuple[StandIn
 
 def _with_near_names(problem: Problem, analysis: DeadEnds, roots: Iterable[Root]) -> Iterator[Root]:
     """Yield the causes; missing nodes with names one edit away and nodes with the same label."""
-    network, kitchen, data = problem.network, problem.kitchen, problem.origin
+    network, kitchen, origin = problem.network, problem.kitchen, problem.origin
     ids_available = {
         network.objects[o]: o for o, is_available in enumerate(analysis.available) if is_available
     }
-    items = data.data.kitchen_items if isinstance(data, Dataset) else ()
+    items = origin.data.kitchen_items if isinstance(origin, Dataset) else ()
     patterns = [(pattern_at_level(item.pattern, network.level), str(item.source)) for item in items]
     names: list[tuple[ObjectNode | NodePattern, str | None, bool]] = [
         *((pattern, source, True) for pattern, source in patterns if not network.find(pattern)),
@@ -427,24 +427,24 @@ def _dead_end_lines(explanation: Explanation, numbers: Mapping[Node, int]) -> It
     node, and are not expanded. Up to 12 other nodes are expanded, each once, the nearest to the goals first.
     """
     makers = {end.object: end.makers for end in explanation.dead_ends}
-    opened: set[Node] = set()
+    expanded: set[Node] = set()
     frontier = list(explanation.unreachable_goals)
     for node in frontier:
-        if node not in opened and node not in numbers and len(opened) < _MAX_SHOWN.dead_ends:
-            opened.add(node)
+        if node not in expanded and node not in numbers and len(expanded) < _MAX_SHOWN.dead_ends:
+            expanded.add(node)
             frontier += makers[node][0].lacks
-    shown: set[Value] = set()
+    shown_values: set[Value] = set()
 
     def lines(node: Node, margin: str) -> Iterator[str]:
         """Yield the lines of a node and of the nodes below it, behind spaces."""
-        if node in numbers or node in shown or node not in opened:
-            unopened = "(see above)" if node in shown else "..."
-            yield f"{margin}{node}  {f'({numbers[node]})' if node in numbers else unopened}"
+        if node in numbers or node in shown_values or node not in expanded:
+            reference = "(see above)" if node in shown_values else "..."
+            yield f"{margin}{node}  {f'({numbers[node]})' if node in numbers else reference}"
             return
         first, *others = makers[node]
-        is_shown = first in shown
+        is_shown = first in shown_values
         yield from (f"{margin}{node}", f"{margin}  {first}{'  (see above)' if is_shown else ''}")
-        shown.update((node, first))
+        shown_values.update((node, first))
         for lack in () if is_shown else first.lacks:
             yield from lines(lack, f"{margin}    ")
         yield from (f"{margin}  or {other}" for other in others[: _MAX_SHOWN.other_units])
@@ -470,8 +470,8 @@ def _causes_text(roots: Sequence[Root]) -> str:
 
 def _units_text(units: Sequence[Mention]) -> str:
     """Return the motions of the first units with their places, and how many units follow."""
-    places = ", ".join(f"{unit.motion} [{unit.source[0]}]" for unit in units[: _MAX_SHOWN.units])
-    return places + (
+    mentioned = ", ".join(f"{unit.motion} [{unit.source[0]}]" for unit in units[: _MAX_SHOWN.units])
+    return mentioned + (
         f" and {counted(len(units) - _MAX_SHOWN.units, 'more unit')}" if len(units) > _MAX_SHOWN.units else ""
     )
 

@@ -136,8 +136,8 @@ def _sarif_result(finding: Finding, rule: int) -> Json:
         "locations": [{"physicalLocation": location}],
     }
     if finding.mendable and finding.text:
-        whole = {"startLine": finding.line, "startColumn": 1, "endColumn": len(finding.text) + 1}
-        replacement = {"deletedRegion": whole, "insertedContent": {"text": finding.fix}}
+        line_region = {"startLine": finding.line, "startColumn": 1, "endColumn": len(finding.text) + 1}
+        replacement = {"deletedRegion": line_region, "insertedContent": {"text": finding.fix}}
         change = {"artifactLocation": location["artifactLocation"], "replacements": [replacement]}
         result["fixes"] = [{"artifactChanges": [change]}]
     return result

@@ -34,10 +34,10 @@ def costs_text(costs: Costs, objectives: Iterable[Objective] = ()) -> str:
     The text is like ``2 units, 6 inputs, success 0.644``.
     """
     text = f"{counted(costs.units, 'unit')}, {counted(costs.inputs, 'input')}"
-    shown = {Objective.UNITS, Objective.INPUTS}
-    others = [Objective.SUCCESS] if costs.success is not None else []
-    for objective in dict.fromkeys((*others, *objectives)):
-        if objective not in shown:
+    listed = {Objective.UNITS, Objective.INPUTS}
+    usual = [Objective.SUCCESS] if costs.success is not None else []
+    for objective in dict.fromkeys((*usual, *objectives)):
+        if objective not in listed:
             text += f", {objective} {figure_text(objective, costs.measure(objective))}"
     return text
 

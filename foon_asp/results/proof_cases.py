@@ -180,5 +180,7 @@ def _weight(component: str | Mapping[str, str] | Any) -> float:
     Exponents stand for a sum of negative logarithms of rates.
     """
     if isinstance(component, Mapping):
-        return math.fsum(-math.log(Fraction(r)) * float(Fraction(e)) for r, e in component.items())
+        return math.fsum(
+            -math.log(Fraction(rate)) * float(Fraction(exponent)) for rate, exponent in component.items()
+        )
     return float(Fraction(component))

@@ -84,8 +84,8 @@ def table_cells(
 def _cell(row: Json, name: str) -> Any:
     """Return the value of a row in a column; for an exact column, also of a whole number."""
     if name not in row and name.endswith(_EXACT):
-        whole = row.get(name.removesuffix(_EXACT))
-        return None if whole is None else str(whole)
+        whole_number = row.get(name.removesuffix(_EXACT))
+        return None if whole_number is None else str(whole_number)
     return row.get(name)
 
 

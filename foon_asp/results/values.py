@@ -342,12 +342,12 @@ class CostedTree(Value, frozen=True):
 def steps_not_in(steps: Sequence[Step], others: Iterable[Step]) -> list[Step]:
     """Return the steps whose unit ids are not in ``others``; repeats count (a multiset difference)."""
     missing = Counter(step.id for step in steps) - Counter(step.id for step in others)
-    rows = []
+    difference = []
     for step in steps:
         if missing[step.id]:
             missing[step.id] -= 1
-            rows.append(step)
-    return rows
+            difference.append(step)
+    return difference
 
 
 def step_lines(steps: Iterable[Step | Unit], sign: str = " ") -> Iterator[str]:
@@ -368,8 +368,8 @@ def changed_motions(
         counts = Counter(step.motion for step in steps)
         motions = [motion if count == 1 else f"{motion} ({count})" for motion, count in counts.items()]
         if len(motions) > named:
-            others = sum([*counts.values()][named - 1 :])
-            motions = [f"{', '.join(motions[: named - 1])} and {others} more"]
+            more_count = sum([*counts.values()][named - 1 :])
+            motions = [f"{', '.join(motions[: named - 1])} and {more_count} more"]
         if motions:
             texts.append(f"{sign} {', '.join(motions)}")
     return "  ".join(texts)
