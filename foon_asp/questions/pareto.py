@@ -47,7 +47,7 @@ from foon_asp.text.json_value import schema_name
 _MIN_OBJECTIVES, _MAX_OBJECTIVES = 2, 3
 
 Box = tuple[int | Fraction | None, ...]
-"""For each objective but the first, what plans cost less than; ``None`` allows any cost."""
+"""By each objective but the first, a bound that the costs of plans are below; ``None`` is no bound."""
 
 
 class Point(Value, frozen=True):
@@ -432,6 +432,7 @@ def _pareto_minimal(candidates: Sequence[Costs], objectives: Sequence[Objective]
     """Return the candidates that no other candidate dominates by ``objectives``; equal costs stand once."""
 
     def key(costs: Costs) -> tuple[int | Fraction, ...]:
+        """Return the costs by each of the objectives."""
         return tuple(map(costs.measure, objectives))
 
     best: list[Costs] = []

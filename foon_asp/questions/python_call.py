@@ -65,7 +65,8 @@ def wrap_for_python(ask: Callable[P, T], signature: inspect.Signature) -> Callab
     """Return a function that also takes a path or data for a problem, ``cancel`` and ``on_progress``.
 
     In a call from Python, arguments are checked against the ``signature``; a command has read them already.
-    Cancelling and Ctrl-C end the call at its next check of the time.
+    The token ``cancel`` ends the call with what was found by then; if this takes too long, the call raises
+    :class:`StoppedError`. The function ``on_progress`` gets each :class:`Progress`.
     """
     name, check = ask.__name__, checker(ask, signature)
 

@@ -233,7 +233,7 @@ def relax(
 def solve_relaxation(task: StripsTask, deadline: Deadline) -> Relaxed:
     """Find the cheapest plan of the delete relaxation of a task.
 
-    The search also prefers few actions, but it ends as soon as the cost is proved.
+    Among the cheapest plans, it looks for one with the fewest actions, but only until the cost is proved.
     """
     proof_deadline = Deadline(within=deadline)
     reporter = _StopWhenProved(caller().reporter, task.objective, proof_deadline)

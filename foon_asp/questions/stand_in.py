@@ -107,10 +107,12 @@ def _edits(problem: Problem, serving: int, served: int) -> tuple[Difference, ...
 
 
 def _next_stand_in(network: Network, o: int, dissimilarity: Fraction) -> NextStandIn:
+    """Return the next best node, by id, as a value with its dissimilarity."""
     return node_as(NextStandIn, network, o, dissimilarity=dissimilarity)
 
 
 def _price_text(price: Fraction) -> str:
+    """Return a price of the table of stand-ins, a dissimilarity, as text."""
     return figure_text(Objective.DISSIMILARITY, price)
 
 

@@ -1,4 +1,4 @@
-"""A note where a tree would not run if items were used up."""
+"""The note that a tree would not run if items were used up."""
 
 from collections.abc import Iterable, Sequence
 
@@ -68,5 +68,6 @@ def _shortage_text(problem: Problem, units: Sequence[FunctionalUnit], shortage: 
 
 
 def _steps_text(steps: Sequence[int]) -> str:
+    """Return the numbers of steps in words: ``steps 1, 2 and 4``."""
     *first, last = map(str, steps)
     return f"steps {', '.join(first)} and {last}" if first else f"step {last}"

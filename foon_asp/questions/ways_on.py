@@ -1,4 +1,4 @@
-"""From a state: which units lead to the goals, and what is missing."""
+"""The units that lead from a state to the goals, and the object nodes that are missing."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace

@@ -477,4 +477,5 @@ def _units_text(units: Sequence[Mention]) -> str:
 
 
 def _origin_text(in_kitchen: bool) -> str:
+    """Return in parentheses whether a node is in the kitchen or can be made."""
     return "(in the kitchen)" if in_kitchen else "(can be made)"
