@@ -198,9 +198,9 @@ def search(
         >>> foon_asp.search(foon_asp.load().problem("macaroni"), "bfs")
         <Retrieved: bfs, executes in another order>
     """
-    (wanted,) = searches_named([search])
+    (chosen_search,) = searches_named([search])
     deadline = begin(options)
     settings = search_settings(ties, count, depth_limit, published, deadline.left, deadline.memory)
-    outcome = wanted.run(replace(problem, items=None), settings)
+    outcome = chosen_search.run(replace(problem, items=None), settings)
     stuck_at = None if outcome.stuck_at is None else node_of(problem.network, outcome.stuck_at)
-    return Retrieved.of(problem, wanted, outcome.ending, outcome.units, stuck_at)
+    return Retrieved.of(problem, chosen_search, outcome.ending, outcome.units, stuck_at)

@@ -35,13 +35,13 @@ def with_goals_apart(answer: Answer, settings: Settings, posed: Problem) -> Answ
     )
     if len(problem.goals) > GoalsApartTuning().goals:
         return answer.having(serves=serves)
-    apart = _solve_apart(answer, settings, posed)
+    outcomes = _solve_apart(answer, settings, posed)
     nodes = [node_of(network, goal) for goal in problem.goals]
     return answer.having(
         goals_alone=tuple(
-            Alone(node, alone.status, alone.costs) for node, alone in zip(nodes, apart, strict=True)
+            Alone(node, outcome.status, outcome.costs) for node, outcome in zip(nodes, outcomes, strict=True)
         ),
-        sum_of_goals_alone=_total_cost(apart, answer.objectives[0]),
+        sum_of_goals_alone=_total_cost(outcomes, answer.objectives[0]),
         serves=serves,
     )
 
@@ -54,27 +54,27 @@ def _solve_apart(answer: Answer, settings: Settings, posed: Problem) -> list[Out
     together, problem, objectives = answer.outcome, answer.problem, answer.objectives
     if isinstance(posed, NearbyProblem):
         problems = posed.each_goal()
-        apart = [
+        outcomes = [
             answered_under(goal_problem, objectives, settings, Reporter()).outcome
             for goal_problem in problems
         ]
     else:
         problems = for_each_goal(problem)
-        apart = [solve(goal_problem, objectives, settings, Reporter()) for goal_problem in problems]
+        outcomes = [solve(goal_problem, objectives, settings, Reporter()) for goal_problem in problems]
     if settings.constraints == () and settings.replaced is None:  # else goals may have rules of their own
         postconditions = Postconditions(problem, levels(objectives), settings)
-        for goal, alone in zip(problem.goals, apart, strict=True):
-            postconditions.no_better(together, alone, f"for goal {goal} alone")
-    return apart
+        for goal, outcome in zip(problem.goals, outcomes, strict=True):
+            postconditions.no_better(together, outcome, f"for goal {goal} alone")
+    return outcomes
 
 
-def _total_cost(apart: Sequence[Outcome], objective: Objective) -> int | Fraction | None:
+def _total_cost(outcomes: Sequence[Outcome], objective: Objective) -> int | Fraction | None:
     """Return the sum of the costs of trees, for ``success`` the product; ``None`` if a goal has no tree."""
     total: int | Fraction = Fraction(1) if multiplies(objective) else 0
-    for alone in apart:
-        if alone.costs is None:
+    for outcome in outcomes:
+        if outcome.costs is None:
             return None
-        measure = alone.costs.measure(objective)
+        measure = outcome.costs.measure(objective)
         total = total * measure if multiplies(objective) else total + measure
     return total
 

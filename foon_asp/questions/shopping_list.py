@@ -542,7 +542,8 @@ class _Shopper:
     def _search_without(self, left_out: frozenset[int], reporter: Reporter) -> bool:
         """Add the best list without the wares ``left_out`` to the queue, once; return false at a limit.
 
-        If an earlier list has none of these wares, it is branched on: each of its items is left out, too.
+        If an earlier list has none of these wares, it is branched on: each of its items is left out, too. At
+        a limit without any list yet, the best list found is kept, unproved.
         """
         if left_out in self._seen:
             return True
@@ -551,11 +552,11 @@ class _Shopper:
             if left_out.isdisjoint(earlier.items):  # which the best list might be
                 return all(self._search_without(left_out | {item}, reporter) for item in earlier.items)
         purchases = self._purchases(left_out)
-        by = purchases.objectives
-        outcome = solve(purchases.problem, by, self._settings, reporter, solved=self._solved)
+        objectives = purchases.objectives
+        outcome = solve(purchases.problem, objectives, self._settings, reporter, solved=self._solved)
         if outcome.status is Status.OPTIMAL and outcome.costs is not None:
             listed = self._bought_list(outcome, purchases)
-            heappush(self._queue, (outcome.costs.key(levels(by)), len(self._seen), left_out, listed))
+            heappush(self._queue, (outcome.costs.key(levels(objectives)), len(self._seen), left_out, listed))
         if outcome.status is Status.FEASIBLE and not self._chosen_lists:
             self._chosen_lists.append(self._bought_list(outcome, purchases))
         return outcome.status in {Status.OPTIMAL, Status.INFEASIBLE}

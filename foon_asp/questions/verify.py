@@ -235,7 +235,8 @@ def _cost_text(objective: str, cost: int | Fraction | None) -> str:
 def _pose_data_or_task(command: Command, data_paths: Sequence[Path]) -> tuple[Foon | Problem]:
     """Return the data of the command with those at the paths, or the problem of a planning task there.
 
-    The result is a tuple of one. A task is read as its delete relaxation. Raises :class:`UserError` for options for data beside a task.
+    The result is a tuple of one. A task is read as its delete relaxation. Raises :class:`UserError` for
+    options for data beside a task.
     """
     if not any(map(_is_task, data_paths)):
         command.add_sources(data_paths)

@@ -101,8 +101,8 @@ def ways_on(
 ) -> WaysOn:
     """Find the units that lead from a state to the goals, and what is missing.
 
-    Whatever is in the state can be used again and again. A verifier of plans that a language model proposes
-    asks this after each step (as in arXiv 2503.21564).
+    Whatever is in the state can be used again and again. This question is for verifiers that check the plan
+    of a language model after each step (as in arXiv 2503.21564).
 
     Parameters:
         problem: The problem: the data, and the goals. Its kitchen is not used.

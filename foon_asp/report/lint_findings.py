@@ -26,17 +26,17 @@ def finding_lines(findings: Sequence[Finding], max_in_full: int = 3, max_lines: 
     kinds: dict[tuple[str, str], list[Finding]] = {}
     for finding in findings:
         kinds.setdefault((finding.file, finding.code), []).append(finding)
-    shown = Counter[tuple[str, str]]()
+    shown_counts = Counter[tuple[str, str]]()
     for finding in findings:
         kind = finding.file, finding.code
-        shown[kind] += 1
-        if shown[kind] <= max_in_full:
+        shown_counts[kind] += 1
+        if shown_counts[kind] <= max_in_full:
             yield from str(finding).split("\n")
-        if shown[kind] == max_in_full and (others := kinds[kind][max_in_full:]):
+        if shown_counts[kind] == max_in_full and (others := kinds[kind][max_in_full:]):
             numbers = list(dict.fromkeys(str(other.line) for other in others))
             lines = ", ".join(numbers[:max_lines]) + (", ..." if len(numbers) > max_lines else "")
-            on = "on line" if len(numbers) == 1 else "on lines"
-            yield f"    ... and {len(others)} more of this kind in this file, {on} {lines} [{finding.code}]"
+            lines = f"line {lines}" if len(numbers) == 1 else f"lines {lines}"
+            yield f"    ... and {len(others)} more of this kind in this file, on {lines} [{finding.code}]"
 
 
 def summary_line(findings: Sequence[Finding], files: int, mended: int) -> str:
