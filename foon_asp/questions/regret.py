@@ -58,7 +58,7 @@ class Regret(Value, frozen=True):
 
     Attributes:
         unit: The unit that is left out, or null.
-        motion: The motion all units of which are left out, or null.
+        motion: The motion whose units are all left out, or null.
         item: The kitchen item that is left out, or null.
         second_item: The other kitchen item of a pair, or null.
         costs: The costs of the best tree without the part; null without a tree.

@@ -47,7 +47,7 @@ class FlipRate(Value, frozen=True):
 
 
 class TreeBeyond(CostedTree, frozen=True):
-    """The tree that is the best beyond an end, with its costs at the given rates.
+    """The tree that is the best beyond an end of an interval, with its costs at the given rates.
 
     Attributes:
         gone: The ids of the units that the best tree has and this tree lacks.
@@ -103,7 +103,7 @@ class RateInterval(Value, frozen=True):
 
 
 class FirstFlip(Value, frozen=True):
-    """The end with the smallest relative change of the rate."""
+    """The motion, and the end of its interval, with the smallest relative change of the rate."""
 
     motion: str
     side: Direction

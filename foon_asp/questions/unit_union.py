@@ -103,7 +103,7 @@ def unit_union(
 ) -> UnitUnion:
     """Find the units of every optimal tree and those of some, without a list of the trees.
 
-    A tree that is worse than the best one counts only if it needs each of its units.
+    A tree that is worse than the best one counts only if no unit of it can be left out.
 
     Parameters:
         objectives: What is best: one objective, or several in a list, the most important first.

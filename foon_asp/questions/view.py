@@ -241,7 +241,10 @@ class View(Result, frozen=True):
         return "" if self.answer is None else self.answer.remark(format_)
 
     def write(self, file: File, format_: str | None = None) -> None:
-        """Write the page or the picture as :meth:`Result.write` does; ``.md`` is a page with a flowchart."""
+        """Write the page or the picture into a file, as :meth:`Result.write` does for other results.
+
+        A file that ends in ``.md`` is Markdown with a flowchart.
+        """
         if format_ in {None, "mermaid"} and Path(file).suffix.lower() == _MERMAID_PAGE:
             write_whole(Path(file), utf_8(mermaid_markdown(self._drawing_or_error())))
         else:

@@ -289,7 +289,7 @@ class ListedConstraint(Value, frozen=True):
     """A user rule without a head (``:- ...``).
 
     Attributes:
-        number: The number of the rule among all of them, from 1.
+        number: The number of the rule among all such rules, from 1.
         constants: The constants in it that were set, as NAME=VALUE.
     """
 
