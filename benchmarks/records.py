@@ -55,7 +55,7 @@ from foon_asp.planning.strips_task import StripsTask
 from foon_asp.planning.task_files import read_task
 from foon_asp.problem import Problem, executable_order
 from foon_asp.proof import verifier as proof
-from foon_asp.questions.relax import Relaxed, solved
+from foon_asp.questions.relax import Relaxed, solve_relaxation
 
 OURS, GREEDY = "foon-asp", "greedy"
 OPPONENTS = {
@@ -97,7 +97,7 @@ def our_work(task: StripsTask, offset: Fraction, limit: float) -> Work:
         on_one_processor()
         start()
         began = time.process_time()
-        found = solved(task, Deadline(limit))
+        found = solve_relaxation(task, Deadline(limit))
         took = time.process_time() - began
         said = {
             "took": took,

@@ -1,4 +1,4 @@
-"""Rows of results: one for each question of a batch, errors included."""
+"""Rows of results: one for each question of a batch, also for a question that fails."""
 
 import time
 from typing import Any, Literal
@@ -26,14 +26,14 @@ class AnswerRow(BatchQuestion, frozen=True, kw_only=True):
     """A question of a batch, and its answer.
 
     Attributes:
-        error: Why there is no tree, or null.
-        proof: The kind of proof, or null.
+        error: The error or the limit that left no tree; null if there was none.
+        proof: The kind of proof; null if nothing is proved.
         costs: The costs of the tree by every objective, null if unknown, and its ingredients.
         lower_bound: By objective, the best value that a tree can still have.
-        runs_used_up: Whether the tree runs where items are used up; null without a tree, and where that is
-            not known.
-        units: Unit ids in an order that executes.
-        seconds: The time of the answer.
+        runs_used_up: Whether the tree runs where items are used up; null without a tree, and if that is not
+            known.
+        units: The unit ids in an order that executes; null without a tree.
+        seconds: The time that the answer took.
     """
 
     status: Literal["optimal", "infeasible", "feasible", "unknown", "failed"]
@@ -47,7 +47,7 @@ class AnswerRow(BatchQuestion, frozen=True, kw_only=True):
 
     @property
     def question(self) -> BatchQuestion:
-        """The question of the row, which identifies it."""
+        """The question alone, without the answer; it identifies the row."""
         return msgspec.convert(self, BatchQuestion, from_attributes=True)
 
 
@@ -57,10 +57,10 @@ ANSWERS = RowForm("batch-row", plain, lambda row: read_plain(AnswerRow, row), la
 def answer_row(
     asker: Asker, question: BatchQuestion, memory_limit: int | None = None, settings: Settings | None = None
 ) -> AnswerRow:
-    """Answer a question; a user error or a bug becomes a row with the status ``failed``.
+    """Return the row with the answer of a question; a user error or a bug becomes the status ``failed``.
 
-    ``settings`` have the user rules. ``memory_limit`` is in bytes; where a limit leaves no tree, ``error``
-    names it.
+    ``settings`` have the user rules. ``memory_limit`` is in bytes. If a limit leaves no tree, the field
+    ``error`` names it.
     """
     began = time.perf_counter()
     try:
@@ -79,7 +79,7 @@ def answer_row(
                     problem = problem.whole
                 assert problem.goals  # reads the units that the goals can need
             outcome = solve(problem, objectives, settings)
-        row = _answered(question, outcome)
+        row = _row_of_outcome(question, outcome)
     except LimitError as limit:
         row = _row(question, status="unknown", error=f"stopped at {limit.stopped}")
     except UserError as error:
@@ -90,16 +90,17 @@ def answer_row(
 
 
 def failed_row(question: BatchQuestion, error: str) -> AnswerRow:
-    """Return the row of a question without an answer."""
+    """Return the row of a question that could not be answered, with the status ``failed``."""
     return _row(question, status="failed", error=error)
 
 
 def _row(question: BatchQuestion, **answer: Any) -> AnswerRow:
+    """Return the row of a question with some fields of its answer."""
     return AnswerRow(**asdict(question), **answer)
 
 
-def _answered(question: BatchQuestion, outcome: Outcome) -> AnswerRow:
-    """Return the row of a question from its outcome."""
+def _row_of_outcome(question: BatchQuestion, outcome: Outcome) -> AnswerRow:
+    """Return the row of a question from the outcome of the solver."""
     problem, units = outcome.problem, outcome.units
     row = _row(
         question,

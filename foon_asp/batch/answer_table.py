@@ -16,7 +16,7 @@ from foon_asp.text.json_value import Json
 from foon_asp.whole_file import write_whole
 
 TABLE_SUFFIXES: Final = (".csv", ".parquet")
-_ARROW: Final = {
+_ARROW_TYPES: Final = {
     Amounts | None: "list<int64>",
     Goals: "list<string>",
     bool | None: "bool",
@@ -26,10 +26,11 @@ _ARROW: Final = {
 }  # all else is text
 
 
-def columns(objectives: Iterable[Objective]) -> Iterator[tuple[str, Any]]:
-    """Return the columns by name and type: the fields of a row, and a column of costs for each objective.
+def answer_columns(objectives: Iterable[Objective]) -> Iterator[tuple[str, Any]]:
+    """Yield the name and type of each column: the fields of a row, with costs and bounds by objective.
 
-    A cost that may be a fraction is a decimal, with another column for the exact number as text.
+    A column is named ``costs.units``. A number that may be a fraction is a decimal; another column ending in
+    ``_exact`` has the exact number as text.
     """
     objectives = tuple(objectives)
     for field in msgspec.structs.fields(AnswerRow):
@@ -46,10 +47,10 @@ def columns(objectives: Iterable[Objective]) -> Iterator[tuple[str, Any]]:
 
 
 def check_table(file: Path, rows: Path) -> None:
-    """Raise :class:`UserError` where a table cannot be written, or would replace another file.
+    """Raise :class:`UserError` if a table cannot be written into ``file``, or would replace another file.
 
-    An existing file may be replaced only if it is a table of answers: the file ``rows``, of which a table is
-    made, has to exist.
+    Parquet needs pyarrow. An existing file may be replaced only if the file ``rows``, from which the table is
+    made, exists, too.
     """
     if file.suffix == ".parquet":
         try:
@@ -66,24 +67,24 @@ def check_table(file: Path, rows: Path) -> None:
 
 
 def write_table(file: Path, rows: Iterable[AnswerRow], objectives: Iterable[Objective]) -> None:
-    """Write rows to a file in the format that its suffix names."""
+    """Write rows into a file: CSV if it ends in ``.csv``, else Parquet; an existing file is replaced."""
     flat = [
         flat_row(plain(row)) | {"goal": list(row.goals), "amount": list(row.amounts) or None} for row in rows
     ]
-    types = dict(columns(objectives))
+    types = dict(answer_columns(objectives))
     if file.suffix == ".csv":
         write_whole(file, csv_text(flat, list(types)).encode("utf-8", "surrogatepass"))
     else:
-        write_whole(file, _parquet(flat, types))
+        write_whole(file, _parquet_bytes(flat, types))
 
 
-def _parquet(rows: list[Json], types: dict[str, Any]) -> bytes:
-    """Return rows as the bytes of a Parquet file."""
+def _parquet_bytes(rows: list[Json], types: dict[str, Any]) -> bytes:
+    """Return rows as the bytes of a Parquet file; ``types`` are the types of its columns by name."""
     import pyarrow  # noqa: PLC0415 (an extra)
     from pyarrow import parquet  # noqa: PLC0415
 
     lists = {"list<string>": pyarrow.list_(pyarrow.string()), "list<int64>": pyarrow.list_(pyarrow.int64())}
-    names = {name: _ARROW.get(type_, "string") for name, type_ in types.items()}
+    names = {name: _ARROW_TYPES.get(type_, "string") for name, type_ in types.items()}
     schema = pyarrow.schema({name: lists.get(arrow, arrow) for name, arrow in names.items()})
     sink = pyarrow.BufferOutputStream()
     parquet.write_table(pyarrow.Table.from_pylist(rows, schema), sink)

@@ -17,17 +17,17 @@ Seconds = Annotated[float, Meta(ge=0, le=1e9)]  # at most some thirty years
 
 
 class BatchQuestion(Value, frozen=True):
-    """One question of a batch, by names, as a line of JSON has it.
+    """One question of a batch, as a line of JSON states it, with names and no ids.
 
     Attributes:
         goal: A goal, or several that one tree makes.
-        objective: A list by commas of which the first counts most.
+        objective: One objective, or several separated by commas; the first counts most.
         items: Whether items last, or are used up; by default they are used up where amounts of goals are
             stated, and last elsewhere.
-        kitchen: A file, or ``@starting``; null for that of the data.
+        kitchen: A file, or ``@starting`` for the starting kitchen; null for the kitchen of the data.
         stock: Where items are used up: a file of what is in stock.
         stays: Where items are used up: a file of what stays.
-        time_limit: In seconds.
+        time_limit: The time limit in seconds; null for none.
         amount: How many copies of the goal are wanted, or of each of several goals in their order; null for
             the amounts of the goals file.
     """
@@ -44,27 +44,28 @@ class BatchQuestion(Value, frozen=True):
 
     @property
     def goals(self) -> tuple[str, ...]:
-        """The goals that one tree makes."""
+        """The goals that one tree makes, as a tuple, also of a single goal."""
         return (self.goal,) if isinstance(self.goal, str) else self.goal
 
     @property
     def amounts(self) -> tuple[int, ...]:
-        """The amounts of the goals that are stated, one for each goal or none."""
+        """The stated number of copies of each goal, as a tuple; empty if none is stated."""
         return (self.amount,) if isinstance(self.amount, int) else self.amount or ()
 
 
 class Asker(Protocol):
-    """Open data that pose questions as problems, any number of times."""
+    """Data that are open, and turn any number of questions into problems."""
 
-    def named(self, word: str, containers: ContainerRule, kitchen: str | None) -> Sequence[str]:
-        """Return the goals for which the word ``@goals`` or ``@makeable`` stands, in one-line notation."""
+    def goals_of_word(self, word: str, containers: ContainerRule, kitchen: str | None) -> Sequence[str]:
+        """Return the goals that the word ``@goals`` or ``@makeable`` stands for, in one-line notation."""
 
     def items(self, question: BatchQuestion) -> str:
-        """Return whether items last or are used up; this is the default if the question does not say it."""
+        """Return ``lasting`` or ``used-up``: the default for a question that does not say it."""
 
     def problem(self, question: BatchQuestion) -> Problem:
-        """Pose a question as a problem; raises :class:`UserError` for an unknown goal or kitchen."""
+        """Return the problem of a question; raises :class:`UserError` for an unknown goal or kitchen."""
 
 
 Opener = Callable[[], Asker]
-"""A picklable, hashable function that opens the data, once in each worker; equal ones open equal data."""
+"""A function that opens the data, once in each worker. It can be pickled and hashed; equal functions open
+equal data."""

@@ -1,4 +1,4 @@
-"""Questions shared among the workers of a Dask cluster."""
+"""Questions of a batch answered by the workers of a Dask cluster."""
 
 import functools
 import time
@@ -21,13 +21,16 @@ def answer_on_cluster(
     memory_limit: int | None = None,
     settings: Settings | None = None,
 ) -> Iterator[AnswerRow]:
-    """Answer questions on the workers of a scheduler, under ``settings``; return rows as they come.
+    """Answer questions on the workers of a Dask scheduler; yield the rows in the order in which they come.
 
-    A worker opens the data once and keeps them until a question about other data comes. The files need the
-    same names on every worker. If a task fails, each of its questions is asked again in a separate task. If
-    the worker of a question dies repeatedly, another question on that worker may be the cause. The question
-    is then asked while no other question runs on the cluster; if its worker dies again, its row says so.
-    Raises :class:`UserError` where there is no scheduler, or Dask is not installed.
+    ``address`` is that of the scheduler; ``settings`` have the user rules; ``memory_limit`` is in bytes. A
+    worker keeps the data open until a question about other data comes. The files need the same names on every
+    worker.
+
+    If a task fails, each of its questions is asked again in a task of its own. If the workers of a question
+    die repeatedly, another question on the same worker may be the cause. The question is then asked while no
+    other one runs on the cluster; if its worker dies again, its row says so. Raises :class:`UserError` if
+    there is no scheduler, or Dask is not installed.
     """
     try:
         from distributed import Client, KilledWorker, as_completed  # noqa: PLC0415 (an extra, slow to import)
@@ -46,13 +49,14 @@ def answer_on_cluster(
         running = as_completed()
 
         def submit(chunk: tuple[BatchQuestion, ...]) -> None:
-            future = client.submit(_answer_some, opener, chunk, memory_limit, settings, pure=False)
+            """Submit a task with some questions, and record its questions by the key of the task."""
+            future = client.submit(_answer_first_questions, opener, chunk, memory_limit, settings, pure=False)
             chunk_of[future.key] = chunk
             running.add(future)
 
         def submit_ahead() -> None:
-            """Submit tasks until enough of them wait on the cluster, first those to be asked again."""
-            while len(chunk_of) < ahead:
+            """Submit tasks until each thread has two on the cluster, first questions to be asked again."""
+            while len(chunk_of) < max_submitted:
                 # several in a task, for each of which Dask takes some milliseconds
                 chunk = retries.popleft() if retries else tuple(islice(waiting, 32))
                 if not chunk:
@@ -60,7 +64,7 @@ def answer_on_cluster(
                 submit(chunk)
 
         threads: dict[str, int] = client.nthreads()
-        ahead = 2 * max(1, sum(threads.values()))  # so that no thread of the cluster waits
+        max_submitted = 2 * max(1, sum(threads.values()))  # so that no thread of the cluster waits
         submit_ahead()
         for future in running:
             chunk = chunk_of.pop(future.key)
@@ -78,14 +82,14 @@ def answer_on_cluster(
             yield from rows
 
 
-def _answer_some(
+def _answer_first_questions(
     opener: Opener, chunk: tuple[BatchQuestion, ...], memory_limit: int | None, settings: Settings | None
 ) -> list[AnswerRow]:
-    """Return the rows of the first questions of a chunk, at least one.
+    """Return the rows of the first questions of a chunk: as many as begin within half a second.
 
-    After half a second, no other question is begun.
+    The first question is always answered.
     """
-    asker = _open(opener)
+    asker = _open_cached(opener)
     began = time.monotonic()
     rows = [answer_row(asker, chunk[0], memory_limit, settings)]
     while len(rows) < len(chunk) and time.monotonic() - began < 0.5:
@@ -94,6 +98,6 @@ def _answer_some(
 
 
 @functools.lru_cache(maxsize=1)
-def _open(opener: Opener) -> Asker:
-    """Open the data, or return them if they were the last opened."""
+def _open_cached(opener: Opener) -> Asker:
+    """Return open data; the last ones opened are kept, and returned again for an equal opener."""
     return opener()

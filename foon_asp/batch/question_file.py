@@ -1,4 +1,4 @@
-"""Files of questions: JSON Lines, one object on each line, which may stand for many questions."""
+"""Files of questions: JSON Lines, an object on each line, which may stand for many questions."""
 
 import functools
 import itertools
@@ -27,12 +27,13 @@ _FOR_MANY = ("@goals", "@makeable")
 def read_questions(
     file: Path, time_limit: float | None, measures: Collection[str] = ()
 ) -> list[BatchQuestion]:
-    """Read questions, one for every combination of the values of a line; kitchens are beside the file.
+    """Return the questions in a file: one for every combination of the values of a line.
 
-    ``time_limit``, in seconds, is for questions without a time limit. ``measures`` are the names of
-    user-defined objectives. A goal may be a word for many goals, such as ``@makeable``.
+    Files that questions name are relative to the folder of the file. ``time_limit``, in seconds, is for
+    questions without a time limit. ``measures`` are the names of user-defined objectives. A goal may be a
+    word for many goals, such as ``@makeable``.
 
-    Raises :class:`InputError` that names every line which is not one object with known keys.
+    Raises :class:`InputError` with all wrong lines, and :class:`UserError` if there is no question.
     """
     questions: list[BatchQuestion] = []
     errors: list[Diagnostic] = []
@@ -40,9 +41,9 @@ def read_questions(
         if not text.strip():
             continue
         try:
-            for question in _combinations(read_json(text), time_limit):
+            for question in _questions_of_line(read_json(text), time_limit):
                 parse_objectives([question.objective], measures)
-                questions.append(_with_files(question, file.parent))
+                questions.append(_with_file_paths(question, file.parent))
         except (UserError, ValueError) as problem:
             fault = json_fault(problem) if isinstance(problem, json.JSONDecodeError) else None
             source = Source(str(file), number, fault.column if fault else 1)
@@ -55,20 +56,23 @@ def read_questions(
     return questions
 
 
-def named_files(questions: Iterable[BatchQuestion]) -> set[Path]:
-    """Return the files that questions name."""
+def files_of_questions(questions: Iterable[BatchQuestion]) -> set[Path]:
+    """Return the paths of the kitchens, stocks and lists of what stays that questions name."""
     names = {getattr(question, key) for question in questions for key in _FILE_KEYS}
     return {Path(name) for name in names - {None, str(STARTING)}}
 
 
-def each_question(questions: Iterable[BatchQuestion], asker: Asker) -> Iterator[BatchQuestion]:
-    """Return every question once, with its items, and ``@goals`` and ``@makeable`` replaced by goals."""
-    named = functools.cache(asker.named)
+def expand_questions(questions: Iterable[BatchQuestion], asker: Asker) -> Iterator[BatchQuestion]:
+    """Yield every question once, with ``@goals`` and ``@makeable`` replaced by one goal after another.
+
+    A question that does not say whether items are used up gets the default of the data.
+    """
+    goals_of_word = functools.cache(asker.goals_of_word)
     seen: set[BatchQuestion] = set()
     for question in questions:
         goals: Iterable[str | tuple[str, ...]] = (question.goal,)
         if question.goal in _FOR_MANY:
-            goals = named(str(question.goal), question.containers, question.kitchen)
+            goals = goals_of_word(str(question.goal), question.containers, question.kitchen)
         for goal in goals:
             expanded = msgspec.structs.replace(question, goal=goal)
             if expanded.items is None:
@@ -78,15 +82,18 @@ def each_question(questions: Iterable[BatchQuestion], asker: Asker) -> Iterator[
                 yield expanded
 
 
-def _combinations(value: object, time_limit: float | None) -> Iterator[BatchQuestion]:
-    """Return every combination of the values of a line; raises :class:`ValueError` for a wrong value."""
+def _questions_of_line(value: object, time_limit: float | None) -> Iterator[BatchQuestion]:
+    """Yield a question for every combination of the values of a line, goals varying fastest.
+
+    Raises :class:`ValueError` for a wrong value, and for keys that do not go together.
+    """
     if not isinstance(value, dict) or "goal" not in value:
         raise ValueError('expected an object such as {"goal": "ice", "objective": ["units", "success"]}')
     if unknown := sorted(value.keys() - {*_QUESTION_KEYS}):
         raise ValueError(f"found the key {unknown[0]!r}, expected one of {', '.join(_QUESTION_KEYS)}")
     entry = {"time_limit": time_limit} | value
     # goals vary fastest in the product, so the goal comes last
-    values_of_key = {key: _several(entry[key]) for key in reversed(_QUESTION_KEYS) if key in entry}
+    values_of_key = {key: _as_list(entry[key]) for key in reversed(_QUESTION_KEYS) if key in entry}
     if [] in values_of_key.values():
         raise ValueError("found an empty list, expected at least one value")
     for key, choices in _CHOICES.items():
@@ -119,13 +126,13 @@ def _combinations(value: object, time_limit: float | None) -> Iterator[BatchQues
         yield question
 
 
-def _several(value: object) -> list[object]:
-    """Return the values of a key as a list; a single value is a list of one."""
+def _as_list(value: object) -> list[object]:
+    """Return a list unchanged, and any other value in a list of one."""
     return value if isinstance(value, list) else [value]
 
 
-def _with_files(question: BatchQuestion, folder: Path) -> BatchQuestion:
-    """Return a question whose file names are relative to the working directory; ``@starting`` stays."""
+def _with_file_paths(question: BatchQuestion, folder: Path) -> BatchQuestion:
+    """Return the question with ``folder`` before its file names; ``@starting`` stays."""
     named = {key: name for key in _FILE_KEYS if (name := getattr(question, key)) is not None}
     files = {
         key: str(folder / name) for key, name in named.items() if (key, name) != ("kitchen", str(STARTING))

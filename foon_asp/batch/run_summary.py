@@ -19,11 +19,11 @@ class RunSummary(Document, frozen=True, kw_only=True, tag=schema_name("batch")):
         questions: The number of questions.
         answered_before: The number of questions answered by an earlier run.
         answered: The number of questions answered by this run.
-        statuses: The number of answers by status.
+        statuses: The number of answers by status, of this and the earlier run.
         proofs: The number of answers of this run by kind of proof.
-        seconds_median: The median time of an answer of this run.
-        seconds_worst: The greatest time of an answer of this run.
-        seconds: The time of the run.
+        seconds_median: The median time of an answer of this run; null without one.
+        seconds_worst: The greatest time of an answer of this run; null without one.
+        seconds: The time of this run.
     """
 
     questions: int
@@ -42,7 +42,10 @@ class RunSummary(Document, frozen=True, kw_only=True, tag=schema_name("batch")):
     def of(
         cls, questions: int, before: Sequence[AnswerRow], now: Sequence[AnswerRow], seconds: float
     ) -> Self:
-        """Return the summary of the rows of a run that took ``seconds``, and of an earlier run."""
+        """Return the summary of a run.
+
+        ``before`` are the rows of an earlier run, ``now`` those of this run, which took ``seconds``.
+        """
         durations = [row.seconds for row in now if row.seconds is not None]
         summary = cls(
             questions=questions,
@@ -57,13 +60,13 @@ class RunSummary(Document, frozen=True, kw_only=True, tag=schema_name("batch")):
         return summary.knowing(errors=[row for row in now if row.error is not None])
 
     def show(self) -> Iterator[Block]:
-        """Return the numbers of answers and proofs, and the first rows with an error."""
+        """Return the numbers of answers and proofs, the times, and the first three rows with an error."""
         before = f", {self.answered_before:,} of them answered before" if self.answered_before else ""
         yield counted(self.questions, "question", ",") + before
-        yield f"in total: {_counts(self.statuses, '') or 'none'}"
+        yield f"in total: {_counts_text(self.statuses, '') or 'none'}"
         if self.answered:
             yield f"answered {self.answered:,} in {self.seconds:.1f} s"
-            yield f"proved: {_counts(self.proofs, 'by ') or 'none'}"
+            yield f"proved: {_counts_text(self.proofs, 'by ') or 'none'}"
         if self.seconds_median is not None:
             yield f"seconds for one: median {self.seconds_median:.3f}, worst {self.seconds_worst:.3f}"
         yield from (f"failed: {' + '.join(row.goals)}: {row.error}" for row in self.errors[:3])
@@ -72,5 +75,6 @@ class RunSummary(Document, frozen=True, kw_only=True, tag=schema_name("batch")):
             yield f"... and {failed - 3} more failed: see their rows"
 
 
-def _counts(counts: dict[str, int], by: str) -> str:
+def _counts_text(counts: dict[str, int], by: str) -> str:
+    """Return counts in words: ``3 by clingo, 1 by search``; ``by`` is the text before each name."""
     return ", ".join(f"{count:,} {by}{name}" for name, count in counts.items())

@@ -18,19 +18,20 @@ def answer_all(
     settings: Settings | None = None,
     grace: float = 10.0,
 ) -> Iterator[AnswerRow]:
-    """Answer questions in processes, each with its own copy of the data; return rows as they come.
+    """Answer questions in ``jobs`` processes; yield the rows in the order in which they come.
 
-    ``memory_limit`` is in bytes for each process. A process that dies, or that does not answer until
-    ``grace`` seconds after its time limit, is replaced, and the row of its question says so. If the data
-    cannot be opened, each row has the message of the :class:`UserError`; so the caller should open the data
-    once before.
+    Each process opens the data for itself. ``memory_limit`` is in bytes for each process. A process is
+    replaced if it dies, or if it has not answered ``grace`` seconds after the time limit of its question. The
+    row of the question then says so. If the data cannot be opened, each row has the message of the
+    :class:`UserError`; so the caller should open the data once before.
     """
 
     def seconds(question: BatchQuestion) -> float | None:
+        """Return after how many seconds a process counts as late; ``None`` without a time limit."""
         return None if question.time_limit is None else question.time_limit + grace
 
-    begin = partial(_begin, opener, memory_limit, settings)
-    for question, row, error in share(begin, questions, jobs, seconds):
+    start_worker = partial(_answer_function, opener, memory_limit, settings)
+    for question, row, error in share(start_worker, questions, jobs, seconds):
         if isinstance(error, LostError) and error.is_late:
             yield failed_row(question, f"no answer within the time limit and {grace:g} seconds more")
         elif isinstance(error, LostError | UserError):
@@ -41,6 +42,8 @@ def answer_all(
             yield row
 
 
-def _begin(opener: Opener, memory_limit: int | None, settings: Settings | None) -> "partial[AnswerRow]":
+def _answer_function(
+    opener: Opener, memory_limit: int | None, settings: Settings | None
+) -> "partial[AnswerRow]":
     """Open the data in a worker, and return the function that answers a question."""
     return partial(answer_row, opener(), memory_limit=memory_limit, settings=settings)

@@ -22,8 +22,8 @@ from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.questions.each_goal import EachGoal
 from foon_asp.questions.index import module_name, question_name
 from foon_asp.questions.options import GOAL_OF_PLAN
-from foon_asp.questions.posing import no_data, one_problem
-from foon_asp.questions.posing_plan import a_plan, settle_data
+from foon_asp.questions.posing import pose_problem, pose_without_data
+from foon_asp.questions.posing_plan import data_for_trees, pose_plan
 from foon_asp.questions.question import Question, Role, question_of
 from foon_asp.questions.result import Result
 from foon_asp.questions.tree import read_answer
@@ -60,7 +60,7 @@ def ask(
         with asked_by(caller):
             subjects = _subjects(question, command, values)
         _warn_of_measures(command, values)
-        if question.pose is not no_data or "time_limit" in option_names:
+        if question.pose is not pose_without_data or "time_limit" in option_names:
             progress.begin()  # a search follows
         with asked_by(caller._replace(read_seconds=command.read_seconds)):
             options_ = values_with_role(question, values, Role.QUESTION | Role.COMMAND)
@@ -94,15 +94,15 @@ def _subjects(question: Question, command: "_Command", values: Mapping[str, Any]
     """
     problem_options = values_with_role(question, values, Role.PROBLEM)
     tree = values.get("tree")
-    if question.pose is not a_plan and tree is not None and tree.is_file():  # a pipe is read once
+    if question.pose is not pose_plan and tree is not None and tree.is_file():  # a pipe is read once
         listed = read_answer(tree)
-        settle_data(command, {tree: listed})
+        data_for_trees(command, {tree: listed})
         if problem_options.get("goals_named") == ():
             problem_options["goals_named"] = tuple(map(str, listed.goals))
     # the question itself reports them, or has none
-    reports_goals = question.pose is no_data or GOAL_OF_PLAN in question.options
+    reports_goals = question.pose is pose_without_data or GOAL_OF_PLAN in question.options
     unnamed = not reports_goals and problem_options.get("goals_named") == ()
-    one_goal = question.pose is one_problem and not problem_options.get("all_goals")
+    one_goal = question.pose is pose_problem and not problem_options.get("all_goals")
     goals = command.unnamed_goals() if unnamed and one_goal else []
     if len(goals) < 2:
         subjects = [question.pose(command, **problem_options)]

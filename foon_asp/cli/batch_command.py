@@ -11,7 +11,7 @@ from foon_asp.asp.assembly import rules_digest
 from foon_asp.batch.answer_row import ANSWERS, AnswerRow
 from foon_asp.batch.answer_table import TABLE_SUFFIXES, check_table, write_table
 from foon_asp.batch.cluster import answer_on_cluster
-from foon_asp.batch.question_file import each_question, named_files, read_questions
+from foon_asp.batch.question_file import expand_questions, files_of_questions, read_questions
 from foon_asp.batch.run_summary import RunSummary
 from foon_asp.batch.workers import answer_all
 from foon_asp.cli import shared_options
@@ -89,11 +89,11 @@ def command(
     )
     measures = measure_names(data)
     lines = read_questions(questions, time_limit, measures)
-    files = named_files(lines)
+    files = files_of_questions(lines)
     refuse_inputs(results_file, files)
     opening = Opening(tuple(data.items()), data_digest(data, files))
     opened = opening(quiet=False)
-    distinct_questions = list(each_question(lines, opened))
+    distinct_questions = list(expand_questions(lines, opened))
 
     def warn(message: str) -> None:
         """Print a warning to standard error."""
@@ -109,7 +109,7 @@ def command(
     interrupted = False
     began = time.monotonic()
     with RowsFile(rows_file, ANSWERS, common) as results:
-        for text in results.twice:
+        for text in results.duplicate_warnings:
             warn(text)
         answered_before = [
             results.done[question] for question in distinct_questions if question in results.done

@@ -44,7 +44,7 @@ class BatchData:
     def __init__(self, dataset: Dataset) -> None:
         self._datasets: dict[str | None, Dataset] = {None: dataset}
 
-    def named(self, word: str, containers: ContainerRule, kitchen: str | None) -> Sequence[str]:
+    def goals_of_word(self, word: str, containers: ContainerRule, kitchen: str | None) -> Sequence[str]:
         """Return the goals that ``@goals`` or ``@makeable`` stands for, in one-line notation.
 
         ``@makeable`` depends on the container rule and on the kitchen, as in :meth:`_dataset_with_kitchen`.

@@ -12,7 +12,7 @@ from foon_asp.cli.output_file import check_outputs
 from foon_asp.cli.progress_line import bytes_bar
 from foon_asp.errors import UserError
 from foon_asp.questions.merge import merge_files
-from foon_asp.results.table import rendered
+from foon_asp.results.table import blocks_text
 from foon_asp.text.data_folder import find_data
 from foon_asp.whole_file import utf_8
 
@@ -87,6 +87,6 @@ def command(
         return ExitCode.DONE
     write_output(output, utf_8(merged.foon()))
     if report:
-        click.echo(rendered(merged.kept_apart()), err=True, nl=False)
+        click.echo(blocks_text(merged.kept_apart()), err=True, nl=False)
     click.echo(merged.text(), err=True, nl=False)
     return ExitCode.DONE

@@ -12,7 +12,7 @@ import click
 
 from foon_asp.errors import UserError
 from foon_asp.escapes import encodable, escaped_lines
-from foon_asp.results.table import Block, rendered
+from foon_asp.results.table import Block, blocks_text
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -169,7 +169,7 @@ def terminal_width_and_colour() -> tuple[int | None, bool]:
 def write_parts(parts: Iterable[Block]) -> None:
     """Write lines and tables to standard output, in the width and the colours of the terminal."""
     width, coloured = terminal_width_and_colour()
-    text = with_plain_signs(rendered(parts, width, coloured))
+    text = with_plain_signs(blocks_text(parts, width, coloured))
     stream = sys.stdout
     if coloured and isinstance(stream, SafeStream):
         stream = cast(TextIO, SafeStream(stream.stream, styled=True))
@@ -179,7 +179,7 @@ def write_parts(parts: Iterable[Block]) -> None:
 def say(text: str) -> None:
     """Write a remark to standard error, wrapped to the width of a terminal."""
     width = shutil.get_terminal_size().columns if sys.stderr.isatty() else None
-    click.echo(rendered(text.split("\n"), width), err=True, nl=False)
+    click.echo(blocks_text(text.split("\n"), width), err=True, nl=False)
 
 
 def say_once(text: str) -> None:

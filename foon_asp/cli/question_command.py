@@ -23,8 +23,8 @@ from foon_asp.errors import UserError
 from foon_asp.problem import ITEMS
 from foon_asp.questions.caller import Caller, asked_by
 from foon_asp.questions.index import INDEX
-from foon_asp.questions.posing import no_data
-from foon_asp.questions.question import Question, Role, not_built
+from foon_asp.questions.posing import pose_without_data
+from foon_asp.questions.question import Question, Role, not_for_used_up_items
 from foon_asp.questions.result import NothingToDrawError, NoTreeError, Result, format_method
 
 _LIMITS = frozenset({"time_limit", "memory_limit"})
@@ -42,11 +42,11 @@ def question_command(verb: str) -> click.Command:
         from foon_asp.cli.serve_command import with_serve_option
 
         command = with_serve_option(command, question)
-    command = (shared_options.debug_option if question.pose is no_data else shared_options.data_options)(
-        command
-    )
+    command = (
+        shared_options.debug_option if question.pose is pose_without_data else shared_options.data_options
+    )(command)
     takes_all = any(option.positional and option.many for option in question.options)
-    if question.pose is not no_data and not takes_all:  # after the arguments of the question
+    if question.pose is not pose_without_data and not takes_all:  # after the arguments of the question
         command = shared_options.sources_argument(command)
     for option in _format_options(question):
         command = option(command)
@@ -68,7 +68,7 @@ def _without_used_up(verb: str) -> Callable[[Command], Command]:
     def refuse(_: click.Context, __: click.Parameter, value: str) -> None:
         """Raise an error for ``used-up``."""
         if value != "lasting":
-            raise not_built(verb)
+            raise not_for_used_up_items(verb)
 
     return click.option(
         "--items",

@@ -32,7 +32,7 @@ class Optimum(Value, frozen=True):
     """The optimum of one objective.
 
     Attributes:
-        value: What the best tree costs, proved where the status is optimal; null without a tree.
+        value: The cost of the best tree found, which is proved if the status is optimal; null without a tree.
     """
 
     status: Status
@@ -44,8 +44,8 @@ class Obstruction(Value, frozen=True):
 
     Attributes:
         motion: The motion of the first unit that cannot run; null where a goal is missing.
-        missing: What the unit lacks, or the goal.
-        cycle: Whether the reason is a cycle of units that wait for each other.
+        missing: The node that the unit lacks, or the goal that is missing.
+        cycle: Whether the cause is a cycle of units that wait for each other.
     """
 
     motion: str | None
@@ -58,17 +58,17 @@ class SearchResult(Value, frozen=True):
 
     Attributes:
         ending: How the search ended.
-        stuck_at: The object at which the search got stuck, if it did.
+        stuck_at: The object that the search cannot have; null if it was not stuck.
         units: Unit ids in the order listed; null without a tree.
         measures: What the tree costs by each objective that is compared.
-        ratios: Measure over optimum; null where the optimum is not proved, or 0.
+        ratios: The measure divided by the optimum; null if the optimum is not proved, or 0.
         verdict: Whether the tree executes; null without a tree.
-        order: An order that executes, in positions from 1.
-        obstacle: What stops every order, if anything.
+        order: An order that executes, in positions from 1; empty if none does.
+        obstacle: What stops every order; null if nothing does.
         runs_used_up: Whether the tree runs, in some order, where items are used up and each step is done
             once; null where that is not known.
-        breaks: The rules that a tree which executes breaks, with their places.
-        tree: The steps in the order listed, where the trees are asked for; null without a tree.
+        breaks: The user rules that the tree breaks, with their places; empty if it does not execute.
+        tree: The steps in the order listed; null without a tree, and left out unless trees are asked for.
     """
 
     search: str
@@ -90,12 +90,12 @@ class SearchResult(Value, frozen=True):
         return self.verdict in {Verdict.AS_LISTED, Verdict.REORDERED}
 
     @property
-    def counts(self) -> bool:
+    def is_valid(self) -> bool:
         """Whether the search returned a tree that executes and breaks no rule."""
         return self.executes and not self.breaks
 
     @property
-    def waits(self) -> bool:
+    def has_cycle(self) -> bool:
         """Whether units of the tree wait for each other in a cycle."""
         return self.obstacle is not None and self.obstacle.cycle
 
@@ -124,11 +124,12 @@ def compare(
     time_limit: float | None = None,
     rules: Settings | None = None,
 ) -> Comparison:
-    """Run searches on a problem of one goal, simulate their trees and prove the optimum of each objective.
+    """Return the results of searches on a problem of one goal, and the optimum by each objective.
 
-    ``time_limit`` is in seconds for each optimum. Optima of ``success`` are left out where no rates are
-    known. Optima keep to the ``rules``; the searches ignore them, and results list the rules that a tree
-    breaks.
+    The trees of the searches are simulated. ``time_limit`` is in seconds for each optimum. The optimum by
+    ``success`` is left out where no rates are known. Optima keep to the ``rules``; the searches ignore them,
+    and results list the rules that a tree breaks. Raises :class:`BugError` if a tree that executes is better
+    than a proved optimum.
     """
     solver_settings = rules or Settings()
     optima: dict[Objective, Optimum] = {}
@@ -140,7 +141,7 @@ def compare(
         value = None if outcome.costs is None else outcome.costs.measure(objective)
         optima[objective] = Optimum(outcome.status, value)
     (goal,) = goals_of(problem.network, problem.goals)
-    results = tuple(judge(problem, search, settings, optima, solver_settings) for search in searches)
+    results = tuple(judge_search(problem, search, settings, optima, solver_settings) for search in searches)
     comparison = Comparison(goal, optima, results)
     _require_consistent(comparison)
     return comparison
@@ -149,7 +150,7 @@ def compare(
 def _require_consistent(comparison: Comparison) -> None:
     """Raise :class:`BugError` where an executable tree is better than a proved optimum."""
     for result in comparison.searches:
-        if not result.counts:
+        if not result.is_valid:
             continue
         for objective, optimum in comparison.optimum.items():
             if result.beats_the_optimum(objective) or optimum.status is Status.INFEASIBLE:
@@ -160,27 +161,31 @@ def _require_consistent(comparison: Comparison) -> None:
 
 
 @lru_cache(maxsize=1)
-def _user_rule_check(rules: Settings, used_up: bool) -> "UserRuleCheck":
+def _rule_check_of(rules: Settings, used_up: bool) -> "UserRuleCheck":
+    """Return the check of trees against user rules; the last one is kept, since many goals share it."""
     from foon_asp.asp.user_rule_check import UserRuleCheck  # noqa: PLC0415 (takes clingo along)
 
     return UserRuleCheck(rules, used_up)
 
 
-def judge(
+def judge_search(
     problem: Problem,
     search: Search,
     settings: SearchSettings,
     optima: Mapping[Objective, Optimum],
     rules: Settings,
 ) -> SearchResult:
-    """Run one search, and return its tree simulated and compared with the optima."""
+    """Run one search, simulate its tree, and compare its costs with the optima.
+
+    The search runs as if items last. A tree that executes is also checked against the ``rules``.
+    """
     network = problem.network
     retrieval = search.run(replace(problem, items=None), settings)
     if retrieval.ending is not Ending.TREE:
         stuck_at = None if retrieval.stuck_at is None else node_of(network, retrieval.stuck_at)
         return SearchResult(search.name, retrieval.ending, stuck_at)
     tree = problem.tree(retrieval.units)
-    simulation = simulated(problem, retrieval.units, tree)
+    simulation = simulate_retrieval(problem, retrieval.units, tree)
     obstruction = None
     if simulation.obstacle is not None:
         position, missing, cycle = simulation.obstacle[:3]
@@ -194,9 +199,7 @@ def judge(
     }
     executes = simulation.verdict is not Verdict.NEVER
     check_rules = rules.constraints and executes
-    broken = (
-        _user_rule_check(rules, not lasting).broken_rules(problem, retrieval.units) if check_rules else ()
-    )
+    broken = _rule_check_of(rules, not lasting).broken_rules(problem, retrieval.units) if check_rules else ()
     return SearchResult(
         search.name,
         retrieval.ending,
@@ -213,14 +216,18 @@ def judge(
 
 
 def _ratio(measure: Figure, optimum: Optimum | None) -> Fraction | None:
-    """Return a measure divided by the optimum; ``None`` where it is 0 or not proved."""
+    """Return a measure divided by the optimum; ``None`` if the optimum is 0 or not proved."""
     if optimum is None or not optimum.value or optimum.status is not Status.OPTIMAL:
         return None
     return Fraction(measure) / optimum.value
 
 
-def simulated(problem: Problem, units: Sequence[int], tree: TaskTree) -> Simulation:
-    """Return the simulation of a tree; where items are used up, of a plan that executes each unit once."""
+def simulate_retrieval(problem: Problem, units: Sequence[int], tree: TaskTree) -> Simulation:
+    """Return the simulation of a tree that a search returned; ``units`` are its ids.
+
+    Where items are used up, it is the simulation of a plan that executes each unit once, in the order listed
+    or in another one that runs.
+    """
     simulation = simulate_for(problem, tree)
     if problem.items is None or simulation.verdict is Verdict.NEVER:
         return simulation

@@ -17,9 +17,9 @@ from foon_asp.text.json_value import Json, json_line
 
 
 def read_comparison(row: Json) -> Comparison:
-    """Return the comparison in a row.
+    """Return the comparison that a row of a file, as plain values, stands for.
 
-    If the value is no row of a comparison, raises one of the errors that :class:`RowForm` lists.
+    For a value that is no such row, raises one of the errors that :class:`RowForm` lists.
     """
     searches = [
         search | {name: _by_objective(search[name]) for name in ("measures", "ratios")}
@@ -33,6 +33,7 @@ def read_comparison(row: Json) -> Comparison:
 
 
 def _by_objective(values: Json) -> dict[Objective, object]:
+    """Return values by objective in place of its name; raises :class:`ValueError` for another name."""
     return {Objective(name): value for name, value in values.items()}
 
 
@@ -42,9 +43,9 @@ COMPARISONS = RowForm("compare-row", plain, read_comparison, lambda comparison: 
 def comparisons_question(
     problem: Problem, searches: Sequence[Search], settings: SearchSettings, rules: Settings | None = None
 ) -> Json:
-    """Return the question of a file of rows: data (as a digest), searches, settings and rules.
+    """Return the question of a file of comparisons: a digest of the data, searches, settings and rules.
 
-    A comparison is resumed only from a file with the same question.
+    The first line of the file states it. A run continues a file only if the question is equal.
     """
     subject = Subject(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
     data: list[object] = [subject.digests()]

@@ -13,7 +13,7 @@ from foon_asp.searches import Search, SearchSettings
 
 
 def makeable(problem: Problem) -> list[int]:
-    """Return the ids of all object nodes that can be made and are not in the kitchen, whatever the goals."""
+    """Return the ids, in ascending order, of all object nodes that can be made and are not in the kitchen."""
     return sorted(o for o in reach(problem).makers if o not in problem.kitchen)
 
 
@@ -26,10 +26,10 @@ def compare_goals(
     jobs: int = 1,
     rules: Settings | None = None,
 ) -> Iterator[Comparison]:
-    """Compare the searches on each goal by itself; yield the comparisons in order of the goals.
+    """Compare searches on each goal by itself; yield the comparisons in the order of the goals.
 
-    With more than one job, processes share the goals; the results are those of one job. Optima keep to the
-    ``rules``; ``time_limit`` is in seconds for each optimum.
+    ``goals`` are ids. With more than one job, that many processes share the goals; the comparisons stay the
+    same. Optima keep to the ``rules``; ``time_limit`` is in seconds for each optimum.
 
     Raises :class:`UserError` where a process dies, usually because memory is full.
     """
@@ -59,6 +59,6 @@ def _compare(
     rules: Settings | None,
     numbered: tuple[int, int],
 ) -> Comparison:
-    """Compare the searches on one goal, which is the second number of ``numbered``."""
+    """Compare the searches on one goal; ``numbered`` has its place in the list of goals, and its id."""
     _, goal = numbered
     return compare(replace(problem, goals=(goal,)), searches, settings, time_limit, rules)

@@ -13,8 +13,8 @@ class PublishedTable(Value, frozen=True):
     Attributes:
         source: Where they were published.
         containers: The container rule under which they were measured.
-        columns: The heading of each search.
-        goals: Functional units by the label of the goal, and by search.
+        columns: The heading of each search, by its name.
+        goals: The number of functional units, by the label of the goal and by the name of the search.
     """
 
     source: str

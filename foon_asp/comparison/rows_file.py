@@ -1,4 +1,4 @@
-"""Rows file: results as JSON Lines, appended one by one, and read back to resume after an interruption."""
+"""Files of rows: results as JSON Lines, appended one by one, and read back to continue a run."""
 
 import contextlib
 import os
@@ -22,7 +22,7 @@ Value = TypeVar("Value")
 class RowForm(NamedTuple, Generic[Row]):
     """The format of rows of a ``kind``: how they are written, read and identified.
 
-    ``plain`` returns a row as JSON, and ``read`` is its inverse. For other JSON, ``read`` raises a
+    ``plain`` returns a row as plain values, and ``read`` is its inverse. For other values, ``read`` raises a
     :class:`ValueError`, :class:`KeyError`, :class:`TypeError`, :class:`AttributeError` or
     :class:`ArithmeticError`. ``key`` returns the question that a row answers.
     """
@@ -38,27 +38,27 @@ class RowsFile(Generic[Row]):
 
     The first line is the question (data and settings); every line states its kind and version. Each row is
     written to the disk at once; an incomplete last line, from an interruption, is dropped. ``done`` are the
-    rows by key. ``twice`` has a warning for each row that has the key of an earlier row. The file is locked
-    until it is closed or the process ends.
+    rows by key. ``duplicate_warnings`` has a warning for each row with the key of an earlier row. The file is
+    locked until it is closed or the process ends.
 
-    Raises :class:`UserError`, and leaves the file unchanged, where another run writes it, where it was begun
-    for another question, where its lines are of another version, and where it has other contents.
+    Raises :class:`UserError`, and leaves the file unchanged, if another run writes it, or if it has another
+    question, lines of another version, or other contents.
     """
 
     def __init__(self, path: Path, form: RowForm[Row], question: Json) -> None:
         """Open and lock the file, read its rows into ``done``, and write the first line of a new file."""
         self.path, self._form, self._schema = path, form, schema_name(form.kind)
         self.done: dict[object, Row] = {}
-        self.twice: list[str] = []
-        with self._reported("written"):
-            self._file = self._locked()
+        self.duplicate_warnings: list[str] = []
+        with self._report_errors("written"):
+            self._file = self._open_locked()
         try:
-            with self._reported("read"):
+            with self._report_errors("read"):
                 content = self._file.read()
-            first_line = self._line({"question": question})
+            first_line = self._encoded_line({"question": question})
             is_new = first_line.startswith(content)  # empty, or cut short
             end = 0 if is_new else self._read_rows(content, question)
-            with self._reported("written"):
+            with self._report_errors("written"):
                 self._file.truncate(end)
                 self._file.seek(end)
                 self._write(first_line if is_new else b"")
@@ -67,9 +67,9 @@ class RowsFile(Generic[Row]):
             raise
 
     def add(self, row: Row) -> None:
-        """Append a row; when this returns, it is on the disk."""
-        with self._reported("written"):
-            self._write(self._line(self._form.plain(row)))
+        """Append a row, and add it to ``done``; when this returns, the row is on the disk."""
+        with self._report_errors("written"):
+            self._write(self._encoded_line(self._form.plain(row)))
         self.done[self._form.key(row)] = row
 
     def __enter__(self) -> Self:
@@ -79,12 +79,15 @@ class RowsFile(Generic[Row]):
         with contextlib.suppress(OSError):  # all rows are on the disk, or an error was reported
             self._file.close()
 
-    def _locked(self) -> IO[bytes]:
-        """Return the file, open and locked; raises :class:`UserError` where another run has locked it."""
+    def _open_locked(self) -> IO[bytes]:
+        """Open and lock the file, which is made if it does not exist, and return it.
+
+        Raises :class:`UserError` for a folder, and if another run has locked the file.
+        """
         if self.path.exists() and not self.path.is_file():
             raise UserError(f"{self.path}: is not a file in which results can be kept")
         file = open(self.path, "r+b", opener=lambda name, flags: os.open(name, flags | os.O_CREAT, 0o666))  # noqa: SIM115 (closed at the end)
-        if _lock(file):
+        if _try_lock(file):
             file.seek(0)
             return file
         file.close()
@@ -94,9 +97,13 @@ class RowsFile(Generic[Row]):
         )
 
     def _read_rows(self, content: bytes, question: Json) -> int:
-        """Read the rows of an existing file, and return the length of its complete lines, in bytes."""
-        first, newline, rows = content.partition(b"\n")
-        header = self._read(first, 1, dict) if newline else {}
+        """Read the rows of an existing file into ``done``; return the length of its complete lines, in bytes.
+
+        A row with the key of an earlier row causes a warning. Raises :class:`UserError` for other contents,
+        and for a file that was begun for another question.
+        """
+        first_line, newline, rows = content.partition(b"\n")
+        header = self._read_line(first_line, 1, dict) if newline else {}
         if header.keys() != {"question"}:
             raise UserError(
                 f"{self.path}: contains something other than results of foon-asp, and was not changed; "
@@ -111,18 +118,21 @@ class RowsFile(Generic[Row]):
         *lines, incomplete = rows.split(b"\n")
         numbers: dict[object, int] = {}
         for number, line in enumerate(lines, 2):
-            row = self._read(line, number, self._form.read)
+            row = self._read_line(line, number, self._form.read)
             key = self._form.key(row)
             self.done[key] = row
             if numbers.setdefault(key, number) != number:
-                self.twice.append(
+                self.duplicate_warnings.append(
                     f"{self.path}:{number}: warning: a row of the same question as line {numbers[key]}; "
                     "whoever reads them counts both: remove one"
                 )
         return len(content) - len(incomplete)
 
-    def _read(self, line: bytes, number: int, read: Callable[[Json], Value]) -> Value:
-        """Return the value of a line; raises :class:`UserError` for an invalid one, or another version."""
+    def _read_line(self, line: bytes, number: int, read: Callable[[Json], Value]) -> Value:
+        """Return what ``read`` makes of a line without its schema; ``number`` is that of the line, from 1.
+
+        Raises :class:`UserError` for an invalid line, and for one of another version.
+        """
         try:
             value: Json = read_json(line)
             version = value.pop("schema")
@@ -138,25 +148,26 @@ class RowsFile(Generic[Row]):
             f"{self._schema!r}; name another file, or remove this one"
         )
 
-    def _line(self, row: Json) -> bytes:
+    def _encoded_line(self, row: Json) -> bytes:
+        """Return a row as a line of the file, with its schema first."""
         return json_line({"schema": self._schema, **row}).encode() + b"\n"
 
     def _write(self, content: bytes) -> None:
-        """Write lines at the end, and wait until they are on the disk."""
+        """Write bytes at the end of the file, and wait until they are on the disk."""
         self._file.write(content)
         self._file.flush()
         os.fsync(self._file.fileno())
 
     @contextlib.contextmanager
-    def _reported(self, action: str) -> Iterator[None]:
-        """Raise :class:`UserError` for an ``OSError``: the file cannot be ``action`` (read, written)."""
+    def _report_errors(self, action: str) -> Iterator[None]:
+        """Turn an ``OSError`` in the context into a :class:`UserError`; ``action`` is read or written."""
         try:
             yield
         except OSError as error:
             raise UserError(f"{self.path}: cannot be {action}: {error.strerror or error}") from None
 
 
-def _lock(file: IO[bytes]) -> bool:
+def _try_lock(file: IO[bytes]) -> bool:
     """Lock an open file until it is closed; return ``False`` where another process has locked it.
 
     Return ``True``, without a lock, on a file system that has no locks.

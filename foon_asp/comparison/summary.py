@@ -1,4 +1,4 @@
-"""Summary statistics of many comparisons, as papers report them: how far trees are from the optimum."""
+"""Summary statistics of many comparisons, as papers report them: the distance of trees to the optimum."""
 
 import statistics
 from collections.abc import Iterable, Sequence
@@ -11,10 +11,11 @@ from foon_asp.problem import Objective, multiplies
 
 
 class Distance(NamedTuple):
-    """Statistics of the ratio to the optimum, over the trees that execute and break no rule; 1 is optimal.
+    """Statistics of the ratios of the costs of trees to the optimum; 1 is optimal, and more is worse.
 
-    The ratio is the cost divided by the optimum. For ``success`` it is the optimum divided by the rate, so
-    that a higher ratio is always worse. ``share`` is the fraction of trees that are optimal, and
+    Only trees that execute and break no rule count. The ratio is the cost divided by the optimum; for
+    ``success``, it is the optimum divided by the rate. ``share`` is the fraction of trees that are optimal,
+    and
     ``worst_goal`` is the goal with the worst ratio. The 90th percentile is the least ratio that at least nine
     tenths of the trees do not exceed.
     """
@@ -46,14 +47,14 @@ def summarize_comparisons(comparisons: Sequence[Comparison]) -> list[Summary]:
 
 
 def _summary(name: str, comparisons: Sequence[Comparison]) -> Summary:
-    """Return the summary of the search of a name."""
+    """Return the summary of the results of one search, by its name."""
     results = [(row.goal, result) for row in comparisons for result in row.searches if result.search == name]
     distances: dict[Objective, Distance] = {}
     for objective in MEASURED:
         ratios = [
             (1 / ratio if multiplies(objective) else ratio, str(goal))
             for goal, result in results
-            if result.counts and (ratio := result.ratios.get(objective))
+            if result.is_valid and (ratio := result.ratios.get(objective))
         ]
         if ratios:
             distances[objective] = _distance(sorted(ratios))
@@ -61,7 +62,7 @@ def _summary(name: str, comparisons: Sequence[Comparison]) -> Summary:
 
 
 def _distance(ratios: list[tuple[Fraction, str]]) -> Distance:
-    """Return the statistics of ratios, in ascending order, with their goals."""
+    """Return the statistics of ratios and their goals, which are in ascending order."""
     values = [value for value, _ in ratios]
     share, median = Fraction(values.count(Fraction(1)), len(values)), statistics.median(values)
     mean, percentile_90 = statistics.mean(values), values[-(-9 * len(values) // 10) - 1]

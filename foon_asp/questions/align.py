@@ -11,7 +11,7 @@ from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
 from foon_asp.network import Edit, FunctionalUnit, Network, ObjectNode, StandInTable, counted
-from foon_asp.questions.posing import Command, the_data
+from foon_asp.questions.posing import Command, pose_data
 from foon_asp.questions.question import TABLES, Kind, Option, question
 from foon_asp.questions.result import ENDINGS, Result
 from foon_asp.questions.stand_in import NodeEdit
@@ -118,7 +118,7 @@ def _pose_recipe(command: Command) -> tuple[Foon]:
     """
     if not command.names_data:
         raise UserError("align what? name a recipe: foon-asp align RECIPE --to NETWORK")
-    return the_data(command)
+    return pose_data(command)
 
 
 @question(

@@ -15,8 +15,8 @@ from foon_asp.problem import Objective, Problem, for_each_goal
 from foon_asp.questions.answer import Answer, answer_from_store
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, limits_of, settings_of
-from foon_asp.questions.python_arguments import asked_with, chosen_objectives, read
-from foon_asp.questions.question import asked_in_python
+from foon_asp.questions.python_arguments import chosen_objectives, problem_for_rules, read_deferred
+from foon_asp.questions.question import python_question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.figure_text import figure_text
@@ -122,7 +122,7 @@ def _is_short_of_copies(answer: Answer) -> bool:
     return answer.used_up is not None and answer.used_up.runs is False
 
 
-@asked_in_python
+@python_question
 def solve_all_goals(
     problem: Problem, objectives: str | Iterable[str] = "units", **options: Unpack[CommonOptions]
 ) -> Optima:
@@ -158,7 +158,7 @@ def solve_all_goals(
             goal_settings = settings._replace(deadline=Deadline(*each_limits, within=outer))
             nearby = near_goals(goal, chosen, goal_settings)
             if nearby is None:
-                outcome = find(read(goal), chosen, goal_settings, caller().reporter, solved=others)
+                outcome = find(read_deferred(goal), chosen, goal_settings, caller().reporter, solved=others)
             else:
                 outcome = answer_from_store(nearby, chosen, goal_settings).outcome
             outcomes_of[number].append(outcome)
@@ -188,4 +188,4 @@ def _problems_by_goal(problem: Problem, settings: Settings) -> list[Problem]:
     """
     if isinstance(problem, NearbyProblem) and not settings.constraints and settings.replaced is None:
         return problem.each_goal()
-    return for_each_goal(asked_with(problem, settings))
+    return for_each_goal(problem_for_rules(problem, settings))

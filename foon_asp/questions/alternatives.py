@@ -20,7 +20,12 @@ from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.options import AMOUNT, ITEMS, TREE
-from foon_asp.questions.python_arguments import Objectives, asked_with, at_least, chosen_objectives
+from foon_asp.questions.python_arguments import (
+    Objectives,
+    chosen_objectives,
+    problem_for_rules,
+    require_at_least,
+)
 from foon_asp.questions.question import TABLES, Kind, Option, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
@@ -299,14 +304,14 @@ def alternatives(
         raise UserError("best and different exclude each other; give one of them")
     if within and different is None:
         raise UserError("within is only for different trees: give different, too")
-    max_loss = Fraction(at_least(within, 0, "within"), 100)
-    at_least(limit, 1, "limit")
+    max_loss = Fraction(require_at_least(within, 0, "within"), 100)
+    require_at_least(limit, 1, "limit")
     chosen, settings = chosen_objectives(problem, objectives), settings_of(options)
-    problem = asked_with(problem, settings)
+    problem = problem_for_rules(problem, settings)
     if best is not None:
-        pool = _rank_trees(problem, chosen, settings, at_least(best, 1, "best"), None)
+        pool = _rank_trees(problem, chosen, settings, require_at_least(best, 1, "best"), None)
     elif different is not None:
-        at_least(different, 2, "different")
+        require_at_least(different, 2, "different")
         pool = _most_different(_rank_trees(problem, chosen, settings, limit, max_loss), different, settings)
     else:
         pool = _rank_trees(problem, chosen, settings, limit, Fraction(0))

@@ -17,7 +17,7 @@ from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, Problem, levels
 from foon_asp.problem.dead_ends import Cause
 from foon_asp.questions.caller import caller
-from foon_asp.questions.python_arguments import asked_with, read, reading
+from foon_asp.questions.python_arguments import limited_reading, problem_for_rules, read_deferred
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.stand_in import StandIn, stand_in_lines, stand_ins_in
 from foon_asp.questions.used_up_note import used_up_note
@@ -536,7 +536,7 @@ def _answer_with_reading(
 
     If a limit stops the reading of all data, the best tree of the part is returned as ``FEASIBLE``.
     """
-    problem = read(problem)
+    problem = read_deferred(problem)
     is_partial = problem.network.object_numbers and problem.items is None and settings.constraints
     if is_partial and settings.replaced is None and reach_of_rules(settings) is ReachOfRules.TREE:
         unconstrained = find(problem, objectives, settings._replace(constraints=(), constants=()), Reporter())
@@ -548,7 +548,7 @@ def _answer_with_reading(
                 return _answer_of(partial)
             try:
                 with settings.begun.watched("reading"):  # and not late, since there may be a tree already
-                    problem = asked_with(problem, settings, objectives)
+                    problem = problem_for_rules(problem, settings, objectives)
             except KeyboardInterrupt:
                 if partial.units is None:
                     raise
@@ -556,7 +556,7 @@ def _answer_with_reading(
                 bounds = {order[0]: unconstrained.costs.measure(order[0])}
                 partial = partial._replace(status=Status.FEASIBLE, proof=None, stopped=settings.begun.stopped)
                 return _answer_of(partial._replace(bounds=bounds))
-    return answer_problem(asked_with(problem, settings, objectives), objectives, settings, reporter)
+    return answer_problem(problem_for_rules(problem, settings, objectives), objectives, settings, reporter)
 
 
 def answer_from_store(nearby: "Nearby", objectives: Sequence[Objective], settings: Settings) -> Answer:
@@ -568,7 +568,7 @@ def answer_from_store(nearby: "Nearby", objectives: Sequence[Objective], setting
     outcome = solve_nearby(nearby, objectives, settings, caller().reporter)
     if outcome is not None:
         return _answer_of(outcome)
-    with reading():
+    with limited_reading():
         problem = nearby.whole()
     return answer_under_rules(problem, objectives, settings)
 

@@ -14,7 +14,7 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.help_search import helped_trees
 from foon_asp.questions.options import CONTAINERS, GOALS
-from foon_asp.questions.python_arguments import asked_with, at_least
+from foon_asp.questions.python_arguments import problem_for_rules, require_at_least
 from foon_asp.questions.question import TABLES, Kind, Option, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
@@ -233,9 +233,9 @@ def assist(
     """
     settings = settings_of(options)
     wanted = None if reach is None else success_rate(reach, "the success to reach")
-    limit = None if most is None else at_least(most, 0, "most")
+    limit = None if most is None else require_at_least(most, 0, "most")
     person_rates = _read_person_rates(problem, person)
-    problem = asked_with(problem, settings)
+    problem = problem_for_rules(problem, settings)
     trees = helped_trees(problem, person_rates, settings, caller().reporter, limit, wanted)
     rows = tuple(_assisted_tree(problem, max_helped, row) for max_helped, row in enumerate(trees.rows))
     last = rows[-1].success

@@ -21,7 +21,7 @@ from foon_asp.problem import Objective, Problem, levels
 from foon_asp.proof.verifier import Subject
 from foon_asp.questions.answer import Answer, answer_from_store, answer_problem
 from foon_asp.questions.certificate_text import bound_text, certificate_lines, proof_size
-from foon_asp.questions.python_arguments import asked_with, reading, whole
+from foon_asp.questions.python_arguments import limited_reading, over_whole_network, problem_for_rules
 from foon_asp.questions.result import Ending
 from foon_asp.questions.tree import Tree
 from foon_asp.results.figure_text import costs_text
@@ -41,13 +41,15 @@ def solve_with_certificate(
     has_rules = settings.constraints or settings.constants or settings.encodings
     is_plain = not has_rules and problem.items is None and Objective.PRICE not in objectives
     nearby = near_goals(problem, objectives, settings) if is_plain else None
-    with reading():
+    with limited_reading():
         subject = (
             nearby.subject() if nearby is not None else _certificate_subject(problem) if is_plain else None
         )
     if nearby is None:
-        suffices = problem.stand_ins is not None and asked_with(problem, settings, objectives) is problem
-        complete = problem if suffices or subject is not None else whole(problem)
+        suffices = (
+            problem.stand_ins is not None and problem_for_rules(problem, settings, objectives) is problem
+        )
+        complete = problem if suffices or subject is not None else over_whole_network(problem)
         answer = answer_problem(complete, objectives, settings)
         proved = answer.problem
     else:

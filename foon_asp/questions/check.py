@@ -17,11 +17,11 @@ from foon_asp.proof.simulation import Obstacle, Simulation, Verdict, simulate_fo
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.options import AMOUNT, CONTAINERS, GOAL_OF_PLAN, ITEMS, OBJECTIVES
 from foon_asp.questions.posing import Command
-from foon_asp.questions.posing_plan import a_plan
-from foon_asp.questions.python_arguments import Objectives, chosen_objectives, whole
+from foon_asp.questions.posing_plan import pose_plan
+from foon_asp.questions.python_arguments import Objectives, chosen_objectives, over_whole_network
 from foon_asp.questions.question import Kind, Option, Role, question
 from foon_asp.questions.result import Ending, Result
-from foon_asp.questions.tree import Tree, posed_tree, read_answer
+from foon_asp.questions.tree import Tree, as_tree, read_answer
 from foon_asp.questions.verdict import Stop, simulation_fields, verdict_lines
 from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block
@@ -181,7 +181,7 @@ def _pose_tree(command: Command, tree: Path, **named: Any) -> tuple[Problem, Tre
     """
     if command.given("repair") and not read_answer(tree).goals:
         command.add_sources([tree])
-    return a_plan(command, tree=tree, **named)
+    return pose_plan(command, tree=tree, **named)
 
 
 def check_or_repair(
@@ -294,9 +294,9 @@ def check(
         raise UserError("objectives are those of a certificate: add --certificate FILE")
     rule_check = _user_rule_check(rules, used_up) if rules.constraints or rules.constants else None
     if certificate is not None or (rule_check is not None and not rule_check.local):
-        problem = whole(problem)
+        problem = over_whole_network(problem)
     chosen = () if certificate is None else chosen_objectives(problem, objectives or "units")
-    listed = posed_tree(problem, tree)
+    listed = as_tree(problem, tree)
     checked = Checked.of(listed, chosen)
     if rule_check is not None:
         broken = None

@@ -11,7 +11,7 @@ from foon_asp.network import ObjectNode
 from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.caller import caller
 from foon_asp.questions.options import CONSTANTS, CONSTRAINTS, ENCODINGS, LIMITS, RULE
-from foon_asp.questions.python_arguments import given_constraints
+from foon_asp.questions.python_arguments import as_constraints
 
 _TIME, _MEMORY = LIMITS
 
@@ -52,7 +52,7 @@ def settings_of(options: CommonOptions) -> Settings:
     if isinstance(constants, Mapping):
         constants = [f"{name}={value}" for name, value in constants.items()]
     return Settings(
-        given_constraints(options.get("constraints", ())),
+        as_constraints(options.get("constraints", ())),
         None if encodings is None else Path(encodings),
         tuple(constants),
         deadline=start_deadline(options),

@@ -25,12 +25,19 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, limits_of, settings_of
 from foon_asp.questions.comparison_tables import comparison_table, published_table, summary_tables, tidy_rows
 from foon_asp.questions.options import CHART, CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, JOBS
-from foon_asp.questions.posing import Command, one_problem
-from foon_asp.questions.python_arguments import asked_with, at_least
+from foon_asp.questions.posing import Command, pose_problem
+from foon_asp.questions.python_arguments import problem_for_rules, require_at_least
 from foon_asp.questions.question import TABLES, Kind, Option, Role, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.search import Retrieved
-from foon_asp.questions.search_options import COUNT, DEPTH, TIES, known_searches, search_settings, searched
+from foon_asp.questions.search_options import (
+    COUNT,
+    DEPTH,
+    TIES,
+    search_settings,
+    searches_named,
+    usable_searches,
+)
 from foon_asp.resources import published_table as published_file
 from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block
@@ -154,7 +161,7 @@ def _pose_goals(
     if all_makeable:
         used_up = items_of(command.dataset, items, stock, stays)
         return (command.dataset.problem((0,), containers, everything=True, items=used_up),)
-    return one_problem(command, goals_named, containers, items, stock, stays, all_goals=True)
+    return pose_problem(command, goals_named, containers, items, stock, stays, all_goals=True)
 
 
 @question(
@@ -226,17 +233,17 @@ def compare(
         (10, 'executes in another order')
     """
     searches = tuple(searches)
-    chosen = searched(searches)
+    chosen = searches_named(searches)
     if problem.rates is None and not searches:
-        chosen = known_searches(rated=False)
+        chosen = usable_searches(rated=False)
         caller().reporter.warning("greedy-success is left out, and so is success: no success rates are known")
     each_limit = limits_of(options)
     settings = search_settings(ties, count, depth_limit, published, *each_limit)
-    at_least(jobs, 1, "jobs")
+    require_at_least(jobs, 1, "jobs")
     rules = settings_of(options)._replace(deadline=None)
     if rules.replaced is not None:
         raise UserError(f"{rules.replaced}: searches know nothing of other encodings: leave them out")
-    problem = asked_with(problem, rules)
+    problem = problem_for_rules(problem, rules)
     assemble(rules, caller().reporter.warning, problem=problem)  # what is wrong with files is said at once
     if all_makeable or results is not None:  # results are kept with a digest of all the data
         problem = problem.whole
@@ -298,7 +305,7 @@ def _compare_each_goal(
             begun_for = comparisons_question(problem, searches, settings, rules)
             file = stack.enter_context(RowsFile(Path(results), COMPARISONS, begun_for))
             done = file.done
-            for text in file.twice:
+            for text in file.duplicate_warnings:
                 caller().reporter.warning(text)
         remaining = [goal for name, goal in goals.items() if name not in done]
         before = len(goals) - len(remaining)

@@ -32,7 +32,7 @@ _SHARES: dict[str, Callable[[SearchResult], bool | None]] = {
     "used up": lambda result: result.runs_used_up,
 }
 _RARE: dict[str, Callable[[SearchResult], bool]] = {
-    "(cycle)": lambda result: result.waits,
+    "(cycle)": lambda result: result.has_cycle,
     "break a rule": lambda result: bool(result.breaks),
     "† smaller": lambda result: result.beats_the_optimum(Objective.UNITS),
 }
@@ -49,7 +49,7 @@ def tidy_rows(comparison: Comparison) -> Iterator[Json]:
             "verdict": result.verdict,
             "executes": result.executes,
             "runs_used_up": result.runs_used_up,
-            "cycle": result.waits,
+            "cycle": result.has_cycle,
             "missing": missing and missing.node,
             "breaks": result.breaks,
         }
@@ -90,7 +90,7 @@ def comparison_table(comparisons: Sequence[Comparison], used_up_noted: bool) -> 
     if any(result.beats_the_optimum(objective) for result in results for objective in MEASURED):
         yield _BETTER + (", or one that breaks a rule" if broken else "")
     yield from (f"({number}) breaks {rule}" for number, rule in enumerate(broken, 1))
-    if any(result.waits for result in results):
+    if any(result.has_cycle for result in results):
         yield "(cycle) units of the tree wait for each other"
     if any(best.status is Status.FEASIBLE for row in comparisons for best in row.optimum.values()):
         yield "feasible: stopped at the time limit, so that optimum is not proved and has no ratios"
@@ -105,7 +105,7 @@ def _search_cells(result: SearchResult, broken: Sequence[str]) -> Iterator[str |
     else:
         text, style = _EXECUTES[result.verdict]
         numbers = ",".join(str(broken.index(rule) + 1) for rule in result.breaks)
-        yield Cell(text + (" (cycle)" if result.waits else f" ({numbers})" if numbers else ""), style)
+        yield Cell(text + (" (cycle)" if result.has_cycle else f" ({numbers})" if numbers else ""), style)
     yield "" if result.runs_used_up is None else "yes" if result.runs_used_up else "no"
 
 

@@ -16,9 +16,9 @@ from foon_asp.planning.unified import unified_problem
 from foon_asp.problem import Problem
 from foon_asp.questions.common_options import Posed, start_deadline
 from foon_asp.questions.options import AMOUNT, CONTAINERS, GOALS, ITEMS, OBJECTIVES
-from foon_asp.questions.posing import Command, one_problem
-from foon_asp.questions.python_arguments import Objectives, chosen_objectives, whole
-from foon_asp.questions.question import Kind, Option, Role, asked_in_python, question
+from foon_asp.questions.posing import Command, pose_problem
+from foon_asp.questions.python_arguments import Objectives, chosen_objectives, over_whole_network
+from foon_asp.questions.question import Kind, Option, Role, python_question, question
 from foon_asp.questions.result import Result
 from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block
@@ -116,7 +116,7 @@ def _pose_export(
 ) -> tuple[Problem]:
     """Return the problem of the goals; with ``--items set``, it is one in which items are used up."""
     items = "used-up" if items == _MERGED else items or "lasting"
-    return one_problem(command, goals_named, containers, items, **files)
+    return pose_problem(command, goals_named, containers, items, **files)
 
 
 def _has_merged_copies(problem: Problem, items: str | None) -> bool:
@@ -211,7 +211,7 @@ def export(
         raise UserError(f"found target={target!r}, expected pddl")
     chosen = chosen_objectives(problem, objectives)
     if every_unit:
-        problem = whole(problem)
+        problem = over_whole_network(problem)
     with start_deadline(options).watched("writing"):
         task = planning_task(problem, chosen, every_unit, _has_merged_copies(problem, items))
         exported = Exported(
@@ -223,7 +223,7 @@ def export(
     return exported.knowing(task=task)
 
 
-@asked_in_python
+@python_question
 def to_unified_planning(
     problem: Problem,
     objectives: Objectives = "units",
@@ -258,6 +258,6 @@ def to_unified_planning(
         5
     """
     chosen = chosen_objectives(problem, objectives)
-    problem = whole(problem) if every_unit else problem
+    problem = over_whole_network(problem) if every_unit else problem
     with start_deadline(options).watched("writing"):
         return unified_problem(problem, chosen, every_unit, _has_merged_copies(problem, items))

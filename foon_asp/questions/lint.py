@@ -19,9 +19,15 @@ from foon_asp.linting.finding import Finding, SeverityCounts
 from foon_asp.linting.lint_settings import find_settings
 from foon_asp.linting.linted_files import with_tables
 from foon_asp.questions.result import Ending, Result
-from foon_asp.report.lint_findings import annotations, finding_lines, sarif, statistics, summary
+from foon_asp.report.lint_findings import (
+    code_table,
+    finding_lines,
+    github_annotations,
+    sarif_log,
+    summary_line,
+)
 from foon_asp.results.plain_values import plain
-from foon_asp.results.table import Block, rendered
+from foon_asp.results.table import Block, blocks_text
 from foon_asp.results.table_columns import flat_row
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.folder_files import foon_files
@@ -73,11 +79,11 @@ class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):
         Parameters:
             width: The number of columns that lines are wrapped to; ``None`` wraps no line.
         """
-        return rendered([statistics(self.findings), self._summary()], width)
+        return blocks_text([code_table(self.findings), self._summary()], width)
 
     def _summary(self) -> str:
         """Return a line of counts."""
-        return summary(self.findings, self.files, self.mended)
+        return summary_line(self.findings, self.files, self.mended)
 
     def json_dict(self) -> Json:
         """Return the findings and the counts as plain values, without the text of lines over 1000 letters."""
@@ -94,13 +100,13 @@ class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):
 
     def github(self) -> str:
         """Return a workflow command of GitHub for each finding, which shows it beside its line."""
-        return annotations(self.findings)
+        return github_annotations(self.findings)
 
     def sarif(self) -> str:
         """Return the findings as SARIF 2.1.0, which code hosts and editors read."""
         from importlib.metadata import version  # noqa: PLC0415 (seldom asked for)
 
-        return json_text(sarif(self.findings, version("foon-asp")))
+        return json_text(sarif_log(self.findings, version("foon-asp")))
 
 
 def _unless_long(line: str | None, max_letters: int = 1000) -> str | None:

@@ -26,12 +26,12 @@ class PageData(Document, frozen=True, kw_only=True, tag=schema_name("view")):
     """The data that a page shows.
 
     Attributes:
-        answer: null for a whole network.
+        answer: The best tree; null for a page about a whole network.
         rates: The success rate of every unit in the trees, where rates are known.
-        searches: What the published searches return.
-        lasting: Beside a plan, in which items are used up: the answer where they are not.
+        searches: The trees of the published searches.
+        lasting: Where items are used up: the answer if they lasted; else null.
         without_rules: The answer without your rules, where there are some.
-        proof: A certificate, taken apart.
+        proof: The cases and cuts of a certificate.
     """
 
     answer: Answer | None

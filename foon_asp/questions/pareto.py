@@ -18,7 +18,12 @@ from foon_asp.problem import Costs, Objective, Problem, multiplies
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.options import AMOUNT, CHART, CONTAINERS, GOALS, ITEMS, OBJECTIVES
-from foon_asp.questions.python_arguments import Objectives, asked_with, chosen_objectives, usual_objectives
+from foon_asp.questions.python_arguments import (
+    Objectives,
+    chosen_objectives,
+    problem_for_rules,
+    usual_objectives,
+)
 from foon_asp.questions.question import TABLES, Option, question
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.tree import Tree
@@ -42,7 +47,7 @@ from foon_asp.text.json_value import schema_name
 _MIN_OBJECTIVES, _MAX_OBJECTIVES = 2, 3
 
 Box = tuple[int | Fraction | None, ...]
-"""For each objective but the first, what plans cost less than; ``None`` allows any cost."""
+"""By each objective but the first, a bound that the costs of plans are below; ``None`` is no bound."""
 
 
 class Point(Value, frozen=True):
@@ -53,8 +58,8 @@ class Point(Value, frozen=True):
         costs: What it costs by every objective.
         used_up: Whether the steps, each done once, run where items are used up.
         units: The steps, in an order that executes.
-        gone: The ids of the units that only the point before has.
-        new: The ids of the units that the point before does not have.
+        gone: The ids of the units that the tree of the previous point has and this tree lacks.
+        new: The ids of the units that this tree has and the tree of the previous point lacks.
     """
 
     measures: Measures
@@ -71,7 +76,7 @@ class Point(Value, frozen=True):
 
 
 class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pareto")):
-    """The Pareto front: trees of which none is as good as another by every objective and better by one.
+    """The Pareto front: the costs of trees that no other tree dominates, each point with one tree.
 
     Attributes:
         encodings: The folder that replaced the built-in encodings, if any.
@@ -114,15 +119,16 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if the front is complete, ``NEGATIVE`` if no tree exists."""
+        """``DONE`` if the front is complete, ``NEGATIVE`` if no tree exists, else ``LIMIT``."""
         if not self.complete:
             return Ending.LIMIT
         return Ending.DONE if self.points else Ending.NEGATIVE
 
     def show(self) -> Iterator[Block]:
-        """Return the points as a table, each with the differences of its tree from the tree above.
+        """Return what is proved, and the points as a table with the units that change from point to point.
 
-        Where trees were asked for, the units of the first follow, then those that each point drops and adds.
+        If trees were asked for, the units of the first tree follow, and for each further tree the units that
+        it drops (-) and adds (+).
         """
         yield from self.goal_lines()
         yield self._claim()
@@ -132,14 +138,14 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
         if not self.lists_trees:
             yield from self._used_up_lines()
             return
-        for number, (point, tree) in enumerate(zip(self.points, self.task_trees, strict=True)):
-            yield from ("", f"point {number + 1}: {costs_text(point.costs)}")
+        for index, (point, tree) in enumerate(zip(self.points, self.task_trees, strict=True)):
+            yield from ("", f"point {index + 1}: {costs_text(point.costs)}")
             yield from used_up_note(self.problem, tree)
-            yield from step_lines(self._gone(number), "-") if number else step_lines(point.units)
-            yield from step_lines(self._new(number), "+")
+            yield from step_lines(self._dropped_steps(index), "-") if index else step_lines(point.units)
+            yield from step_lines(self._added_steps(index), "+")
 
     def _claim(self) -> str:
-        """Return the claim about the front, in one line."""
+        """Return one line on what is proved: the number of points, and whether these are all."""
         rule = self.conditions
         if self.encodings is not None:
             rule += f", as {self.encodings} has it"
@@ -158,7 +164,7 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
         return f"{points} on the Pareto front of {by}, and no others: proved ({rule})"
 
     def _table(self) -> Table:
-        """Return the points as a table."""
+        """Return a row for each point: its number, its measures, and the motions that go and come."""
         columns = [[str(number) for number in range(1, len(self.points) + 1)]]
         for objective in self.objectives:
             measures = [point.costs.measure(objective) for point in self.points]
@@ -166,20 +172,22 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
                 columns.append(success_texts([Fraction(measure) for measure in measures]))
             else:
                 columns.append([figure_text(objective, measure) for measure in measures])
-        every = range(len(self.points))
-        columns.append([changed_motions(self._gone(number), self._new(number)) for number in every])
+        indices = range(len(self.points))
+        columns.append([changed_motions(self._dropped_steps(i), self._added_steps(i)) for i in indices])
         changes = "units that go (-) and come (+)" if len(self.points) > 1 else ""
         rows = list(zip(*columns, strict=True))
         return Table(["point", *self.objectives, changes], rows, frozenset({len(self.objectives) + 1}))
 
-    def _gone(self, number: int) -> list[Step]:
-        return steps_not_in(self.points[number - 1].units, self.points[number].units) if number else []
+    def _dropped_steps(self, index: int) -> list[Step]:
+        """Return the steps of the previous tree that the tree at ``index`` lacks; none for the first tree."""
+        return steps_not_in(self.points[index - 1].units, self.points[index].units) if index else []
 
-    def _new(self, number: int) -> list[Step]:
-        return steps_not_in(self.points[number].units, self.points[number - 1].units) if number else []
+    def _added_steps(self, index: int) -> list[Step]:
+        """Return the steps that the tree at ``index`` adds to the previous tree; none for the first tree."""
+        return steps_not_in(self.points[index].units, self.points[index - 1].units) if index else []
 
     def _used_up_lines(self) -> Iterator[str]:
-        """Return a note with the points whose trees would not run if items were used up."""
+        """Yield a note on the trees that would not run if items were used up; nothing without such trees."""
         runs = (point.used_up is None or point.used_up.runs is not False for point in self.points)
         points = [str(number) for number, run in enumerate(runs, 1) if not run]
         if points:
@@ -206,8 +214,8 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
         write_front_chart(plotted, Path(file))
 
 
-class _Point(NamedTuple):
-    """A tree of the front by unit ids in an order that executes, and its costs."""
+class _FoundTree(NamedTuple):
+    """A tree of the front: its unit ids in an order that executes, and its costs."""
 
     units: tuple[int, ...]
     costs: Costs
@@ -273,7 +281,7 @@ def pareto(
             f"expected {_MIN_OBJECTIVES} or {_MAX_OBJECTIVES} to trade against each other"
         )
     settings = settings_of(options)
-    problem = asked_with(problem, settings)
+    problem = problem_for_rules(problem, settings)
     # Lexicographic epsilon-constraint method. The leading objective is success, if it is chosen, since no
     # sum can bound it; else an objective with fractions, which a bound would round; else the first. Each
     # tree is optimal by the leading objective, then by the others, among the trees that are better than
@@ -284,7 +292,7 @@ def pareto(
     leading = min(chosen, key=lambda objective: (not multiplies(objective), objective.row.whole))
     order = leading, *(objective for objective in chosen if objective is not leading)
     began = time.monotonic()
-    points: list[_Point] = []
+    points: list[_FoundTree] = []
     complete = True
     next_best = _best_trees if problem.items is None else _best_plans
     try:
@@ -292,8 +300,8 @@ def pareto(
             if outcome.units is None or outcome.costs is None or outcome.status is not Status.OPTIMAL:
                 complete = False
                 break
-            point = _Point(outcome.units, outcome.costs)
-            _require_apart(Postconditions(problem, chosen, settings), point, points)
+            point = _FoundTree(outcome.units, outcome.costs)
+            _require_incomparable(Postconditions(problem, chosen, settings), point, points)
             points.append(point)
     except KeyboardInterrupt:
         complete = False  # the points found so far are on the front
@@ -303,14 +311,16 @@ def pareto(
         **head_of(problem, chosen),
         encodings=settings.replaced,
         complete=complete,
-        points=tuple(_points(problem, chosen, points)),
+        points=tuple(_front_points(problem, chosen, points)),
         seconds=seconds,
     )
     return front.knowing(problem=problem, lists_trees=trees)
 
 
-def _points(problem: Problem, objectives: Sequence[Objective], points: Sequence[_Point]) -> Iterator[Point]:
-    """Return trees as points of the front, each with its differences from the point before."""
+def _front_points(
+    problem: Problem, objectives: Sequence[Objective], points: Sequence[_FoundTree]
+) -> Iterator[Point]:
+    """Yield a point of the front for each tree, with the units that change from the previous tree."""
     before: CostedTree | None = None
     for units, costs in points:
         tree = costed_tree(problem, units, costs)
@@ -322,32 +332,34 @@ def _points(problem: Problem, objectives: Sequence[Objective], points: Sequence[
 
 
 def _best_trees(
-    problem: Problem, order: tuple[Objective, ...], settings: Settings, points: Sequence[_Point]
+    problem: Problem, order: tuple[Objective, ...], settings: Settings, points: Sequence[_FoundTree]
 ) -> Iterator[Outcome]:
-    """Yield trees of the front, each better than all before by an objective other than the first.
+    """Yield outcomes with trees of the front, by the lexicographic epsilon-constraint method.
 
-    The method is the lexicographic epsilon-constraint method, with one search more than there are points. An
-    outcome without a proof is the last.
+    Each tree is the best by ``order`` among those that beat every tree before by an objective other than the
+    first. The caller appends each tree to ``points`` before it takes the next. There is one search more than
+    there are points. The caller stops at an outcome without a proof.
     """
     reporter = caller().reporter
     while True:
         bounded_settings = settings
         if points:
-            nearest_costs = _nearest([point.costs for point in points], order[1:])
-            bounded_settings = settings._replace(bounded=better_than(nearest_costs, order[1:]))
-        outcome = solve(problem, order, bounded_settings, _Silent(reporter) if points else reporter)
+            minimal_costs = _pareto_minimal([point.costs for point in points], order[1:])
+            bounded_settings = settings._replace(bounded=better_than(minimal_costs, order[1:]))
+        outcome = solve(problem, order, bounded_settings, _WithoutWarnings(reporter) if points else reporter)
         if outcome.status is Status.INFEASIBLE:
             return
         yield outcome
 
 
 def _best_plans(
-    problem: Problem, order: tuple[Objective, ...], settings: Settings, points: Sequence[_Point]
+    problem: Problem, order: tuple[Objective, ...], settings: Settings, points: Sequence[_FoundTree]
 ) -> Iterator[Outcome]:
-    """Yield the best plan of one box after another, as :func:`_best_trees` yields trees.
+    """Yield outcomes with plans of the front, each the best by ``order`` in the boxes that remain.
 
-    A box is bounded by one cost for each objective; together, the boxes cover all costs that are better
-    than each point by some objective. The best plan of a box is kept until the box is divided.
+    A box has an upper bound on the costs by each objective but the first. Together, the boxes contain all
+    costs that beat each plan before by such an objective. A box is solved once. The box that a plan lies in
+    is then divided. An outcome without a proof is yielded, too; the caller stops there.
     """
     reporter, others = caller().reporter, order[1:]
     boxes: list[Box] = [(None,) * len(others)]
@@ -355,10 +367,12 @@ def _best_plans(
     while True:
         for box in boxes:
             if box not in solved:
-                below = tuple({o: bound} for o, bound in zip(others, box, strict=True) if bound is not None)
-                bounded_settings = settings._replace(bounded=Bounded(below=below))
+                upper_bounds = tuple(
+                    {o: bound} for o, bound in zip(others, box, strict=True) if bound is not None
+                )
+                bounded_settings = settings._replace(bounded=Bounded(below=upper_bounds))
                 solved[box] = solve(
-                    problem, order, bounded_settings, _Silent(reporter) if points else reporter
+                    problem, order, bounded_settings, _WithoutWarnings(reporter) if points else reporter
                 )
                 if solved[box].status not in {Status.OPTIMAL, Status.INFEASIBLE}:
                     yield solved[box]
@@ -371,11 +385,14 @@ def _best_plans(
         )
         assert best.costs is not None
         yield best
-        boxes = _divided(boxes, tuple(map(best.costs.measure, others)))
+        boxes = _divide_boxes(boxes, tuple(map(best.costs.measure, others)))
 
 
-def _divided(boxes: Sequence[Box], point: Sequence[int | Fraction]) -> list[Box]:
-    """Divide the boxes that contain a point, and drop boxes that lie inside another one."""
+def _divide_boxes(boxes: Sequence[Box], point: Sequence[int | Fraction]) -> list[Box]:
+    """Replace each box that contains a point by the boxes of smaller costs; drop boxes inside other boxes.
+
+    A box is divided into one box for each objective, in which that cost is below the cost of the point.
+    """
     divided = set[Box]()
     for box in boxes:
         if all(bound is None or cost < bound for cost, bound in zip(point, box, strict=True)):
@@ -383,21 +400,24 @@ def _divided(boxes: Sequence[Box], point: Sequence[int | Fraction]) -> list[Box]
         else:
             divided.add(box)
 
-    def holds(box: Box, inner: Box) -> bool:
+    def contains(box: Box, inner: Box) -> bool:
+        """Return whether all costs in another box are in ``box``, too."""
         return box != inner and all(
             bound is None or (inner_bound is not None and inner_bound <= bound)
             for bound, inner_bound in zip(box, inner, strict=True)
         )
 
-    return [inner for inner in divided if not any(holds(box, inner) for box in divided)]
+    return [inner for inner in divided if not any(contains(box, inner) for box in divided)]
 
 
-def _require_apart(holds: Postconditions, point: _Point, points: Sequence[_Point]) -> None:
-    """Require that a point of the front neither weakly dominates another point nor is weakly dominated."""
-    key = point.costs.key(holds.levels)
+def _require_incomparable(
+    postconditions: Postconditions, point: _FoundTree, points: Sequence[_FoundTree]
+) -> None:
+    """Require that ``point`` is better than each other point by some objective, and worse by another."""
+    key = point.costs.key(postconditions.levels)
     for other in points:
-        other_key = other.costs.key(holds.levels)
-        holds.require(
+        other_key = other.costs.key(postconditions.levels)
+        postconditions.require(
             any(a < b for a, b in zip(key, other_key, strict=True))
             and any(a > b for a, b in zip(key, other_key, strict=True)),
             partial(
@@ -408,10 +428,11 @@ def _require_apart(holds: Postconditions, point: _Point, points: Sequence[_Point
         )
 
 
-def _nearest(candidates: Sequence[Costs], objectives: Sequence[Objective]) -> list[Costs]:
-    """Return the Pareto-minimal costs by ``objectives``; the other costs add no further bound."""
+def _pareto_minimal(candidates: Sequence[Costs], objectives: Sequence[Objective]) -> list[Costs]:
+    """Return the candidates that no other candidate dominates by ``objectives``; equal costs stand once."""
 
     def key(costs: Costs) -> tuple[int | Fraction, ...]:
+        """Return the costs by each of the objectives."""
         return tuple(map(costs.measure, objectives))
 
     best: list[Costs] = []
@@ -421,8 +442,8 @@ def _nearest(candidates: Sequence[Costs], objectives: Sequence[Objective]) -> li
     return best
 
 
-class _Silent(Reporter):
-    """A reporter that forwards progress, and no warnings: the first search gave them."""
+class _WithoutWarnings(Reporter):
+    """A reporter that forwards trees and bounds; warnings are dropped, since the first search gave them."""
 
     def __init__(self, reporter: Reporter) -> None:
         self._reporter = reporter

@@ -1,4 +1,4 @@
-"""Posing: from the options and data of a command line to the problem of a question."""
+"""Posing: functions that make the problem of a question from the options and data of a command line."""
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Command(Protocol):
-    """The command that a question is asked by."""
+    """A command line with a question: its data and options, as functions that pose its problem see them."""
 
     @property
     def dataset(self) -> Dataset:
@@ -32,13 +32,13 @@ class Command(Protocol):
         """Whether the command names a network."""
 
     def given(self, option: str) -> bool:
-        """Return whether an option, by name, is on the command line itself."""
+        """Return whether an option, by the name of its parameter, is on the command line itself."""
 
     def unnamed_goals(self) -> list[ObjectNode]:
-        """Return the goals that are answered one by one, for a command that names no goal."""
+        """Return the goals of a command that names none; each goal is then answered by itself."""
 
     def add_sources(self, sources: Sequence[Path]) -> None:
-        """Add networks that are named without an option; the data are read anew."""
+        """Add files to the networks of the command; the data are read anew on the next access."""
 
     def reading(self) -> AbstractContextManager[object]:
         """Return a context in which reading stops at the limits of the command."""
@@ -58,11 +58,11 @@ DATA = (
 """The options of a command that name data."""
 
 Pose = Callable[..., tuple[object, ...]]
-"""Makes what a function is asked about, its first arguments: of a :class:`Command`, and the options of the
-problem by name."""
+"""A function from a :class:`Command`, and the options of its problem by name, to the first arguments of a
+question."""
 
 
-def one_problem(
+def pose_problem(
     command: Command,
     goals_named: Sequence[str],
     containers: str,
@@ -72,11 +72,12 @@ def one_problem(
     all_goals: bool = False,
     amounts: Sequence[int] = (),
 ) -> tuple[Problem]:
-    """Pose one problem, whose tree makes all goals that are named; with amounts of goals, items are used up.
+    """Return the problem of the named goals, as a tuple of one; a tree of it makes all of them.
 
-    Items last for a question that has no ``items``. With ``all_goals``, each goal is a question of its own:
-    the named goals, or all of the goals file. Of a large store, the units that the goals can need are read
-    on first access.
+    With ``all_goals``, the goals of the problem are those named, or all of the goals file; the caller solves
+    for each goal by itself. With ``amounts``, the copies wanted of each goal, items are used up. ``items`` is
+    ``None`` for questions without this option; items then last. Of a large store, the units that the
+    goals can need are read on first access. Raises :class:`UserError` if there is no goal.
     """
     dataset = command.dataset
     with command.reading():
@@ -88,17 +89,18 @@ def one_problem(
         return (dataset.nearby(tuple(dict.fromkeys(named)), containers, used_up),)
 
 
-def the_data(command: Command) -> "tuple[Foon]":
-    """Return the data as the subject of a question."""
+def pose_data(command: Command) -> "tuple[Foon]":
+    """Return the data of the command as a :class:`Foon`, in a tuple of one."""
     from foon_asp.foon import Foon  # noqa: PLC0415 (for few questions)
 
     return (Foon(command.dataset, "the data"),)
 
 
-def is_for_goals(command: Command, goals_named: Sequence[str]) -> bool:
-    """Return whether a picture is of a tree: goals are named, or a recipe is named without an option.
+def is_picture_of_tree(command: Command, goals_named: Sequence[str]) -> bool:
+    """Return whether a picture is of a tree; otherwise, it is of the whole network.
 
-    Raises :class:`UserError` for a recipe with several goals, since a picture is of one tree.
+    It is of a tree if goals are named, or if a recipe is named without an option. Raises :class:`UserError`
+    for a recipe with several goals, since a picture is of one tree.
     """
     if goals_named or not command.given("sources"):
         return bool(goals_named)
@@ -111,6 +113,6 @@ def is_for_goals(command: Command, goals_named: Sequence[str]) -> bool:
     return True
 
 
-def no_data(command: Command, **named: object) -> tuple[object, ...]:
-    """Return only the values of the question's own options, for a command without options for data."""
+def pose_without_data(command: Command, **named: object) -> tuple[object, ...]:
+    """Return the values of the question's own options, in order; the command has no options for data."""
     return tuple(named.values())

@@ -1,4 +1,4 @@
-"""Posing the problem of a file with a tree or plan: its goals, and its data if none are named."""
+"""The problem of a tree or plan in a file, with its goals, and its data where the command names none."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
@@ -11,12 +11,12 @@ from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, Network, ObjectNode, counted, unit_at_level
 from foon_asp.problem import Problem, UsedUp
 from foon_asp.questions.caller import caller
-from foon_asp.questions.posing import Command, one_problem
+from foon_asp.questions.posing import Command, pose_problem
 from foon_asp.questions.tree import Tree, read_answer
 from foon_asp.text.answer_file import ListedTree
 
 
-def a_plan(
+def pose_plan(
     command: Command,
     goals_named: Sequence[str],
     containers: str,
@@ -26,19 +26,22 @@ def a_plan(
     amounts: Sequence[int] = (),
     **named: Path,
 ) -> tuple[Problem, Tree]:
-    """Read a plan, and pose its problem; options of the command override the fields of an answer.
+    """Read a plan from a file, and return its problem and the plan.
 
-    ``named`` has one entry: the file of the plan, by the name of the question's parameter.
+    ``named`` has one entry: the file, by the name of the question's parameter. Goals and a container rule on
+    the command line override those that an answer in the file states. Data are those of
+    :func:`data_for_trees`.
     """
     (plan,) = named.values()
     answer = read_answer(plan)
-    settle_data(command, {plan: answer})
+    data_for_trees(command, {plan: answer})
     if not command.given("containers"):
         containers = answer.containers or containers
     dataset = command.dataset
     with command.reading():
 
         def used_up(goals: Sequence[int]) -> UsedUp | None:
+            """Return how items are used up for goals, by id, in the amounts named or of the answer."""
             wanted = [answer.wanted.get(dataset.names.node(goal), 1) for goal in goals]
             stated = amounts or (wanted if answer.wanted and items != "lasting" else ())
             return items_for(dataset, goals, stated, items, stock, stays)
@@ -47,22 +50,23 @@ def a_plan(
     return tree.problem, tree
 
 
-def a_plan_or_state(
+def pose_plan_or_state(
     command: Command, goals_named: Sequence[str], state: Path | None, plan: Path | None, **options: Any
 ) -> tuple[Problem, Tree | None]:
-    """Read a plan, and pose its problem; with a ``state``, pose the goals named, and return no plan.
+    """Return the problem and the plan of a file; with a ``state``, the problem of the goals and no plan.
 
-    The file of a plan beside a state serves as one more network.
+    With a state, items last, and the file of a plan serves as one more network. Raises :class:`UserError`
+    without both.
     """
     if state is None:
         if plan is None:
             raise UserError("found no plan: name a file with one, or a state with --state")
-        return a_plan(command, goals_named, plan=plan, **options)
+        return pose_plan(command, goals_named, plan=plan, **options)
     if command.given("items") and options["items"] != "lasting":
         raise UserError("trace --state is not built for items that are used up (--items used-up)")
     if plan is not None:
         command.add_sources((plan,))
-    return *one_problem(command, goals_named, options["containers"]), None
+    return *pose_problem(command, goals_named, options["containers"]), None
 
 
 def listed_tree(
@@ -73,10 +77,11 @@ def listed_tree(
     containers: str,
     used_up: Callable[[Sequence[int]], UsedUp | None] | None = None,
 ) -> Tree:
-    """Return the tree that a file lists, for the named goals or the goals of an answer.
+    """Return the tree that a file lists, for the named goals or else the goals of the answer in the file.
 
-    Without any such goal, the tree is for the only goal of the data, or for what the last step makes.
-    ``used_up`` returns for goals, by id, how items are used up; without it, items last.
+    Without any such goal, the tree is for the only goal of the data, or else for what the last step makes; a
+    warning names the latter. ``used_up`` returns for goals, by id, how items are used up; without it, items
+    last. Raises :class:`UserError` where no goal can be found.
     """
     ordered = not answer.numbers
     listed = answer.with_units(file, lambda: dataset.whole_network).units or ()
@@ -87,21 +92,22 @@ def listed_tree(
     elif len(dataset.listed) == 1:
         goals = dataset.goals(())
     elif listed and ordered:
-        goals = dataset.named_goals(_last_made(listed[-1][0]))
+        goals = dataset.named_goals(_goals_of_last_unit(listed[-1][0]))
     else:
-        why = "use(U) names no goal, and has no last step" if listed else "there is no step"
-        raise UserError(f"{file}: {why}; name a goal with --goal")
+        fault = "use(U) names no goal, and has no last step" if listed else "there is no step"
+        raise UserError(f"{file}: {fault}; name a goal with --goal")
     problem = dataset.problem(goals, containers, items=used_up and used_up(goals))
     if not goals_named and not answer.goals and (len(dataset.listed) != 1 or dataset.goals_from):
-        shown = " + ".join(map(str, problem.goal_nodes))
-        caller().reporter.warning(f"No --goal: using what the last step makes: {shown}")
+        goals_text = " + ".join(map(str, problem.goal_nodes))
+        caller().reporter.warning(f"No --goal: using what the last step makes: {goals_text}")
     return Tree.given(problem, [unit for unit, _ in listed], [source for _, source in listed])
 
 
-def settle_data(command: Command, files: Mapping[Path, ListedTree]) -> Dataset:
-    """Return the data for trees in files: those that the command names.
+def data_for_trees(command: Command, files: Mapping[Path, ListedTree]) -> Dataset:
+    """Return the data that trees in ``files`` are about.
 
-    If it names none, they are the files of :func:`own_networks`; without any, the bundled kitchen.
+    If the command names data, it is these. Otherwise, the files of :func:`own_networks` are added to the
+    command as its data; without such files, the data are the bundled kitchen.
     """
     if not command.names_data:
         command.add_sources(own_networks(command.dataset.data.network, files))
@@ -109,35 +115,37 @@ def settle_data(command: Command, files: Mapping[Path, ListedTree]) -> Dataset:
 
 
 def own_networks(kitchen: Network, files: Mapping[Path, ListedTree]) -> Sequence[Path]:
-    """Return the files with trees that also serve as the network, where no data are named.
+    """Return the files with trees that serve as the network, too, for a command that names no data.
 
-    Returns no file if the bundled ``kitchen`` has at least half of the units; it is then the network. Fewer
-    shared units may be chance, and a program may have made up some units of a tree. Raises :class:`UserError`
-    for an answer about other data, since an answer holds only a part of its data.
+    There is no such file if the bundled ``kitchen`` has at least half of the units: then it is the network.
+    Sharing fewer units may be chance; the others may be made up by the program that wrote the tree. A warning
+    names the network, unless the bundled kitchen has all units. Raises :class:`UserError` for an answer about
+    other data, since an answer holds only a part of its data.
     """
     listed = [listed_unit for tree in files.values() for listed_unit in tree.units or ()]
-    bundled = units_in(kitchen, [unit for unit, _ in listed])
-    names = ", ".join(map(str, files))
-    if bundled == len(listed):
+    bundled_count = count_units_in(kitchen, [unit for unit, _ in listed])
+    file_names = ", ".join(map(str, files))
+    if bundled_count == len(listed):
         return ()
-    if 2 * bundled >= len(listed):
+    if 2 * bundled_count >= len(listed):
         caller().reporter.warning(
-            f"{names}: no --network: using the bundled kitchen, which has {bundled} of "
+            f"{file_names}: no --network: using the bundled kitchen, which has {bundled_count} of "
             f"{counted(len(listed), 'unit')}"
         )
         return ()
-    if texts := [file for file, tree in files.items() if not tree.goals]:
-        caller().reporter.warning(f"No --network: using {' and '.join(map(str, texts))}")
-        return texts
-    places = ", ".join(dict.fromkeys(source.file for _, source in listed))
-    raise UserError(f"{names}: not of the bundled kitchen; name the data with --network: {places}")
+    if text_files := [file for file, tree in files.items() if not tree.goals]:
+        caller().reporter.warning(f"No --network: using {' and '.join(map(str, text_files))}")
+        return text_files
+    source_files = ", ".join(dict.fromkeys(source.file for _, source in listed))
+    raise UserError(f"{file_names}: not of the bundled kitchen; name the data with --network: {source_files}")
 
 
-def units_in(network: Network, units: Collection[FunctionalUnit]) -> int:
-    """Return the number of units that a network has."""
+def count_units_in(network: Network, units: Collection[FunctionalUnit]) -> int:
+    """Return how many of the units are in a network, compared at its level."""
     return sum(network.unit_id(unit_at_level(unit, network.level)) is not None for unit in units)
 
 
-def _last_made(unit: FunctionalUnit) -> list[ObjectNode]:
+def _goals_of_last_unit(unit: FunctionalUnit) -> list[ObjectNode]:
+    """Return the first output that is no input, in a list; if all outputs are inputs, return all."""
     made = [node for node in unit.outputs if node not in unit.inputs]
     return made[:1] or list(unit.outputs)

@@ -1,4 +1,4 @@
-"""Arguments of Python callers, converted for the other rooms; errors use the words of Python."""
+"""Arguments of Python callers, checked and converted; errors use the words of Python."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
@@ -15,18 +15,19 @@ from foon_asp.questions.caller import caller
 from foon_asp.rules.passed_constraint import Constraint, find_constraint, given_constraint
 
 Objectives = str | Iterable[str]
-"""An objective, a list by commas, or several: the first counts most."""
+"""Names of objectives: a text with one or several, separated by commas, or several texts. The first counts
+most."""
 
 
 def chosen_objectives(problem: Problem, names: Objectives) -> tuple[Objective, ...]:
-    """Return parsed objectives; raises :class:`UserError` for one without its rates or prices.
+    """Return the named objectives; raises :class:`UserError` for one whose rates or prices are not known.
 
-    With stand-ins, dissimilarity comes first, unless it is named.
+    In a problem with stand-ins, dissimilarity is put first, unless it is named.
     """
     objectives = parse_objectives([names] if isinstance(names, str) else names, problem.measures)
     if problem.stand_ins is not None:
         objectives = with_dissimilarity(objectives)
-    with reading():
+    with limited_reading():
         problem.require_known_for(objectives)
     return objectives
 
@@ -34,9 +35,9 @@ def chosen_objectives(problem: Problem, names: Objectives) -> tuple[Objective, .
 def usual_objectives(
     problem: Problem, names: Objectives, usual: Sequence[str], instead: Sequence[str]
 ) -> Objectives:
-    """Return the named objectives, or else the usual ones of a question.
+    """Return the names if there are any, or else the ``usual`` objectives of a question.
 
-    Where no success rates are known, the usual ones are ``instead``, and a warning says so.
+    If no success rates are known, ``instead`` are the usual objectives, and a warning says so.
     """
     if names:
         return names
@@ -47,46 +48,53 @@ def usual_objectives(
     return instead
 
 
-def given_constraints(constraints: Files) -> tuple[Constraint, ...]:
-    """Read one constraint or several: paths, rules, and names of ready-made ones."""
-    one = isinstance(constraints, str | PathLike)
-    return tuple(map(given_constraint, [constraints] if one else constraints))  # type: ignore[arg-type]
+def as_constraints(constraints: Files) -> tuple[Constraint, ...]:
+    """Return one constraint or several as a tuple: paths, texts of rules, and names of ready-made ones."""
+    is_single = isinstance(constraints, str | PathLike)
+    return tuple(map(given_constraint, [constraints] if is_single else constraints))  # type: ignore[arg-type]
 
 
-def asked_with(problem: Problem, settings: Settings, objectives: Sequence[Objective] = ()) -> Problem:
-    """Return the problem over all data if the settings have rules that may be about any unit.
+def problem_for_rules(problem: Problem, settings: Settings, objectives: Sequence[Objective] = ()) -> Problem:
+    """Return the problem over the whole network if rules or stand-ins need this, else unchanged.
 
-    The result also has all stand-ins, unless only the best tree by ``objectives`` is wanted and
-    dissimilarity is the first of them.
+    Rules in ``settings`` need it if they may be about units beyond those that the goals can need. Stand-ins
+    need it unless only the best tree by ``objectives`` is wanted, and dissimilarity is the first objective.
     """
     if not problem.has_stand_ins_for(objectives):
-        return whole(problem)
+        return over_whole_network(problem)
     from foon_asp.asp.assembly import need_whole_network  # noqa: PLC0415 (where there may be rules)
 
-    return whole(problem) if need_whole_network(problem, settings) else problem
+    return over_whole_network(problem) if need_whole_network(problem, settings) else problem
 
 
-def whole(problem: Problem) -> Problem:
-    """Return a problem over the whole network; a command stops reading it at its limits."""
-    with reading():
+def over_whole_network(problem: Problem) -> Problem:
+    """Return the problem over the whole network, which is read; reading stops at the limits of the caller."""
+    with limited_reading():
         return problem.whole
 
 
-def read(problem: Problem) -> Problem:
-    """Read everything that a problem can need, if that was deferred; a command stops it at its limits."""
-    with reading():
+def read_deferred(problem: Problem) -> Problem:
+    """Read the units that the goals can need, if that was deferred, and return the same problem.
+
+    Reading stops at the limits of the caller.
+    """
+    with limited_reading():
         assert problem.goals
     return problem
 
 
-def reading() -> AbstractContextManager[object]:
-    """Return a context in which reading stops at the limits of the command that asks, if it has any."""
+def limited_reading() -> AbstractContextManager[object]:
+    """Return a context in which reading stops at the limits of the caller, if it has any."""
     deadline = caller().deadline
     return nullcontext() if deadline is None else deadline.watched("reading", late=True)
 
 
 def constraint_weights(weight_of_file: Mapping[File, int]) -> dict[Constraint, int]:
-    """Read the weights of constraints, whole numbers from 1."""
+    """Return the weights by constraint in place of its file or name.
+
+    Raises :class:`UserError` for a weight that is no whole number from 1, and for a constraint with two
+    weights.
+    """
     from foon_asp.asp.search_tuning import SEARCH  # noqa: PLC0415 (where there are rules)
 
     weights: dict[Constraint, int] = {}
@@ -103,8 +111,13 @@ def constraint_weights(weight_of_file: Mapping[File, int]) -> dict[Constraint, i
     return weights
 
 
-def read_as(problem: Problem, items: str) -> Problem:
-    """Return a problem with items that are ``used-up`` or ``lasting``, as a plan for it is read."""
+def with_items(problem: Problem, items: str) -> Problem:
+    """Return the problem with ``items``, which are ``used-up`` or ``lasting``.
+
+    A problem whose items are used up already stays as it is for ``used-up``. For another problem, the stock
+    and what stays are those of its data. Raises :class:`UserError` for another word, and for used-up items at
+    a level without contents.
+    """
     if items not in ITEMS:
         raise UserError(f"found the items {items!r}, expected one of {', '.join(ITEMS)}")
     if items == "lasting":
@@ -117,8 +130,8 @@ def read_as(problem: Problem, items: str) -> Problem:
     return replace(problem, items=used_up)
 
 
-def at_least(number: int, least: int, what: str) -> int:
-    """Return a number; raises :class:`UserError` if it is below a minimum."""
-    if number < least:
-        raise UserError(f"found {what}={number}, expected a whole number from {least}")
+def require_at_least(number: int, minimum: int, argument: str) -> int:
+    """Return a number; raises :class:`UserError` about ``argument``, its name, if it is below ``minimum``."""
+    if number < minimum:
+        raise UserError(f"found {argument}={number}, expected a whole number from {minimum}")
     return number

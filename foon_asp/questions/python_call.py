@@ -1,4 +1,4 @@
-"""The wrapper of public functions: paths or data for a problem, limits, progress and cancelling."""
+"""The wrapper of public functions, which take a path or data for a problem, and report progress."""
 
 import functools
 import inspect
@@ -35,53 +35,65 @@ HELP = {
 class _Listener(Reporter):
     """A reporter that passes progress to a function, and warnings to the caller."""
 
-    def __init__(self, tell: OnProgress, warned: Reporter) -> None:
-        self._tell, self._warned = tell, warned
+    def __init__(self, on_progress: OnProgress, reporter: Reporter) -> None:
+        self._on_progress, self._reporter = on_progress, reporter
         self._progress = Progress()
 
     def warning(self, message: str) -> None:
-        """Pass on a warning."""
-        self._warned.warning(message)
+        """Pass a warning on to the caller's reporter."""
+        self._reporter.warning(message)
 
     def tree(self, costs: Costs) -> None:
-        """Report a tree."""
+        """Report the progress with the costs of a new incumbent."""
         self._report(self._progress._replace(costs=costs))
 
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
-        """Report a bound."""
+        """Report the progress with a new bound by an objective."""
         self._report(self._progress._replace(bounds={**self._progress.bounds, objective: bound}))
 
     def step(self, word: str, done: int, total: int) -> None:
-        """Report an answer."""
+        """Report the progress with the numbers of answers that are done and in total."""
         self._report(self._progress._replace(done=done, total=total))
 
     def _report(self, progress: Progress) -> None:
+        """Keep the progress for the next report, and call the function with it."""
         self._progress = progress
-        self._tell(progress)
+        self._on_progress(progress)
 
 
-def called_in_python(ask: Callable[P, T], signature: inspect.Signature) -> Callable[P, T]:
-    """Wrap a function so that it takes a path or data for a problem, ``cancel`` and ``on_progress``.
+def wrap_for_python(ask: Callable[P, T], signature: inspect.Signature) -> Callable[P, T]:
+    """Return a function that also takes a path or data for a problem, ``cancel`` and ``on_progress``.
 
-    Arguments are checked by the ``signature``.
+    In a call from Python, arguments are checked against the ``signature``; a command has read them already.
+    The token ``cancel`` ends the call with what was found by then; if this takes too long, the call raises
+    :class:`StoppedError`. The function ``on_progress`` gets each :class:`Progress`.
     """
     name, check = ask.__name__, checker(ask, signature)
 
     @functools.wraps(ask)
     def wrapped(*about: P.args, **named: P.kwargs) -> T:
+        """Pose the problem, check the arguments, and call the function with its limits and reporter."""
         if is_python():  # commands hand over what they have read
-            about = posed_in_python(name, signature.parameters, about, named)
+            about = arguments_with_problem(name, signature.parameters, about, named)
             check(about, named)
         token: Any = named.pop("cancel", None)
-        tell: Any = named.pop("on_progress", None)
-        if token is None and tell is None:
+        on_progress: Any = named.pop("on_progress", None)
+        if token is None and on_progress is None:
             with stoppable(None, None, f"asking {name}") if is_python() else nullcontext():
                 return ask(*about, **named)
-        who = caller()
-        reporter = who.reporter if tell is None else _Listener(tell, who.reporter)
+        current_caller = caller()
+        reporter = (
+            current_caller.reporter
+            if on_progress is None
+            else _Listener(on_progress, current_caller.reporter)
+        )
         with (
             stoppable(None, token, f"asking {name}") as deadline,
-            asked_by(who._replace(reporter=reporter, deadline=who.deadline or Deadline(within=deadline))),
+            asked_by(
+                current_caller._replace(
+                    reporter=reporter, deadline=current_caller.deadline or Deadline(within=deadline)
+                )
+            ),
         ):
             return ask(*about, **named)
 
@@ -89,13 +101,14 @@ def called_in_python(ask: Callable[P, T], signature: inspect.Signature) -> Calla
     return wrapped
 
 
-def posed_in_python(
+def arguments_with_problem(
     name: str, parameters: Mapping[str, object], about: tuple[Any, ...], named: dict[str, Any]
 ) -> Any:
-    """Return the arguments of a question, with a problem in place of a path or of data.
+    """Return the positional arguments of a question, with a problem in place of a path or of data.
 
-    Removes the names that pose the problem from ``named``. Raises :class:`UserError` for a call without a
-    subject, or with a goal beside a problem, which has its own.
+    ``named`` is changed in place: the goal and the container rule of the problem are removed, and
+    ``objective`` becomes ``objectives``. Raises :class:`UserError` for a call without a subject, and for a
+    goal beside a problem, which has its own.
     """
     from foon_asp.foon import Foon, load  # noqa: PLC0415 (commands ask about what they have read)
 
@@ -104,22 +117,22 @@ def posed_in_python(
     subject = next(iter(parameters))
     if subject not in {"problem", "about"}:
         return about
-    first = about[0] if about else named.pop(subject, None)
-    if first is None:
+    subject_value = about[0] if about else named.pop(subject, None)
+    if subject_value is None:
         raise UserError(f"{name} of what? {name}('eggs.txt'), or {name}(foon_asp.load(), goal='macaroni')")
     is_whole = subject == "about" and "goal" not in named  # the data themselves are the subject
-    names = [option for option in _POSING if option in named and option in parameters and not is_whole]
-    posing = {option: named.pop(option) for option in names}
-    if isinstance(first, Problem) and posing:
+    names_given = [option for option in _POSING if option in named and option in parameters and not is_whole]
+    posing = {option: named.pop(option) for option in names_given}
+    if isinstance(subject_value, Problem) and posing:
         raise UserError(f"{name}: a problem has its own {' and '.join(posing)}; Foon.problem takes them")
-    if not isinstance(first, str | PathLike | Foon):
-        return (first, *about[1:])
-    if isinstance(first, str) and not Path(first).exists():
-        hint = f"a goal of the bundled kitchen: {name}(foon_asp.load(), goal={first!r})"
-        raise UserError(f"no such file or folder: {first} ({hint})")
-    foon = first if isinstance(first, Foon) else load(first)
+    if not isinstance(subject_value, str | PathLike | Foon):
+        return (subject_value, *about[1:])
+    if isinstance(subject_value, str) and not Path(subject_value).exists():
+        hint = f"a goal of the bundled kitchen: {name}(foon_asp.load(), goal={subject_value!r})"
+        raise UserError(f"no such file or folder: {subject_value} ({hint})")
+    foon = subject_value if isinstance(subject_value, Foon) else load(subject_value)
     if is_whole:
         return (foon, *about[1:])
     goals = posing.pop("goal", ())
-    one = isinstance(goals, str | ObjectNode)
-    return (foon.problem(*([goals] if one else goals), **posing), *about[1:])
+    is_single = isinstance(goals, str | ObjectNode)
+    return (foon.problem(*([goals] if is_single else goals), **posing), *about[1:])

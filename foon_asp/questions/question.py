@@ -10,8 +10,8 @@ from typing import NamedTuple, ParamSpec, TypeVar, get_args
 from foon_asp.errors import UserError
 from foon_asp.problem import DEFAULT_RULE, Problem
 from foon_asp.questions.docstring import complete_docstring, docstring_entries
-from foon_asp.questions.posing import Pose, one_problem
-from foon_asp.questions.python_call import HELP, called_in_python
+from foon_asp.questions.posing import Pose, pose_problem
+from foon_asp.questions.python_call import HELP, wrap_for_python
 from foon_asp.questions.result import Result
 
 TABLES = ("text", "json", "csv", "markdown")
@@ -25,7 +25,7 @@ R = TypeVar("R", bound=Result)
 
 
 class Kind(StrEnum):
-    """The type that the text of an option is parsed as."""
+    """The type that the text of an option is parsed into."""
 
     TEXT = "text"
     WHOLE = "whole number"
@@ -43,13 +43,14 @@ class Role(Flag):
     """The roles of an option, as flags: the groups of options that it belongs to."""
 
     PROBLEM = auto()
-    """The problem that is asked about, which has it in Python (goals, containers): it is posed by it."""
+    """Part of the problem (goals, containers): a command poses the problem by it; in Python, a problem
+    has it."""
     QUESTION = auto()
-    """The question: it is a parameter of the function."""
+    """A parameter of the function that answers the question."""
     COMMAND = auto()
-    """A parameter that holds for a whole command: limits and rules."""
+    """A parameter that holds for a whole command, such as limits and rules."""
     EXTRA_VALUES = auto()
-    """More values of another parameter, as rules are of constraints; in Python, it takes them itself."""
+    """More values of another parameter, as rules are of constraints; in Python, that parameter takes them."""
     CHART = auto()
     """Files for a picture of what was found."""
 
@@ -113,12 +114,12 @@ class Question:
         self.command = command
 
     def format_of(self, file: Path) -> str:
-        """Return the format that the name of a file says; raises :class:`UserError` where it says none."""
-        form = self.suffixes.get(file.suffix.lower())
-        if form is None:
+        """Return the format that the ending of a file name stands for; raises :class:`UserError` if none."""
+        format_ = self.suffixes.get(file.suffix.lower())
+        if format_ is None:
             ends = " ".join(self.suffixes)
             raise UserError(f"{file}: the name says no format: end it in {ends}, or name one (--format)")
-        return form
+        return format_
 
 
 def question(
@@ -126,66 +127,72 @@ def question(
     help_: str,
     formats: tuple[str, ...] = ("text", "json"),
     suffixes: Mapping[str, str] | None = None,
-    pose: Pose = one_problem,
+    pose: Pose = pose_problem,
     command: Callable[..., Result] | None = None,
     used_up: bool = False,
 ) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Return a decorator that describes a function for a command line, see :func:`question_of`.
+    """Return a decorator that wraps a function for Python, and describes it for a command line.
 
-    The options of the command are ``options``, and after them those in the annotations of the parameters. A
+    :func:`question_of` returns the description, a :class:`Question`, whose fields the arguments are. The
+    options of the command are ``options``, and after them those in the annotations of the parameters. A
     question supports items that are used up if it has an option for them, or if ``used_up`` says so.
     """
 
     def decorate(ask: Callable[P, R]) -> Callable[P, R]:
+        """Return the wrapped function; its attribute ``question`` is the description."""
         named = {option.name for option in options}
         all_options = (*options, *(option for option in _options_of(ask) if option.name not in named))
         if not used_up and "items" not in {option.name for option in all_options}:
             ask = _for_lasting_items(ask)
         typed_in = command or ask  # a command line has read its values already, rules among them
-        wrapped = asked_in_python(ask, all_options)
+        wrapped = python_question(ask, all_options)
         wrapped.__dict__["question"] = Question(all_options, help_, formats, suffixes or {}, pose, typed_in)
         return wrapped
 
     return decorate
 
 
-def asked_in_python(ask: Callable[P, T], options: Sequence[Option] | None = None) -> Callable[P, T]:
-    """Wrap a function so that it accepts paths and data for problems, and complete its docstring.
+def python_question(ask: Callable[P, T], options: Sequence[Option] | None = None) -> Callable[P, T]:
+    """Return a function that also takes paths and data for problems, with a complete docstring.
 
-    ``options`` describe the parameters, by default the options in the annotations.
+    ``options`` describe the parameters in the docstring; by default, these are the options in the
+    annotations.
     """
-    signature = _without_metadata(expanded_signature(ask))
+    signature = _without_options(expanded_signature(ask))
     described = _options_of(ask) if options is None else options
     texts = HELP | {option.name: f"{option.help} {option.python}".rstrip() for option in described}
-    wrapped = called_in_python(ask, signature)
+    wrapped = wrap_for_python(ask, signature)
     wrapped.__doc__ = complete_docstring(ask, signature, texts)
     return wrapped
 
 
 def expanded_signature(ask: Callable[..., object]) -> inspect.Signature:
-    """Return the signature of a function with each keyword of ``**options: Unpack[CommonOptions]``."""
+    """Return the signature of a function, with a parameter for each key of an ``Unpack`` annotation.
+
+    These parameters replace one such as ``**options: Unpack[CommonOptions]``.
+    """
     signature = inspect.signature(ask)
     parameters: list[inspect.Parameter] = []
     for parameter in signature.parameters.values():
         if parameter.kind is not inspect.Parameter.VAR_KEYWORD:
             parameters.append(parameter)
             continue
-        for name, annotation in _keywords(parameter.annotation).items():
+        for name, annotation in _keyword_annotations(parameter.annotation).items():
             default = _DEFAULTS.get(name)
             kind = inspect.Parameter.KEYWORD_ONLY
             parameters.append(inspect.Parameter(name, kind, default=default, annotation=annotation))
     return signature.replace(parameters=parameters)
 
 
-def _keywords(annotation: object) -> Mapping[str, object]:
+def _keyword_annotations(annotation: object) -> Mapping[str, object]:
     """Return the annotations of the keywords in ``Unpack[...]``; empty for ``**kwargs`` of any type."""
     return {
         name: kind for typed_dict in get_args(annotation) for name, kind in typed_dict.__annotations__.items()
     }
 
 
-def _without_metadata(signature: inspect.Signature) -> inspect.Signature:
-    """Return a signature whose annotations are types without :class:`Option` metadata."""
+def _without_options(signature: inspect.Signature) -> inspect.Signature:
+    """Return the signature with plain types in place of annotations that have an :class:`Option`."""
     parameters = signature.parameters.values()
     kinds = (getattr(parameter.annotation, "__origin__", None) for parameter in parameters)
     return signature.replace(
@@ -197,16 +204,20 @@ def _without_metadata(signature: inspect.Signature) -> inspect.Signature:
 
 
 def _options_of(ask: Callable[..., object]) -> Iterator[Option]:
-    """Return the options in the annotations of the parameters of a function, complete."""
+    """Yield the options in the annotations of a function's parameters, completed from the parameters."""
     texts = docstring_entries(ask)
     for parameter in expanded_signature(ask).parameters.values():
         for option in getattr(parameter.annotation, "__metadata__", ()):
             if isinstance(option, Option):
-                yield _completed(option, parameter, texts)
+                yield _complete_option(option, parameter, texts)
 
 
-def _completed(option: Option, parameter: inspect.Parameter, texts: Mapping[str, str]) -> Option:
-    """Return an option with its missing name, default, help and type, from its parameter."""
+def _complete_option(option: Option, parameter: inspect.Parameter, texts: Mapping[str, str]) -> Option:
+    """Return an option with its missing name, default, help and type filled in from its parameter.
+
+    ``texts`` are the entries of the docstring by parameter. An option with a name is shared by questions; the
+    parameter changes only its default.
+    """
     if option.name:  # an option shared by questions, whose default may differ
         default = parameter.default if isinstance(parameter.default, str | int) else option.default
         return option._replace(default=(default,) if option.many and isinstance(default, str) else default)
@@ -221,26 +232,27 @@ def _completed(option: Option, parameter: inspect.Parameter, texts: Mapping[str,
 
 
 def _for_lasting_items(ask: Callable[P, R]) -> Callable[P, R]:
-    """Wrap a question so that it raises :class:`UserError` for problems whose items are used up."""
+    """Return the question with a check: it raises :class:`UserError` for a problem with used-up items."""
 
     @functools.wraps(ask)
     def wrapped(*about: P.args, **named: P.kwargs) -> R:
+        """Check the problems among the arguments, and call the question."""
         if any(isinstance(argument, Problem) and argument.items is not None for argument in about):
-            raise not_built(ask.__module__.removeprefix("foon_asp.questions."))
+            raise not_for_used_up_items(ask.__module__.removeprefix("foon_asp.questions."))
         return ask(*about, **named)
 
     return wrapped
 
 
-def not_built(name: str) -> UserError:
-    """Return the error that a question does not support items that are used up.
+def not_for_used_up_items(name: str) -> UserError:
+    """Return the error for a question that does not support items that are used up.
 
-    ``name`` is the verb or the module of the question.
+    ``name`` is the verb or the module of the question, for example ``why_not``.
     """
     return UserError(f"{name.replace('_', '-')} is not built for items that are used up (--items used-up)")
 
 
 def question_of(ask: Callable[..., object]) -> Question:
-    """Return the description of a question for a command line."""
+    """Return the description of a function that :func:`question` wrapped."""
     description: Question = ask.__dict__["question"]
     return description

@@ -16,8 +16,8 @@ from foon_asp.proof.simulation import Verdict
 from foon_asp.questions.check import Checked
 from foon_asp.questions.common_options import Posed, start_deadline
 from foon_asp.questions.posing import Command
-from foon_asp.questions.posing_plan import units_in
-from foon_asp.questions.python_arguments import whole
+from foon_asp.questions.posing_plan import count_units_in
+from foon_asp.questions.python_arguments import over_whole_network
 from foon_asp.questions.question import Kind, Option, Role, question
 from foon_asp.questions.result import Ending
 from foon_asp.questions.tree import Tree
@@ -27,7 +27,7 @@ from foon_asp.text.plain_file import read_plain_text
 
 
 class PlanRead(Checked, frozen=True, kw_only=True, tag=schema_name("read-plan")):
-    r"""A plan as a ``tree``, and what stops it.
+    r"""The plan of another planner as a ``tree``, and what stops it.
 
     Attributes:
         sound: Whether the plan executes as it is written, with units of the network alone.
@@ -44,7 +44,7 @@ class PlanRead(Checked, frozen=True, kw_only=True, tag=schema_name("read-plan"))
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` for a sound plan."""
+        """``DONE`` for a sound plan, ``NEGATIVE`` for one that is refused."""
         return Ending.DONE if self.sound else Ending.NEGATIVE
 
     def show(self) -> Iterator[Block]:
@@ -57,19 +57,22 @@ class PlanRead(Checked, frozen=True, kw_only=True, tag=schema_name("read-plan"))
         return str(self.tree) if self.sound else ""
 
     def remark(self, format_: str) -> str:
-        """Return why a plan is refused."""
+        """Return why the plan is refused; empty for a sound plan."""
         return "" if self.sound else self.text().rstrip()
 
 
-def _posed(command: Command, names: Path | None) -> tuple[Problem]:
-    """Pose the goals of the name map, under its container rule, over the named data."""
+def _pose_from_map(command: Command, names: Path | None) -> tuple[Problem]:
+    """Return the problem of the goals in a name map, under its container rule, over the data of the command.
+
+    Raises :class:`UserError` without a map, and for a map of other data or of another level.
+    """
     if names is None:
         raise UserError(
             "name the map of names with --map: foon-asp export wrote it beside the PDDL (map.json)"
         )
     name_map, dataset = read_name_map(names), command.dataset
     units = set(name_map.units.values())
-    if not command.names_data and 2 * units_in(dataset.data.network, units) < len(units):
+    if not command.names_data and 2 * count_units_in(dataset.data.network, units) < len(units):
         raise UserError(f"{names}: it is not of the bundled kitchen: name the data that were exported")
     if dataset.names.level != name_map.level:
         raise UserError(
@@ -94,7 +97,7 @@ def _posed(command: Command, names: Path | None) -> tuple[Problem]:
         metavar="map.json",
         python="Without it, the names are those that :func:`foon_asp.export` gives to the whole network.",
     ),
-    pose=_posed,
+    pose=_pose_from_map,
     used_up=True,
     formats=("text", "json", "foon"),
     help_="""
@@ -140,18 +143,18 @@ def read_plan(
         <Tree for ice; crushed; in [drinking glass]: 2 units>
     """
     if names is None:
-        problem = whole(problem)
-        named = name_map_of(planning_task(problem, whole=True))
+        problem = over_whole_network(problem)
+        name_map = name_map_of(planning_task(problem, whole=True))
     else:
-        named = read_name_map(Path(names))
+        name_map = read_name_map(Path(names))
     with start_deadline(options).watched("reading"):
         if isinstance(plan, str | PathLike):
-            steps = read_plan_text(read_plain_text(Path(plan)), str(plan), named)
+            steps = read_plan_text(read_plain_text(Path(plan)), str(plan), name_map)
         else:  # as unified-planning writes it
-            steps = read_plan_text(str(plan), "the plan", named)
+            steps = read_plan_text(str(plan), "the plan", name_map)
     if problem.items is None:
-        places = dict(reversed(steps))  # of the first execution
-        steps = [PlanStep(unit, places[unit]) for unit in dict.fromkeys(unit for unit, _ in steps)]
+        place_of_unit = dict(reversed(steps))  # of the first execution
+        steps = [PlanStep(unit, place_of_unit[unit]) for unit in dict.fromkeys(unit for unit, _ in steps)]
     tree = Tree.given(problem, [unit for unit, _ in steps], [source for _, source in steps])
     checked = Checked.of(tree)
     sound = checked.verdict is Verdict.AS_LISTED and not checked.not_in_network

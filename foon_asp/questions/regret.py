@@ -21,7 +21,12 @@ from foon_asp.questions.answer import Answer, WithAnswer
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.options import AMOUNT, ITEMS, TREE
-from foon_asp.questions.python_arguments import Objectives, asked_with, chosen_objectives, whole
+from foon_asp.questions.python_arguments import (
+    Objectives,
+    chosen_objectives,
+    over_whole_network,
+    problem_for_rules,
+)
 from foon_asp.questions.question import TABLES, Kind, Option, question
 from foon_asp.questions.result import Ending
 from foon_asp.results.figure_text import costs_text, success_text
@@ -32,7 +37,7 @@ from foon_asp.text.json_value import schema_name
 
 
 class Removal(StrEnum):
-    """The kind of part left out: a unit, all units of a motion, a kitchen item, or two items."""
+    """The kind of part that is left out: a unit, all units of a motion, a kitchen item, or two items."""
 
     UNIT = "unit"
     MOTION = "motion"
@@ -53,7 +58,7 @@ class Regret(Value, frozen=True):
 
     Attributes:
         unit: The unit that is left out, or null.
-        motion: The motion all units of which are left out, or null.
+        motion: The motion whose units are all left out, or null.
         item: The kitchen item that is left out, or null.
         second_item: The other kitchen item of a pair, or null.
         costs: The costs of the best tree without the part; null without a tree.
@@ -70,7 +75,7 @@ class Regret(Value, frozen=True):
 
     @property
     def part(self) -> Removal:
-        """The kind of the part left out."""
+        """The kind of part that is left out."""
         if self.item is not None:
             return Removal.ITEM if self.second_item is None else Removal.PAIR
         return Removal.MOTION if self.unit is None else Removal.UNIT
@@ -122,7 +127,7 @@ class Regrets(WithAnswer, frozen=True, kw_only=True, tag=schema_name("regret")):
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if every optimum is proved."""
+        """The ending of the best tree; ``LIMIT`` if the optimum without some part is not proved."""
         proved = all(regret.status in {Status.OPTIMAL, Status.INFEASIBLE} for regret in self.regrets)
         return self.answer.ending if proved else Ending.LIMIT
 
@@ -187,13 +192,13 @@ def regret(
         ('ice; cubed; in [ice cube tray]', 'infeasible')
     """
     chosen, settings = chosen_objectives(problem, objectives), settings_of(options)
-    numbers, moved = tuple(units), tuple([motions] if isinstance(motions, str) else motions)
-    problem = whole(problem) if numbers or moved else asked_with(problem, settings)
+    numbers, motion_names = tuple(units), tuple([motions] if isinstance(motions, str) else motions)
+    problem = over_whole_network(problem) if numbers or motion_names else problem_for_rules(problem, settings)
     network = problem.network
     asked_units = [network.unit_of_number(number) for number in numbers]
     if None in asked_units:
         raise UserError(f"there is no unit {numbers[asked_units.index(None)]} in the network")
-    of_motion = {motion: _units_of(problem, motion) for motion in moved}
+    units_by_motion = {motion: _units_of_motion(problem, motion) for motion in motion_names}
     best = find(problem, chosen, settings, caller().reporter)
     head, answer = head_of(problem, chosen), Answer.of(best)
     if best.units is None or best.status is not Status.OPTIMAL:
@@ -201,47 +206,47 @@ def regret(
     regrets: list[Regret] = []
     # under rules, the optimum may be better without a part: they may require what is missing
     unrestricted = settings.constraints == () and settings.replaced is None
-    holds = Postconditions(problem, levels(chosen), settings)
+    postconditions = Postconditions(problem, levels(chosen), settings)
 
-    def without(leave_out: Callable[[], Problem], **parts: Any) -> Regret:
-        """Solve without some parts, and append the regret."""
+    def solve_without(leave_out: Callable[[], Problem], **parts: Any) -> Regret:
+        """Solve the problem that ``leave_out`` returns; append the regret of ``parts``, and return it."""
         try:
             with settings.begun.watched("leaving out a part"):  # which takes a while in a large network
-                fewer = leave_out()
+                smaller_problem = leave_out()
         except KeyboardInterrupt:
             remaining = None
         else:
-            remaining = find(fewer, chosen, settings, Reporter())
+            remaining = find(smaller_problem, chosen, settings, Reporter())
         regrets.append(_regret(best, remaining, **parts))
         # a missing item is not taken from the kitchen, so a tree that makes it costs less by ``kitchen``
         if remaining and unrestricted and ("item" not in parts or Objective.KITCHEN not in chosen):
-            holds.require_no_better(remaining, best, f"without {regrets[-1]}")
+            postconditions.require_no_better(remaining, best, f"without {regrets[-1]}")
         return regrets[-1]
 
     for unit in sorted({*best.units, *(unit for unit in asked_units if unit is not None)}):
-        without(partial(_without_units, problem, [unit]), unit=mention_of(network, unit))
-    for motion, of_one in of_motion.items():
-        without(partial(_without_units, problem, of_one), motion=motion)
+        solve_without(partial(_without_units, problem, [unit]), unit=mention_of(network, unit))
+    for motion, motion_units in units_by_motion.items():
+        solve_without(partial(_without_units, problem, motion_units), motion=motion)
     kitchen_items = sorted({o for unit in best.units for o in problem.needs[unit] if o in problem.kitchen})
-    alone = {
-        o: without(partial(_kitchen_without, problem, o), item=node_of(network, o)) for o in kitchen_items
+    regret_of_item = {
+        o: solve_without(partial(_without_items, problem, o), item=node_of(network, o)) for o in kitchen_items
     }
-    spared = [o for o in kitchen_items if alone[o].costs is not None]
-    for o, other in combinations(spared if pairs else (), 2):
+    dispensable = [o for o in kitchen_items if regret_of_item[o].costs is not None]
+    for o, other in combinations(dispensable if pairs else (), 2):
         nodes = {"item": node_of(network, o), "second_item": node_of(network, other)}
-        without(partial(_kitchen_without, problem, o, other), **nodes)
-    regrets.sort(key=lambda entry: _worst_first(entry, (*chosen, Objective.UNITS)))
+        solve_without(partial(_without_items, problem, o, other), **nodes)
+    regrets.sort(key=lambda entry: _regret_key(entry, (*chosen, Objective.UNITS)))
     return Regrets(**head, answer=answer, regrets=tuple(regrets))
 
 
 def regret_of(best: Answer, settings: Settings, unit: int | None = None, item: int | None = None) -> Regret:
-    """Find the optimum without one unit or one kitchen item, by id, of a problem that was answered."""
+    """Return the regret of one unit or one kitchen item, by id: solve an answered problem without it."""
     network, outcome = best.problem.network, best.outcome
     if unit is not None:
         remaining = find(_without_units(best.problem, [unit]), best.objectives, settings, Reporter())
         return _regret(outcome, remaining, unit=mention_of(network, unit))
     assert item is not None
-    remaining = find(_kitchen_without(best.problem, item), best.objectives, settings, Reporter())
+    remaining = find(_without_items(best.problem, item), best.objectives, settings, Reporter())
     return _regret(outcome, remaining, item=node_of(network, item))
 
 
@@ -253,7 +258,11 @@ def _regret(
     item: Node | None = None,
     second_item: Node | None = None,
 ) -> Regret:
-    """Return the regret of some parts; ``remaining`` is the optimum without them, ``None`` at a limit."""
+    """Return the regret of the parts that are given.
+
+    ``remaining`` is the outcome without these parts; ``None`` if a limit came before the search. The loss is
+    ``None`` unless the outcome is proved optimal.
+    """
     status, costs = (Status.UNKNOWN, None) if remaining is None else (remaining.status, remaining.costs)
     loss: Measures | None = None
     if costs is not None and status is Status.OPTIMAL and best.costs is not None:
@@ -262,21 +271,22 @@ def _regret(
 
 
 def _loss(best: Costs, remaining: Costs, objective: Objective) -> int | Fraction:
-    """Return the loss by an objective: a difference, or for ``success`` a share."""
+    """Return by how much the remaining costs are worse: a difference, or for ``success`` a share."""
     best_figure, figure = best.measure(objective), remaining.measure(objective)
     if multiplies(objective):
         return 1 - Fraction(figure) / Fraction(best_figure) if best_figure else Fraction(0)
     return figure - best_figure
 
 
-def _kitchen_without(problem: Problem, *removed: int) -> Problem:
+def _without_items(problem: Problem, *removed: int) -> Problem:
+    """Return the problem without some items of the kitchen, by id."""
     if problem.network.object_numbers and problem.origin is not None:  # what makes the items is read
         return problem.vary(without=[problem.network.objects[o] for o in removed])
     return replace(problem, kitchen=problem.kitchen.difference(removed))
 
 
 def _without_units(problem: Problem, removed: Sequence[int]) -> Problem:
-    """Return a problem over the network without some units; the other units keep their own rates."""
+    """Return the problem without some units, by id; the other units keep their rates, and get new ids."""
     kept = [unit for unit in range(len(problem.network)) if unit not in removed]
     rates = problem.own_rates
     own_rates = (
@@ -285,8 +295,8 @@ def _without_units(problem: Problem, removed: Sequence[int]) -> Problem:
     return replace(problem, network=problem.network.without(removed), own_rates=own_rates)
 
 
-def _units_of(problem: Problem, motion: str) -> list[int]:
-    """Return the units of a motion; raises :class:`UserError` if there are none."""
+def _units_of_motion(problem: Problem, motion: str) -> list[int]:
+    """Return the ids of the units of a motion; raises :class:`UserError`, with similar motions, if none."""
     motions = problem.network.motions
     units = [unit for unit, name in enumerate(motions) if name == motion]
     if not units:
@@ -296,10 +306,10 @@ def _units_of(problem: Problem, motion: str) -> list[int]:
     return units
 
 
-def _worst_first(
+def _regret_key(
     regret: Regret, objectives: tuple[Objective, ...]
 ) -> tuple[bool, tuple[int | Fraction, ...], Removal]:
-    """Return a sort key: first the parts without which there is no tree, then the greatest loss."""
+    """Return a sort key: first parts without which there is no tree, then by loss, then by kind."""
     costs = regret.costs
     key = () if costs is None else tuple(-figure for figure in costs.key(objectives))
     return costs is not None, key, regret.part

@@ -18,7 +18,7 @@ from foon_asp.problem import Costs, Objective, Problem
 from foon_asp.questions.answer import Answer, answer_problem, ending_of_status
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import Limits, start_deadline
-from foon_asp.questions.posing import no_data
+from foon_asp.questions.posing import pose_without_data
 from foon_asp.questions.question import Kind, Option, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.results.document import Unserialized
@@ -130,7 +130,7 @@ class Relaxed(Result, frozen=True, kw_only=True, tag=schema_name("relax")):
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if the plan is proved to be the cheapest, or that none exists."""
+        """``DONE`` if the plan is proved the cheapest, ``NEGATIVE`` if it is proved that there is none."""
         return ending_of_status(self.status)
 
     @property
@@ -166,12 +166,12 @@ class Relaxed(Result, frozen=True, kw_only=True, tag=schema_name("relax")):
         return "\n".join(lines) + "\n"
 
     def remark(self, format_: str) -> str:
-        """Return the claim, where that is not the cheapest plan."""
+        """Return the claim if the plan is not proved to be the cheapest; else an empty text."""
         return "" if self.ending is Ending.DONE else self.claim
 
 
 @question(
-    pose=no_data,
+    pose=pose_without_data,
     formats=("text", "json", "pddl"),
     help_="""
     \b
@@ -219,7 +219,7 @@ def relax(
         ('9', 'optimal')
     """
     deadline = start_deadline(limits)
-    relaxed = solved(read_task(files(task), deadline), deadline)
+    relaxed = solve_relaxation(read_task(files(task), deadline), deadline)
     if certificate_file is None:
         return relaxed
     certificate = _certificate(relaxed, deadline)
@@ -230,45 +230,46 @@ def relax(
     return structs.replace(relaxed, certificate=str(certificate_file)).knowing(**relaxed.__dict__)
 
 
-def solved(task: StripsTask, deadline: Deadline) -> Relaxed:
-    """Find the cheapest plan of a task that was read.
+def solve_relaxation(task: StripsTask, deadline: Deadline) -> Relaxed:
+    """Find the cheapest plan of the delete relaxation of a task.
 
-    Among the cheapest plans, the shortest is searched for, but only until the cost is proved.
+    Among the cheapest plans, it looks for one with the fewest actions, but only until the cost is proved.
     """
     proof_deadline = Deadline(within=deadline)
-    reporter = _Enough(caller().reporter, task.objective, proof_deadline)
+    reporter = _StopWhenProved(caller().reporter, task.objective, proof_deadline)
     answer = answer_problem(task.problem(), (task.objective,), Settings(deadline=proof_deadline), reporter)
     return Relaxed.of(task, answer)
 
 
-class _Enough(Reporter):
-    """A reporter that ends the search once the cost of the incumbent is proved."""
+class _StopWhenProved(Reporter):
+    """A reporter that ends the search by its deadline once the incumbent's cost equals the lower bound."""
 
     def __init__(self, reporter: Reporter, objective: Objective, deadline: Deadline) -> None:
         self._reporter, self._objective, self._deadline = reporter, objective, deadline
         self._cost: int | Fraction | None = None
-        self._least: int | Fraction | None = None
+        self._lower_bound: int | Fraction | None = None
 
     def tree(self, costs: Costs) -> None:
-        """Record the cost of the best plan."""
+        """Forward the costs of a new incumbent, and record its cost by the objective to prove."""
         self._reporter.tree(costs)
         self._cost = costs.measure(self._objective)
         self._compare()
 
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
-        """Record a lower bound on the cost."""
+        """Forward a lower bound, and record it if it is on the cost to be proved."""
         self._reporter.bound(objective, bound)
         if objective is self._objective:
-            self._least = bound
+            self._lower_bound = bound
             self._compare()
 
     def _compare(self) -> None:
-        if self._objective is not Objective.UNITS and None is not self._cost == self._least:
+        """End the search if the cost is proved; by units, no second objective would be searched for."""
+        if self._objective is not Objective.UNITS and None is not self._cost == self._lower_bound:
             self._deadline.enough()
 
 
 def _certificate(relaxed: Relaxed, deadline: Deadline) -> "Certificate | None":
-    """Return a certificate of the cost alone; ``None`` at a limit or ctrl-C."""
+    """Return a certificate of the cost, or of the absence of a plan; ``None`` at a limit and for no proof."""
     from foon_asp.certificate import certify, certify_infeasible  # noqa: PLC0415 (slow to import)
 
     answer, units = relaxed.answer, relaxed.answer.ids

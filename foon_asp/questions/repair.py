@@ -21,11 +21,11 @@ from foon_asp.questions.answer import ending_of_status
 from foon_asp.questions.caller import caller
 from foon_asp.questions.certificate_text import certificate_lines
 from foon_asp.questions.common_options import CommonOptions, settings_of
-from foon_asp.questions.python_arguments import whole
-from foon_asp.questions.question import asked_in_python
+from foon_asp.questions.python_arguments import over_whole_network
+from foon_asp.questions.question import python_question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.stand_in import StandIn, stand_in_lines, stand_ins_in
-from foon_asp.questions.tree import Tree, posed_tree
+from foon_asp.questions.tree import Tree, as_tree
 from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block
 from foon_asp.results.values import Node, Step
@@ -74,7 +74,7 @@ class Repaired(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("r
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if the repair is proved to be the cheapest."""
+        """``DONE`` if the repair is proved the cheapest, ``NEGATIVE`` if none exists, else ``LIMIT``."""
         return ending_of_status(self.status)
 
     tree = Unserialized[Tree | None](None)
@@ -90,7 +90,7 @@ class Repaired(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("r
     """What the certificate proves, where one was asked for."""
 
     def remark(self, format_: str) -> str:
-        """Return the notes on the certificate."""
+        """Return the notes on the certificate, one on each line; empty without any."""
         return "\n".join(self.notes)
 
     def foon(self) -> str:
@@ -101,7 +101,7 @@ class Repaired(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("r
         return write_units(self.tree.units, comments, self.tree.problem.amounts)
 
     def show(self) -> Iterator[Block]:
-        """Return what has to change, and the steps of the repaired tree."""
+        """Return what has to change, and the steps of the repaired tree; or why there is no repair."""
         yield from self.goal_lines()
         yield f"as it is: {self.verdict}"
         if self.units is None:
@@ -132,7 +132,7 @@ class Repaired(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("r
             yield from (f"  {node}" for node in self.lacking)
 
 
-@asked_in_python
+@python_question
 def repair(
     problem: Problem,
     tree: str | PathLike[str] | Iterable[FunctionalUnit],
@@ -167,49 +167,57 @@ def repair(
     if settings.constraints or settings.replaced is not None:
         raise UserError("a tree is repaired without rules and encodings: leave them out")
     table = StandInTable.usual() if problem.stand_ins is None else problem.stand_ins.table
-    listed = posed_tree(problem, tree)
-    base = whole(problem) if problem.stand_ins is None else problem
-    if certificate is not None and any(base.network.unit_id(unit) is None for unit in listed.units):
+    listed = as_tree(problem, tree)
+    base_problem = over_whole_network(problem) if problem.stand_ins is None else problem
+    if certificate is not None and any(base_problem.network.unit_id(unit) is None for unit in listed.units):
         raise UserError(
             "a certificate is about the network, and that lacks units of the tree: name the tree, too"
         )
-    needed = Repair.of(base, listed.units, listed.places, table, _is_in_kitchen(problem))
+    needed = Repair.of(base_problem, listed.units, listed.places, table, _kitchen_lists(problem))
     verdict = simulate_for(needed.shown, listed).verdict
     outcome = find(needed.posed, _OBJECTIVES, settings, caller().reporter)
-    proof: Certificate | None = None
+    found_certificate: Certificate | None = None
     notes: tuple[str, ...] = ()
     if certificate is not None:
-        outcome, proof = _certified(needed, outcome, settings)
-        notes = tuple(certificate_lines(outcome, proof, str(certificate)))
-        if proof is not None:
-            write_whole(Path(certificate), proof.text().encode())
-    shown, units = needed.shown, outcome.units
+        outcome, found_certificate = _certify_repair(needed, outcome, settings)
+        notes = tuple(certificate_lines(outcome, found_certificate, str(certificate)))
+        if found_certificate is not None:
+            write_whole(Path(certificate), found_certificate.text().encode())
+    shown_problem, units = needed.shown, outcome.units
     if units is None:
-        lacking = nodes_of(shown.network, needed.lacking()) if outcome.status is Status.INFEASIBLE else ()
+        lacking = (
+            nodes_of(shown_problem.network, needed.lacking()) if outcome.status is Status.INFEASIBLE else ()
+        )
     else:
         lacking = ()
     positions = {unit: number for number, unit in enumerate(units or (), 1)}
     repaired = Repaired(
-        **head_of(shown, _OBJECTIVES),
+        **head_of(shown_problem, _OBJECTIVES),
         verdict=verdict,
         status=outcome.status,
         proof=outcome.proof,
-        costs=None if units is None else shown.costs(units),
-        stand_ins=() if units is None else stand_ins_in(shown, units),
+        costs=None if units is None else shown_problem.costs(units),
+        stand_ins=() if units is None else stand_ins_in(shown_problem, units),
         added=tuple(positions[unit] for unit in needed.added(units or ())),
         order=tuple(positions[unit] for unit in needed.steps) if positions else (),
         lacking=lacking,
-        units=None if units is None else steps_of(shown, units),
+        units=None if units is None else steps_of(shown_problem, units),
     )
     return repaired.knowing(
-        tree=None if units is None else Tree.of(shown, units), outcome=outcome, certificate=proof, notes=notes
+        tree=None if units is None else Tree.of(shown_problem, units),
+        outcome=outcome,
+        certificate=found_certificate,
+        notes=notes,
     )
 
 
-def _certified(needed: Repair, outcome: Outcome, settings: Settings) -> tuple[Outcome, Certificate | None]:
-    """Return the outcome of a repair, and a certificate about the trees that have all of its steps.
+def _certify_repair(
+    needed: Repair, outcome: Outcome, settings: Settings
+) -> tuple[Outcome, Certificate | None]:
+    """Return the outcome of a repair, and a certificate that no tree with all steps of the repair is better.
 
-    The certificate is ``None`` where the repair is not proved, or none is found in time.
+    The outcome has the certificate as its proof if that covers all objectives. The certificate is ``None`` if
+    the repair is not proved, or if none is found in time. Raises :class:`BugError` if a better tree exists.
     """
     covered = Coverage(({"rule": ALL_STEPS, "units": sorted(needed.steps)},))
     deadline, problem, certificate = settings.begun, needed.shown, None
@@ -228,8 +236,11 @@ def _certified(needed: Repair, outcome: Outcome, settings: Settings) -> tuple[Ou
     return outcome._replace(proof=proof, certified=certificate.certified), certificate
 
 
-def _is_in_kitchen(problem: Problem) -> Callable[[ObjectNode], bool]:
-    """Return a function that says whether the kitchen file lists a node that the network lacks."""
+def _kitchen_lists(problem: Problem) -> Callable[[ObjectNode], bool]:
+    """Return a function that says whether an entry of the kitchen file matches a node.
+
+    The node may be absent from the network.
+    """
     data = problem.origin.data if isinstance(problem.origin, Dataset) else None
     items = () if data is None else data.kitchen_items
     return lambda node: any(item.pattern.matches(node) for item in items)

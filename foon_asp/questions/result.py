@@ -22,11 +22,11 @@ ENDINGS = {
     ".csv": "csv",
     ".md": "markdown",
 }
-"""The formats that the ends of file names choose."""
+"""The format that each ending of a file name stands for."""
 
 
 class Ending(StrEnum):
-    """How a question ended, which is what an exit code says."""
+    """How a question ended; each ending has an exit code."""
 
     DONE = "done"
     """What was asked for was found, and proved where there is something to prove."""
@@ -41,7 +41,7 @@ class NothingToDrawError(UserError):
 
 
 class NoTreeError(UserError):
-    """There is no tree to go on with; ``ending`` says how the search for a tree ended, if there was one."""
+    """There is no tree to go on with; ``ending`` is that of the search for a tree."""
 
     def __init__(self, message: str, ending: Ending = Ending.NEGATIVE) -> None:
         super().__init__(message)
@@ -51,7 +51,7 @@ class NoTreeError(UserError):
 class Result(Document, frozen=True, kw_only=True):
     """The result of a question; ``print`` shows the text of the command line, a notebook also a picture.
 
-    A class names the formats that it is written in, by the ends of file names, as ``SUFFIXES``.
+    The class attribute ``SUFFIXES`` has the format that each ending of a file name stands for.
     """
 
     SUFFIXES: ClassVar[Mapping[str, str]] = ENDINGS
@@ -78,7 +78,9 @@ class Result(Document, frozen=True, kw_only=True):
         raise UserError("this is no tree, whose steps could be listed")
 
     def steps(self) -> str:
-        """Return the plan for a robot's program as JSON: each step with its objects by role.
+        """Return the plan for a robot's program as JSON, each step with its objects by role.
+
+        It is empty without a tree.
 
         Raises:
             UserError: for a result that is no tree.
@@ -86,7 +88,7 @@ class Result(Document, frozen=True, kw_only=True):
         return "" if (plan := self.robot_plan()) is None else plan.json_text()
 
     def steps_csv(self) -> str:
-        """Return the plan for a robot's program as CSV, a row for each step.
+        """Return the plan for a robot's program as CSV, a row for each step; empty without a tree.
 
         Raises:
             UserError: for a result that is no tree.
@@ -94,7 +96,7 @@ class Result(Document, frozen=True, kw_only=True):
         return "" if (plan := self.robot_plan()) is None else plan.csv()
 
     def behaviour_tree(self) -> str:
-        """Return the plan as a behaviour tree: XML of BehaviorTree.CPP 4.
+        """Return the plan as a behaviour tree, XML of BehaviorTree.CPP 4; empty without a tree.
 
         Raises:
             UserError: for a result that is no tree.
@@ -123,16 +125,16 @@ class Result(Document, frozen=True, kw_only=True):
         from foon_asp.whole_file import utf_8, write_whole  # noqa: PLC0415 (most results are printed)
 
         formats = {
-            suffix: form for suffix, form in self.SUFFIXES.items() if hasattr(self, format_method(form))
+            suffix: chosen for suffix, chosen in self.SUFFIXES.items() if hasattr(self, format_method(chosen))
         }
-        form = format_ or formats.get(Path(file).suffix.lower())
-        if form is None:
+        chosen = format_ or formats.get(Path(file).suffix.lower())
+        if chosen is None:
             raise UserError(f"{file}: the name says no format: end it in {' '.join(formats)}")
-        if form not in formats.values():
+        if chosen not in formats.values():
             raise UserError(
-                f"found the format {form!r}, expected one of {', '.join(dict.fromkeys(formats.values()))}"
+                f"found the format {chosen!r}, expected one of {', '.join(dict.fromkeys(formats.values()))}"
             )
-        content: str | bytes = getattr(self, format_method(form))()
+        content: str | bytes = getattr(self, format_method(chosen))()
         write_whole(Path(file), utf_8(content) if isinstance(content, str) else content)
 
     def write_chart(self, file: File) -> None:
@@ -177,7 +179,7 @@ class Result(Document, frozen=True, kw_only=True):
     def _repr_mimebundle_(
         self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
     ) -> dict[str, str]:
-        """Return the notebook display by media type."""
+        """Return the notebook display by media type; the arguments are ignored, as IPython allows."""
         return self._in_notebook()
 
     def _in_notebook(self) -> dict[str, str]:
@@ -188,6 +190,6 @@ class Result(Document, frozen=True, kw_only=True):
         return page_bundle(self, pictures)
 
 
-def format_method(form: str) -> str:
-    """Return the name of the method that gives a format."""
-    return "json_text" if form == "json" else form.replace("-", "_")
+def format_method(format_: str) -> str:
+    """Return the name of the method of a result that returns a format: ``json_text`` for ``json``."""
+    return "json_text" if format_ == "json" else format_.replace("-", "_")

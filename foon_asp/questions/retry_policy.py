@@ -13,16 +13,17 @@ from foon_asp.results.values_of import costed_tree
 
 
 def with_policy(answer: Answer, retries: int, settings: Settings, **options: Unpack[CommonOptions]) -> Answer:
-    """Return an answer with the policy of greatest chance over its tree and the best trees by success.
+    """Return an answer with the retry policy that has the greatest chance of success.
 
-    The other trees are those that :func:`alternatives` finds. The policy is ``None`` if the answer has no
-    tree, or if a limit came first.
+    The policy chooses among the tree of the answer and the best trees by success, which
+    :func:`alternatives` finds; up to four trees in all. The policy is ``None`` if the answer has no
+    tree, or if a limit came first; a note of the answer says the latter.
 
     Parameters:
         answer: The answer.
         retries: How many executions may fail in a run that succeeds.
         settings: The settings of the question, whose time has begun.
-        options: The rules that the trees keep to.
+        options: The rules that the trees keep to; limits among them are ignored.
     """
     max_trees = 4  # that a policy follows
     problem = answer.problem
@@ -32,9 +33,9 @@ def with_policy(answer: Answer, retries: int, settings: Settings, **options: Unp
     for limit in ("time_limit", "memory_limit"):  # hold for the whole question
         options.pop(limit, None)  # type: ignore[misc]
     with asked_by(caller()._replace(deadline=settings.begun)):
-        others = alternatives(problem, Objective.SUCCESS, best=max_trees, **options)
+        best_trees = alternatives(problem, Objective.SUCCESS, best=max_trees, **options)
     trees = [answer.ids]
-    for tree in others.trees:
+    for tree in best_trees.trees:
         units = problem.network.units_of_numbers(tree.ids)
         if len(trees) < max_trees and set(units) not in map(set, trees):
             trees.append(units)

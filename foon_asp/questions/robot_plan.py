@@ -44,18 +44,19 @@ class RobotPlan(AboutGoals, frozen=True, kw_only=True, tag=schema_name("steps"))
         durations: Mapping[str, Duration],
         policy: Sequence[tuple[Collection[int], int]] | None = None,
     ) -> Self:
-        """Return the robot plan of units, listed by id in an executable order.
+        """Return the robot plan of a tree or plan.
 
         Parameters:
             problem: The problem.
             objectives: The objectives that the plan is optimal by.
-            plan: The units by id.
+            plan: The units by id, in an order that executes.
             durations: How long motions take, as far as that is known.
             policy: With ``--retries``, the trees to follow: units by id, and how many failures end each.
         """
         clips = tuple(_clips(problem, (plan, *(units for units, _ in policy or ()))))
 
         def steps(units: Collection[int]) -> tuple[RobotStep, ...]:
+            """Return the steps of units that are listed by id."""
             return tuple(robot_steps(problem, units, durations, clips))
 
         return cls(
@@ -77,7 +78,10 @@ class RobotPlan(AboutGoals, frozen=True, kw_only=True, tag=schema_name("steps"))
 
 
 def _clips(problem: Problem, plans: Iterable[Collection[int]]) -> Iterator[ListedClips]:
-    """Yield the annotated clips in the files of plans; missing files and unclear lines are skipped."""
-    places = (source for plan in plans for unit in plan for source in problem.network.sources[unit])
-    files = dict.fromkeys(Path(source.file) for source in places)
+    """Yield the video clips that the source files of the plans' units annotate.
+
+    Missing files and unclear lines are skipped.
+    """
+    sources = (source for plan in plans for unit in plan for source in problem.network.sources[unit])
+    files = dict.fromkeys(Path(source.file) for source in sources)
     return listed_clips((file for file in files if file.is_file()), lenient=True)

@@ -1,4 +1,4 @@
-"""When to do each step of a plan, and who does it: the shortest schedule."""
+"""The shortest schedule of a plan: when each step is done, who does it, and with which tools."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
@@ -27,11 +27,11 @@ from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import Posed, start_deadline
 from foon_asp.questions.durations import Durations, duration_of, stated_durations
 from foon_asp.questions.options import AMOUNT, CHART, CONTAINERS, GOAL_OF_PLAN, PLAN_ITEMS
-from foon_asp.questions.posing_plan import a_plan
-from foon_asp.questions.python_arguments import at_least, read_as
+from foon_asp.questions.posing_plan import pose_plan
+from foon_asp.questions.python_arguments import require_at_least, with_items
 from foon_asp.questions.question import TABLES, Kind, Option, Role, question
 from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result
-from foon_asp.questions.tree import OTHER_READING, Tree, posed_tree
+from foon_asp.questions.tree import OTHER_READING, Tree, as_tree
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.table import Block, Table
 from foon_asp.results.timed_step import TimedStep, Tool
@@ -53,10 +53,10 @@ Tools = str | PathLike[str] | Mapping[ToolName, int | None]
 
 
 class MotionTime(Value, frozen=True):
-    """How long a motion takes.
+    """How long a motion takes, in seconds.
 
     Attributes:
-        passive: Whether nobody has to stand by.
+        passive: Whether it goes on without an agent.
     """
 
     motion: str
@@ -70,7 +70,7 @@ class LackingTool(Value, frozen=True):
     Attributes:
         tool: A label, or a vessel with what is in it.
         there: The number available.
-        needed: The least number that a schedule needs (infeasible), or a sufficient one (unknown).
+        needed: If infeasible, the least number that a schedule needs; if unknown, a number that is enough.
     """
 
     tool: str
@@ -79,7 +79,7 @@ class LackingTool(Value, frozen=True):
 
 
 class Schedule(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("schedule")):
-    """When the steps of a plan are done, and by whom.
+    """A schedule: when each step of a plan is done, by whom, and with which tools.
 
     Attributes:
         status: optimal: proved a shortest schedule; infeasible: proved that no schedule exists; feasible and
@@ -113,16 +113,19 @@ class Schedule(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("s
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if the schedule is proved shortest."""
+        """``DONE`` if the schedule is proved shortest, ``NEGATIVE`` if it is proved that there is none."""
         return ending_of_status(self.status)
 
     @property
     def gantt(self) -> Gantt:
-        """The steps as a chart shows them."""
+        """The data of a Gantt chart: title, steps and makespan."""
         return Gantt(" + ".join(map(str, self.goals)), self.timetable, self.makespan or Fraction(0))
 
     def show(self) -> Iterator[Block]:
-        """Return the makespan, the claim, a table of the steps, and the working time of each agent."""
+        """Return the makespan with what is proved of it, a table of the steps, and the time each agent works.
+
+        Without a schedule, the tools that are lacking are listed, and how many are needed.
+        """
         yield from self.goal_lines()
         agents = counted(self.agents, "agent")
         if self.makespan is not None:
@@ -167,17 +170,17 @@ class Schedule(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("s
 
 
 class WrittenDurations(Result, frozen=True, kw_only=True, tag=schema_name("durations")):
-    """A file of durations that was written to be filled in.
+    """A file of durations, written for the user to fill in.
 
     Attributes:
-        unknown: How many durations are to be said.
+        unknown: How many durations are to be filled in.
     """
 
     file: Path
     unknown: int
 
     def show(self) -> Iterator[Block]:
-        """Return the next step: which durations to fill in."""
+        """Return one line: the file, and how many durations to fill in."""
         todo = f"say {counted(self.unknown, 'duration')} in place of SECONDS" if self.unknown else "change it"
         yield f"wrote {self.file}: {todo}, and give it as --durations"
 
@@ -185,7 +188,10 @@ class WrittenDurations(Result, frozen=True, kw_only=True, tag=schema_name("durat
 def _schedule_or_template(
     problem: Problem, plan: Tree, *, durations_template: Path | None = None, **options: Any
 ) -> Result:
-    """Schedule as ``foon-asp schedule`` does, or write a file of durations to be filled in."""
+    """Return the schedule; with ``durations_template``, only write that file of durations to be filled in.
+
+    Durations that are known are in the file already. Raises :class:`UserError` if the file exists.
+    """
     if durations_template is None:
         return schedule(problem, plan, **options)
     if durations_template.exists():
@@ -219,7 +225,7 @@ def _schedule_or_template(
     *PLAN_ITEMS,
     AMOUNT,
     CHART._replace(help="A file for a Gantt chart (.svg or .png)."),
-    pose=a_plan,
+    pose=pose_plan,
     command=_schedule_or_template,
     formats=TABLES,
     help_="""
@@ -305,14 +311,15 @@ def schedule(
         ('optimal', '40')
     """
     deadline = start_deadline(options)
-    at_least(agents, 1, "agents")
-    problem = read_as(problem, items)
-    tree = _in_order(posed_tree(problem, plan))
+    require_at_least(agents, 1, "agents")
+    problem = with_items(problem, items)
+    tree = _executable_tree(as_tree(problem, plan))
     replayed = replayable(tree.problem, tree)
     replay = replay_for(replayed, tree)
     if replay.shortage is not None:
         raise NoTreeError(_shortage_text(tree, replay.shortage))
-    means = Means(_durations(tree, durations, from_video, default_duration), agents, _tools(tools))
+    known_durations = _durations_of_plan(tree, durations, from_video, default_duration)
+    means = Means(known_durations, agents, _tool_counts(tools))
     task = schedule_task(replayed, tree.units, replay, means)
     solution = shortest_schedule(task, deadline)
     timed = () if solution.starts is None else tuple(timed_steps(task, solution.starts))
@@ -330,7 +337,7 @@ def schedule(
             MotionTime(motion, Fraction(duration.seconds), duration.passive)
             for motion, duration in means.durations.items()
         ),
-        timetable=tuple(_timed_steps(tree, timed, after)),
+        timetable=tuple(_timed_step_values(tree, timed, after)),
         lacking=tuple(
             LackingTool(str(name), means.number_of(tree.problem, name), needed)
             for name, needed in solution.lacking.items()
@@ -338,8 +345,13 @@ def schedule(
     )
 
 
-def _timed_steps(tree: Tree, timed: Sequence[Timed], after: Sequence[tuple[int, ...]]) -> Iterator[TimedStep]:
-    """Yield the steps of a schedule as values."""
+def _timed_step_values(
+    tree: Tree, timed: Sequence[Timed], after: Sequence[tuple[int, ...]]
+) -> Iterator[TimedStep]:
+    """Yield the steps of a schedule as values for a result.
+
+    ``timed`` has the times of each step, and ``after`` the numbers, from 1, of the steps that it waits for.
+    """
     problem = tree.problem
     for number, (unit, step, earlier) in enumerate(zip(tree.units, timed, after, strict=False), 1):
         named = tree.step_unit(number)
@@ -361,13 +373,14 @@ def _timed_steps(tree: Tree, timed: Sequence[Timed], after: Sequence[tuple[int, 
 
 
 def _status(solution: BestSchedule) -> Status:
+    """Return the status: of a schedule optimal or feasible, without one infeasible or unknown."""
     if solution.proved:
         return Status.INFEASIBLE if solution.starts is None else Status.OPTIMAL
     return Status.UNKNOWN if solution.starts is None else Status.FEASIBLE
 
 
-def _in_order(tree: Tree) -> Tree:
-    """Return a tree in an order that executes, or else in the listed order.
+def _executable_tree(tree: Tree) -> Tree:
+    """Return a tree in an order that executes; in the listed order if items last and no order executes.
 
     Raises :class:`NoTreeError` if items are used up and no order executes.
     """
@@ -384,19 +397,23 @@ def _in_order(tree: Tree) -> Tree:
 
 
 def _shortage_text(tree: Tree, shortage: Shortage) -> str:
+    """Return the message that a plan does not run, with the copy that is missing."""
     return f"the plan does not run: {tree.lack_text(lack_of(tree.problem.network, shortage))}"
 
 
-def _durations(
+def _durations_of_plan(
     tree: Tree, stated: Durations | None, from_video: bool, default: Number | None
 ) -> dict[str, Duration]:
-    """Return the durations of the motions of a plan; raises :class:`UserError` for motions without one."""
+    """Return the duration of each motion of a plan; raises :class:`UserError` for motions without one.
+
+    The parameters are those of :func:`_known_durations`.
+    """
     known_durations = _known_durations(tree, stated, from_video, default)
     motions = dict.fromkeys(unit.motion for unit in tree.units)
     missing = [motion for motion in motions if motion not in known_durations]
     if missing:
         where = "in a file for --durations (durations=)" if stated is None else "in the durations"
-        ways = [
+        advice = [
             *(
                 []
                 if from_video
@@ -408,7 +425,7 @@ def _durations(
         lines = "".join(f"\n  {escaped(motion)}\tSECONDS" for motion in missing)
         raise UserError(
             f"no duration is known of {counted(len(missing), 'motion')} of the plan: say how long they take, "
-            f"{where}, a tab before the seconds{lines}\n" + "\n".join(ways)
+            f"{where}, a tab before the seconds{lines}\n" + "\n".join(advice)
         )
     return {motion: known_durations[motion] for motion in motions}
 
@@ -418,8 +435,8 @@ def _known_durations(
 ) -> dict[str, Duration]:
     """Return the known durations by motion.
 
-    A duration is stated, or the median of clips, or the default. Warnings name the motions with a median or
-    the default.
+    A stated duration comes first; then, with ``from_video``, the median of the video clips of the motion;
+    then the default. Warnings name the motions that have a median or the default.
     """
     durations = stated_durations(stated)
     motions = dict.fromkeys(unit.motion for unit in tree.units)
@@ -429,9 +446,9 @@ def _known_durations(
         clips = median_clips((file for file in files if file.is_file()), caller().lenient)
         timed = [motion for motion in motions if motion in clips and motion not in durations]
         if timed:
-            shown = ", ".join(f"{escaped(motion)} {time_text(Fraction(clips[motion]))}" for motion in timed)
+            medians = ", ".join(f"{escaped(motion)} {time_text(Fraction(clips[motion]))}" for motion in timed)
             caller().reporter.warning(
-                f"warning: these durations are medians of clips, and not of what happens in them: {shown}"
+                f"warning: these durations are medians of clips, and not of what happens in them: {medians}"
             )
         durations |= {motion: Duration(clips[motion]) for motion in timed}
     if default is not None:
@@ -440,17 +457,20 @@ def _known_durations(
             if isinstance(default, str)
             else duration_of(default, "default")
         )
-        others = [motion for motion in motions if motion not in durations]
-        if others:
-            time = time_text(Fraction(duration.seconds))
-            motions_named = ", ".join(map(escaped, others))
-            caller().reporter.warning(f"warning: these motions count as {time} each: {motions_named}")
-        durations |= dict.fromkeys(others, duration)
+        untimed_motions = [motion for motion in motions if motion not in durations]
+        if untimed_motions:
+            default_text = time_text(Fraction(duration.seconds))
+            motions_named = ", ".join(map(escaped, untimed_motions))
+            caller().reporter.warning(f"warning: these motions count as {default_text} each: {motions_named}")
+        durations |= dict.fromkeys(untimed_motions, duration)
     return durations
 
 
-def _tools(stated: Tools | None) -> dict[ToolName, int | None]:
-    """Return the stated numbers of tools by label or node; ``None`` is an unlimited number."""
+def _tool_counts(stated: Tools | None) -> dict[ToolName, int | None]:
+    """Return the stated numbers of tools by label or node, read from a file or checked.
+
+    ``None`` in the result is an unlimited number. Raises :class:`UserError` for a wrong number or label.
+    """
     if stated is None:
         return {}
     if isinstance(stated, str | PathLike):

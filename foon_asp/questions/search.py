@@ -6,14 +6,14 @@ from typing import Annotated, Any, Self, Unpack
 
 from msgspec import field
 
-from foon_asp.comparison.comparison import simulated
+from foon_asp.comparison.comparison import simulate_retrieval
 from foon_asp.pictures.drawing import Drawing
 from foon_asp.problem import Costs, Problem
 from foon_asp.proof.simulation import Simulation, Verdict
 from foon_asp.questions.common_options import Posed, start_deadline
 from foon_asp.questions.question import question
 from foon_asp.questions.result import Ending, Result
-from foon_asp.questions.search_options import COUNT, DEPTH, TIES, search_settings, searched
+from foon_asp.questions.search_options import COUNT, DEPTH, TIES, search_settings, searches_named
 from foon_asp.questions.tree import Tree
 from foon_asp.questions.used_up_note import used_up_note
 from foon_asp.questions.verdict import Stop, simulation_fields, verdict_lines
@@ -35,10 +35,10 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
 
     Attributes:
         search: The name of the search.
-        package: The package of a search that is not ours, or null.
+        package: The package that offers the search; null for a built-in search.
         ended: How the search ended: with a tree, stuck at an object that cannot be had, having shown that no
             tree executes, or at a limit.
-        stuck_at: The object in the way, if one was.
+        stuck_at: The object that cannot be had, if the search was stuck; else null.
         verdict: Whether the tree executes; null without a tree.
         as_listed: What stops the tree in the order listed, if anything.
         in_any_order: What stops every order, if anything.
@@ -78,11 +78,11 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
             problem: The problem.
             search: The search.
             ended: How it ended.
-            ids: The units of its tree, by id in the network of the problem.
-            stuck_at: The object in the way, if one was.
+            ids: The units of its tree, by id in the network of the problem; ignored without a tree.
+            stuck_at: The object that cannot be had, if the search was stuck.
         """
         tree = Tree.of(problem, ids) if ended is Searched.TREE else None
-        simulation = None if tree is None else simulated(problem, ids, tree)
+        simulation = None if tree is None else simulate_retrieval(problem, ids, tree)
         retrieved = cls(
             **head_of(problem),
             search=search.name,
@@ -119,7 +119,7 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if the tree executes, ``LIMIT`` if the search was stopped."""
+        """``DONE`` if the tree executes, ``LIMIT`` if a limit stopped the search, else ``NEGATIVE``."""
         if self.ended is Searched.UNKNOWN:
             return Ending.LIMIT
         return Ending.DONE if self.executes else Ending.NEGATIVE
@@ -128,15 +128,18 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
         """Return the promise of the search, whether its tree executes, and the steps in the order listed."""
         yield from (*self.goal_lines(), f"{self.search} promises {self.promise}")
         if self.tree is None or self.simulation is None or self.units is None:
-            yield self._without()
+            yield self._no_tree_text()
             return
         yield from (*verdict_lines(self.tree, self.simulation), "")
         yield from (line for step in self.units for line in step.lines())
 
     def foon(self) -> str:
-        """Return the tree as FOON text, in the order listed; a comment says whether it executes."""
+        """Return the tree as FOON text, in the order listed; a comment says whether it executes.
+
+        Without a tree, the text is one comment that says why.
+        """
         if self.costs is None:
-            return f"# {self.search}: {self._without()}\n"
+            return f"# {self.search}: {self._no_tree_text()}\n"
         comments = [
             f"Task tree for: {' + '.join(map(str, self.goals))}",
             f"{self.search} ({self.problem.conditions}): {self.verdict}, {costs_text(self.costs)}",
@@ -152,8 +155,8 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
     def __repr__(self) -> str:
         return f"<Retrieved: {self.search}, {self.verdict or self.ended}>"
 
-    def _without(self) -> str:
-        """Return why there is no tree."""
+    def _no_tree_text(self) -> str:
+        """Return one line on why there is no tree."""
         if self.ended is Searched.STUCK:
             return f"no tree: no unit makes {self.stuck_at}, and it is not in the kitchen"
         if self.ended is Searched.NONE and self.package is not None:
@@ -195,9 +198,9 @@ def search(
         >>> foon_asp.search(foon_asp.load().problem("macaroni"), "bfs")
         <Retrieved: bfs, executes in another order>
     """
-    (wanted,) = searched([search])
+    (chosen_search,) = searches_named([search])
     deadline = start_deadline(options)
     settings = search_settings(ties, count, depth_limit, published, deadline.left, deadline.memory)
-    outcome = wanted.run(replace(problem, items=None), settings)
+    outcome = chosen_search.run(replace(problem, items=None), settings)
     stuck_at = None if outcome.stuck_at is None else node_of(problem.network, outcome.stuck_at)
-    return Retrieved.of(problem, wanted, outcome.ending, outcome.units, stuck_at)
+    return Retrieved.of(problem, chosen_search, outcome.ending, outcome.units, stuck_at)

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from foon_asp.errors import UserError
-from foon_asp.questions.python_arguments import at_least
+from foon_asp.questions.python_arguments import require_at_least
 from foon_asp.questions.question import Kind, Option
 from foon_asp.searches import Count, Search, SearchSettings, Ties, find_searches
 
@@ -26,10 +26,10 @@ DEPTH = Option(
 )
 
 
-def searched(names: Iterable[str]) -> list[Search]:
-    """Return the searches with some names, or all if no name is given.
+def searches_named(names: Iterable[str]) -> list[Search]:
+    """Return the searches with the given names, each once, in their order; without names, all searches.
 
-    Raises :class:`UserError` for an unknown name, and if a package offers a search by an existing name.
+    Raises :class:`UserError` for an unknown name, and if two searches have one name.
     """
     searches = find_searches()
     names = list(dict.fromkeys(names)) or list(searches)
@@ -39,9 +39,9 @@ def searched(names: Iterable[str]) -> list[Search]:
     return [searches[name] for name in names]
 
 
-def known_searches(rated: bool) -> list[Search]:
-    """Return all searches; unless ``rated``, without the search that needs success rates."""
-    return [search for search in searched(()) if rated or search.name != "greedy-success"]
+def usable_searches(rated: bool) -> list[Search]:
+    """Return all searches, without the one that needs success rates unless these are known (``rated``)."""
+    return [search for search in searches_named(()) if rated or search.name != "greedy-success"]
 
 
 def search_settings(
@@ -52,10 +52,13 @@ def search_settings(
     time_limit: float | None,
     memory_limit: int | None,
 ) -> SearchSettings:
-    """Return the settings of searches; the limits, in seconds and bytes, are for each search."""
+    """Return the settings of searches from options; raises :class:`UserError` for a wrong value.
+
+    The limits are in seconds and bytes, and hold for each search.
+    """
     for name, value, choices in (("ties", ties, [*map(str, Ties)]), ("count", count, [*map(str, Count)])):
         if value not in choices:
             raise UserError(f"found {name}={value!r}, expected one of {', '.join(choices)}")
     if depth_limit is not None:
-        at_least(depth_limit, 0, "depth_limit")
+        require_at_least(depth_limit, 0, "depth_limit")
     return SearchSettings(Ties(ties), Count(count), published, depth_limit, time_limit, memory_limit)

@@ -15,7 +15,7 @@ from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.envelope import Envelope, IntervalEnd
 from foon_asp.questions.flip import Flip, decimal_text
 from foon_asp.questions.options import CONTAINERS, GOALS
-from foon_asp.questions.python_arguments import asked_with
+from foon_asp.questions.python_arguments import problem_for_rules
 from foon_asp.questions.question import TABLES, question
 from foon_asp.questions.result import Ending
 from foon_asp.results.figure_text import success_text
@@ -34,10 +34,10 @@ class FlipRate(Value, frozen=True):
     """The rate at which another tree is as good.
 
     Attributes:
-        root: The rate is the root of this degree ...
-        of: ... of this rational number.
+        root: The degree of the root that the rate is: 2 for the square root of ``of``.
+        of: The exact rational number whose root the rate is, as text.
         inwards: The rate, rounded to a decimal within the interval.
-        change: The relative change of the rate, for people.
+        change: The relative change of the rate, as text in percent.
     """
 
     root: int
@@ -47,11 +47,11 @@ class FlipRate(Value, frozen=True):
 
 
 class TreeBeyond(CostedTree, frozen=True):
-    """The tree that is the best beyond an end, with its costs at the given rates.
+    """The tree that is the best beyond an end of an interval, with its costs at the given rates.
 
     Attributes:
-        gone: The ids of the units that only the best tree has.
-        new: The ids of the units that the best tree does not have.
+        gone: The ids of the units that the best tree has and this tree lacks.
+        new: The ids of the units that this tree has and the best tree lacks.
     """
 
     gone: tuple[int, ...]
@@ -62,9 +62,9 @@ class RateEnd(Value, frozen=True):
     """One end of the interval of a rate.
 
     Attributes:
-        proved: Whether this is the end; if not, a limit came first, and it may be nearer to the rate.
-        at: Where another tree is as good; null where no rate on that side makes another tree better.
-        beyond: The tree that is the best beyond.
+        proved: Whether this is the end; if not, a limit came first, and the end may be nearer to the rate.
+        at: The rate at which another tree is as good; null if no rate on that side makes another tree better.
+        beyond: The tree that is the best beyond this rate; null without such a rate.
     """
 
     proved: bool
@@ -73,11 +73,11 @@ class RateEnd(Value, frozen=True):
 
 
 class RateInterval(Value, frozen=True):
-    """The rates of one motion at which the best tree stays the best, while all others are as given.
+    """The interval of rates of one motion in which the best tree stays the best; other rates do not change.
 
     Attributes:
         rate: The rate that is given.
-        units: How many units of the tree have it.
+        units: How many units of the best tree have the motion.
         below: The end below; without one, the interval goes down to 0, which is not in it.
         above: The end above; without one, the interval goes up to 1.
     """
@@ -103,7 +103,7 @@ class RateInterval(Value, frozen=True):
 
 
 class FirstFlip(Value, frozen=True):
-    """The end with the smallest relative change of the rate."""
+    """The motion, and the end of its interval, with the smallest relative change of the rate."""
 
     motion: str
     side: Direction
@@ -114,10 +114,10 @@ class Sensitivity(WithAnswer, frozen=True, kw_only=True, tag=schema_name("sensit
 
     Attributes:
         answer: The best tree by ``success``.
-        intervals: One for each motion that a tree for the goals may have, that with the smallest relative
-            change to another best tree first; empty if there is no tree, or if it was not proved the best.
+        intervals: One for each motion that a tree for the goals may have. The motion whose rate has to
+            change least for another best tree comes first. Empty if no tree was proved the best.
         others: Motions that no tree for the goals needs.
-        first: Whose rate makes another tree the best first; null where none does.
+        first: The motion whose rate has to change least for another best tree; null where none does.
 
     Example:
         >>> found = foon_asp.sensitivity(foon_asp.load().problem("ice"))
@@ -134,12 +134,12 @@ class Sensitivity(WithAnswer, frozen=True, kw_only=True, tag=schema_name("sensit
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if both ends of every interval are proved."""
+        """The ending of the best tree; ``LIMIT`` if an end of an interval is not proved."""
         proved = all(interval.proved for interval in self.intervals)
         return self.answer.ending if proved else Ending.LIMIT
 
     def show(self) -> Iterator[Block]:
-        """Return the motions whose rates can make another tree optimal, then the other motions."""
+        """Return a table of the motions whose rate can make another tree the best, then the others."""
         yield from (*self.goal_lines(), *self.answer.headlines())
         flipping = [interval for interval in self.intervals if interval.flips]
         stable = [interval for interval in self.intervals if not interval.flips]
@@ -163,7 +163,10 @@ class Sensitivity(WithAnswer, frozen=True, kw_only=True, tag=schema_name("sensit
             yield from self._advice()
 
     def _cells(self, interval: RateInterval) -> tuple[str, ...]:
-        """Return the row of a motion: its rate, the ends of its interval, its name, and the trees beyond."""
+        """Return the row of a motion: rate, both ends of the interval, name, and the trees beyond them.
+
+        An end that is not proved has a question mark.
+        """
         best, ends, beyond = self.answer.units or (), [], []
         for end, limit in ((interval.below, "0"), (interval.above, "1")):
             ends.append((decimal_text(end.at.inwards) if end.at else limit) + "?" * (not end.proved))
@@ -174,7 +177,7 @@ class Sensitivity(WithAnswer, frozen=True, kw_only=True, tag=schema_name("sensit
         return success_text(interval.rate), *ends, str(interval), "; ".join(beyond)
 
     def _advice(self) -> Iterator[str]:
-        """Return lines on which rates to measure again."""
+        """Yield lines on which rate to measure first, or that no rate alone makes another tree better."""
         if self.ending is Ending.LIMIT:
             yield "stopped at a limit: an end with ? may be nearer to the rate"
         if self.first is not None:
@@ -236,7 +239,7 @@ def sensitivity(problem: Problem, **options: Unpack[CommonOptions]) -> Sensitivi
             "a constraint uses risk/2, which changes with the rates asked about: use rate/2, "
             "which stays as given, or leave the constraint out"
         )
-    problem = asked_with(problem, settings)
+    problem = problem_for_rules(problem, settings)
     outcome = solve(problem, _SUCCESS, settings, caller().reporter)
     answer, head = Answer.of(outcome), head_of(problem, _SUCCESS)
     if outcome.units is None or outcome.status is not Status.OPTIMAL:
@@ -250,7 +253,7 @@ def sensitivity(problem: Problem, **options: Unpack[CommonOptions]) -> Sensitivi
         for above in (False, True):
             end = envelope.end(motion, above)
             flip = None if end.at is None else Flip(rate, end.at, above)
-            ends.append(_end(answer, end, flip))
+            ends.append(_end_value(answer, end, flip))
             flips += [] if flip is None else [flip]
         interval = RateInterval(motion, rate, envelope.units(motion), *ends)
         if flips:
@@ -270,8 +273,11 @@ def sensitivity(problem: Problem, **options: Unpack[CommonOptions]) -> Sensitivi
     )
 
 
-def _end(best: Answer, end: IntervalEnd, flip: Flip | None) -> RateEnd:
-    """Return an end of an interval as a value, with the best tree beyond it."""
+def _end_value(best: Answer, end: IntervalEnd, flip: Flip | None) -> RateEnd:
+    """Return an end of an interval as a value for a result, with the best tree beyond it.
+
+    The value has neither rate nor tree if no rate beyond makes another tree better.
+    """
     if flip is None or end.beyond is None:
         return RateEnd(end.proved, None, None)
     tree, best_units = costed_tree(best.problem, end.beyond, best.problem.costs(end.beyond)), best.units or ()

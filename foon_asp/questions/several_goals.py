@@ -1,4 +1,4 @@
-"""Several goals of one tree: the optimum for each goal by itself, and the goals that each unit serves."""
+"""Several goals of one tree: the optimum for each goal by itself, and the goals that each unit is for."""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -13,72 +13,77 @@ from foon_asp.results.values_of import node_of, nodes_of
 
 
 class GoalsApartTuning(NamedTuple):
-    """When the goals of a tree are also solved one by one.
+    """The limit up to which the goals of a tree are also solved one by one.
 
-    ``goals`` is the greatest number of such goals, since each goal is one more search and one more line.
-    For more goals there is the option ``--all-goals``.
+    ``goals`` is the greatest number of goals, since each takes one more search and one more line. For more
+    goals there is the option ``--all-goals``.
     """
 
     goals: int = 8
 
 
 def with_goals_apart(answer: Answer, settings: Settings, posed: Problem) -> Answer:
-    """Return an answer with the goals that each unit serves and, for few goals, the optimum of each goal.
+    """Return an answer with the goals that each unit is needed for.
 
-    ``posed`` is the problem as it was posed. Of a large store, only what each goal needs is read.
+    For up to eight goals, the answer also has the optimum for each goal by itself. ``posed`` is the problem
+    as the question had it; of a large store, only the units for one goal are then read at a time.
     """
     problem, network = answer.problem, answer.problem.network
     serves = tuple(
         Serving(network.unit_number(unit), nodes_of(network, goals))
-        for unit, goals in _served(problem, answer.outcome.units or ()).items()
+        for unit, goals in _goals_by_unit(problem, answer.outcome.units or ()).items()
     )
     if len(problem.goals) > GoalsApartTuning().goals:
         return answer.having(serves=serves)
-    apart = _solved_apart(answer, settings, posed)
+    outcomes = _solve_apart(answer, settings, posed)
     nodes = [node_of(network, goal) for goal in problem.goals]
     return answer.having(
         goals_alone=tuple(
-            Alone(node, alone.status, alone.costs) for node, alone in zip(nodes, apart, strict=True)
+            Alone(node, outcome.status, outcome.costs) for node, outcome in zip(nodes, outcomes, strict=True)
         ),
-        sum_of_goals_alone=_sum(apart, answer.objectives[0]),
+        sum_of_goals_alone=_total_cost(outcomes, answer.objectives[0]),
         serves=serves,
     )
 
 
-def _solved_apart(answer: Answer, settings: Settings, posed: Problem) -> list[Outcome]:
-    """Return the optimum of each goal by itself."""
+def _solve_apart(answer: Answer, settings: Settings, posed: Problem) -> list[Outcome]:
+    """Return the best outcome for each goal by itself, in the order of the goals.
+
+    Without rules, it is checked that no goal alone costs more than all together.
+    """
     together, problem, objectives = answer.outcome, answer.problem, answer.objectives
     if isinstance(posed, NearbyProblem):
-        single = posed.each_goal()
-        apart = [
+        problems = posed.each_goal()
+        outcomes = [
             answer_under_rules(goal_problem, objectives, settings, Reporter()).outcome
-            for goal_problem in single
+            for goal_problem in problems
         ]
     else:
-        single = for_each_goal(problem)
-        apart = [solve(goal_problem, objectives, settings, Reporter()) for goal_problem in single]
+        problems = for_each_goal(problem)
+        outcomes = [solve(goal_problem, objectives, settings, Reporter()) for goal_problem in problems]
     if settings.constraints == () and settings.replaced is None:  # else goals may have rules of their own
-        holds = Postconditions(problem, levels(objectives), settings)
-        for goal, alone in zip(problem.goals, apart, strict=True):
-            holds.require_no_better(together, alone, f"for goal {goal} alone")
-    return apart
+        postconditions = Postconditions(problem, levels(objectives), settings)
+        for goal, outcome in zip(problem.goals, outcomes, strict=True):
+            postconditions.require_no_better(together, outcome, f"for goal {goal} alone")
+    return outcomes
 
 
-def _sum(apart: Sequence[Outcome], objective: Objective) -> int | Fraction | None:
-    """Return the summed costs of trees (``success``: the product); ``None`` if a goal has no tree."""
+def _total_cost(outcomes: Sequence[Outcome], objective: Objective) -> int | Fraction | None:
+    """Return the sum of the costs of trees, for ``success`` the product; ``None`` if a goal has no tree."""
     total: int | Fraction = Fraction(1) if multiplies(objective) else 0
-    for alone in apart:
-        if alone.costs is None:
+    for outcome in outcomes:
+        if outcome.costs is None:
             return None
-        measure = alone.costs.measure(objective)
+        measure = outcome.costs.measure(objective)
         total = total * measure if multiplies(objective) else total + measure
     return total
 
 
-def _served(problem: Problem, units: Sequence[int]) -> dict[int, list[int]]:
-    """Return the goals that each unit of a tree, in an order that executes, is needed for.
+def _goals_by_unit(problem: Problem, units: Sequence[int]) -> dict[int, list[int]]:
+    """Return, for each unit of a tree, the ids of the goals that it is needed for.
 
-    Each goal is followed back through the first achievers.
+    ``units`` are in an order that executes. A goal needs its first achiever in this order, the first
+    achievers of the inputs of that unit, and so on.
     """
     achievers: dict[int, int] = {}
     for unit in units:

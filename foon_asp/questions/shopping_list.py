@@ -34,7 +34,12 @@ from foon_asp.questions.answer import Answer, WithAnswer
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.options import AMOUNT, ITEMS, TREE
-from foon_asp.questions.python_arguments import Objectives, at_least, chosen_objectives, whole
+from foon_asp.questions.python_arguments import (
+    Objectives,
+    chosen_objectives,
+    over_whole_network,
+    require_at_least,
+)
 from foon_asp.questions.question import TABLES, Kind, Option, question
 from foon_asp.questions.result import Ending
 from foon_asp.results.figure_text import costs_text
@@ -77,7 +82,7 @@ class ShoppingList(Value, frozen=True):
 
     Attributes:
         price: The sum of prices; without a price list, the number of items, or of copies if they are used up.
-        proved: Whether it is proved that no list is cheaper, but for those that hold all of an earlier one.
+        proved: Whether it is proved that no list is cheaper, except lists that contain an earlier one.
         costs: What the best tree costs with these items; null where a limit came first.
     """
 
@@ -91,11 +96,11 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
     """Lists of things to add to the kitchen, and the best tree with the first list.
 
     Attributes:
-        offer: What the lists are made of: for sale; or, where that is not enough, also nodes of a cycle that
-            feeds only itself (cycle), all but the dish (processed), all but the goals (dish), all (goal); or
-            what has a price in a price list (priced).
-        lists: The lists, the cheapest first. Of one price and number of items, those with plain things come
-            first, then that with the best tree. Empty if no list helps.
+        offer: The nodes that could be bought: those for sale; if these are not enough, also nodes of a cycle
+            that feeds only itself (cycle), all but the dish (processed), all but the goals (dish), or all
+            (goal). With a price list: the nodes with a price (priced).
+        lists: The lists, the cheapest first. Of lists with one price and number of items, those with the
+            fewest mixtures and made things come first, then that with the best tree. Empty if no list helps.
         complete: Whether the search ended, so that there are no more lists.
         answer: The best tree with the first list in the kitchen; null without a list.
 
@@ -114,23 +119,23 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if every list and the tree are proved optimal."""
+        """``DONE`` if all lists and the tree are proved, ``NEGATIVE`` if no list helps, else ``LIMIT``."""
         if not self.lists:
             return Ending.NEGATIVE if self.complete else Ending.LIMIT
         proved = all(bought.proved for bought in self.lists)
         return Ending.DONE if proved and self.answer and self.answer.ending is Ending.DONE else Ending.LIMIT
 
     def show(self) -> Iterator[Block]:
-        """Return the first list with the consumers of each item, the other lists, and the tree."""
+        """Return the first list with the steps that need each item, the other lists, and the best tree."""
         yield from self.goal_lines()
         if not self.lists:
-            yield self._none()
+            yield self._no_list_text()
             return
         first, *others = self.lists
         if first.items:
             claim = "cheapest" if self.offer is Offer.PRICED else "shortest"
             proved = f"{claim}, proved" if first.proved else f"not proved {claim}"
-            yield f"shopping list ({self.conditions}; {proved}): {self._price(first)}"
+            yield f"shopping list ({self.conditions}; {proved}): {self._price_text(first)}"
             for item in first.items:
                 yield from self._item_lines(item)
             if remark := _REMARKS.get(self.offer):
@@ -140,10 +145,10 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
         for number, other in enumerate(others, 2):
             claim = "" if other.proved else ", not proved next"
             costs = "a tree that is not known" if other.costs is None else costs_text(other.costs)
-            yield f"or, list {number} ({self._price(other)}{claim}), with {costs}:"
+            yield f"or, list {number} ({self._price_text(other)}{claim}), with {costs}:"
             yield from (f"  {item}" for item in other.items)
         if first.items:
-            yield self._others()
+            yield self._further_lists_text()
         if self.answer is not None and self.answer.units is not None:
             claim, *note = self.answer.headlines()
             yield from ("", f"with {'the first list' if others else 'it'}: {claim}", *note, "")
@@ -151,8 +156,8 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
             if not self.answer.units:
                 yield "nothing to do"
 
-    def _none(self) -> str:
-        """Return why there is no list."""
+    def _no_list_text(self) -> str:
+        """Return one line on why there is no list."""
         if not self.complete:
             return f"unknown: stopped at a limit before any list was found ({self.conditions})"
         if self.offer is Offer.PRICED:
@@ -167,19 +172,19 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
         if consumers:
             yield f"      for {', '.join(f'{step.motion} [{step.source[0]}]' for step in consumers)}"
 
-    def _others(self) -> str:
-        """Return a line about further lists, and whether any exist."""
+    def _further_lists_text(self) -> str:
+        """Return one line on whether there are further lists."""
         if not self.complete:
             return "there are more lists than these: --lists finds more"
-        shown = "this list" if len(self.lists) == 1 else "one of these lists"
+        lists = "this list" if len(self.lists) == 1 else "one of these lists"
         if self.items != "lasting":
-            return f"that is all: any other list that makes a plan possible has each thing of {shown}"
+            return f"that is all: any other list that makes a plan possible has each thing of {lists}"
         return (
-            f"that is all: any other set of things on offer that makes a tree possible holds all of {shown}"
+            f"that is all: any other set of things on offer that makes a tree possible holds all of {lists}"
         )
 
-    def _price(self, bought: ShoppingList) -> str:
-        """Return the number of items of a list and its price in words."""
+    def _price_text(self, bought: ShoppingList) -> str:
+        """Return the number of items of a list in words, with the copies and the price where they count."""
         items = counted(len(bought.items), "object node")
         if self.items != "lasting":
             copies = sum(item.copies for item in bought.items if item.copies is not UNSET)
@@ -250,9 +255,9 @@ def shopping_list(
         11
     """
     chosen, settings = chosen_objectives(problem, objectives), settings_of(options)
-    max_lists = at_least(lists, 1, "lists")
-    problem = whole(problem)
-    priced = None if prices is None else _priced(problem, _listed(prices))
+    max_lists = require_at_least(lists, 1, "lists")
+    problem = over_whole_network(problem)
+    priced = None if prices is None else _prices_of_nodes(problem, _price_rows(prices))
     if problem.items is not None:
         return _with_copies(problem, chosen, settings, priced, max_lists)
     deadline, reporter = settings.begun, caller().reporter
@@ -262,10 +267,10 @@ def shopping_list(
     try:
         with deadline.watched("looking for what is for sale"):
             shop = Shop(problem)
-            offers = _for_sale(problem, shop) if priced is None else [made_of]
+            offers = _unpriced_offers(problem, shop) if priced is None else [made_of]
         for made_of in offers:
             prepared = prepare(problem, chosen, settings, program, for_sale=made_of[1])
-            cheapest = _lists(prepared, chosen, shop, made_of[1], max_lists)
+            cheapest = _lists_without_copies(prepared, chosen, shop, made_of[1], max_lists)
             if cheapest.lists or not cheapest.complete:
                 break
     except KeyboardInterrupt:
@@ -276,10 +281,10 @@ def shopping_list(
     for candidate in cheapest.lists:
         outcome = candidate.outcome
         if outcome is None:
-            stocked = _stocked(problem, candidate.bought)
+            stocked = _with_bought_items(problem, candidate.bought)
             outcome = solve(stocked, chosen, settings, Reporter() if outcomes else reporter)
         if outcome.status is Status.INFEASIBLE:
-            _refuse_far_rules(program)
+            _refuse_nonlocal_rules(program)
             raise BugError("the shopping list does not make a tree possible")
         outcomes.append((candidate, outcome))
     if all(outcome.status is Status.OPTIMAL for _, outcome in outcomes):
@@ -288,7 +293,7 @@ def shopping_list(
         **head_of(problem, chosen),
         offer=offer,
         lists=tuple(
-            candidate.shown(problem, wares, outcome.costs) for candidate, outcome in outcomes[:max_lists]
+            candidate.value(problem, wares, outcome.costs) for candidate, outcome in outcomes[:max_lists]
         ),
         complete=cheapest.complete and len(outcomes) <= max_lists,
         answer=Answer.of(outcomes[0][1], outcomes[0][0].bought) if outcomes else None,
@@ -302,7 +307,9 @@ def _with_copies(
     priced: Mapping[int, Fraction] | None,
     max_lists: int,
 ) -> Shopping:
-    """Return the cheapest lists of copies for plans in which items are used up.
+    """Return the result for plans in which items are used up: the cheapest lists, with copies of each node.
+
+    ``priced`` are the prices by id of the node; ``None`` without a price list.
 
     Raises :class:`UserError` for rules, which would see the purchases as units.
     """
@@ -311,15 +318,16 @@ def _with_copies(
             "shopping lists with items used up are not built under rules: leave the rules out, or ask with "
             "--items lasting"
         )
-    limited = replace(problem, kitchen=problem.endless)  # nodes with an amount can be bought, too
-    shop, needs = Shop(limited), {*problem.goals, *(o for needs in problem.needs for o in needs)}
-    offers = [(Offer.PRICED, dict(priced))] if priced is not None else _for_sale(limited, shop)
+    without_stock = replace(problem, kitchen=problem.endless)  # nodes with an amount can be bought, too
+    shop, needs = Shop(without_stock), {*problem.goals, *(o for needs in problem.needs for o in needs)}
+    offers = [(Offer.PRICED, dict(priced))] if priced is not None else _unpriced_offers(without_stock, shop)
     cheapest, made_of = _Lists([], complete=True), (Offer.FOR_SALE, dict[int, Fraction]())
     for made_of in offers:
         wares = {o: price for o, price in made_of[1].items() if o in needs}
         second_choices = frozenset(filter(shop.is_second_choice, wares))
 
         def purchases(left_out: Collection[int]) -> Purchases:
+            """Return the purchases that are possible without some wares, by id."""
             offered = {o: price for o, price in wares.items() if o not in left_out}  # noqa: B023 (called here)
             return Purchases(problem, offered, second_choices.intersection(offered), objectives)  # noqa: B023
 
@@ -330,16 +338,17 @@ def _with_copies(
     return Shopping(
         **head_of(problem, objectives),
         offer=made_of[0],
-        lists=tuple(listed.shown(problem, made_of[1], outcome.costs) for listed, outcome in outcomes),
+        lists=tuple(listed.value(problem, made_of[1], outcome.costs) for listed, outcome in outcomes),
         complete=cheapest.complete,
         answer=Answer.of(outcomes[0][1], outcomes[0][0].bought) if outcomes else None,
     )
 
 
 class _PricedList(NamedTuple):
-    """A list, its price, whether it is proved the cheapest, and the best tree if it is known.
+    """A shopping list by ids, its price, and whether it is proved to be the cheapest.
 
     ``bought`` has the number of copies to buy by id of the object node; the number is 1 where items last.
+    ``outcome`` has the best tree with these items, if it is known.
     """
 
     bought: Mapping[int, int]
@@ -349,11 +358,14 @@ class _PricedList(NamedTuple):
 
     @property
     def items(self) -> tuple[int, ...]:
-        """The object nodes, by id."""
+        """The ids of the object nodes to buy."""
         return tuple(self.bought)
 
-    def shown(self, problem: Problem, wares: Mapping[int, Fraction], costs: Costs | None) -> ShoppingList:
-        """Return the list as a value; ``costs`` are those of the best tree with it."""
+    def value(self, problem: Problem, wares: Mapping[int, Fraction], costs: Costs | None) -> ShoppingList:
+        """Return the list as a value for a result.
+
+        ``wares`` are the prices by id of the node; ``costs`` are those of the best tree with the items.
+        """
         counts = problem.items is not None
         items = (
             node_as(Item, problem.network, o, price=wares[o], copies=copies if counts else UNSET)
@@ -363,14 +375,17 @@ class _PricedList(NamedTuple):
 
 
 class _Lists(NamedTuple):
-    """Lists, the cheapest first, and whether there are no others."""
+    """Shopping lists, the cheapest first; ``complete`` if it is proved that there are no others."""
 
     lists: list[_PricedList]
     complete: bool
 
 
-def _stocked(problem: Problem, bought: Mapping[int, int]) -> Problem:
-    """Return a problem with bought items in its kitchen, by the number of their copies."""
+def _with_bought_items(problem: Problem, bought: Mapping[int, int]) -> Problem:
+    """Return the problem with bought items in its kitchen; ``bought`` has the copies by id of the node.
+
+    Where items are used up, the copies are added to the stock.
+    """
     kitchen = problem.kitchen.union(bought)
     if problem.items is None:
         return replace(problem, kitchen=kitchen)
@@ -384,15 +399,21 @@ def _stocked(problem: Problem, bought: Mapping[int, int]) -> Problem:
 def _sort_key(
     candidate: _PricedList, outcome: Outcome, shop: Shop
 ) -> tuple[Fraction, int, int, tuple[int | Fraction, ...]]:
-    """Return the sort key of a list: price, number of items, second choices, costs of the best tree."""
+    """Return the sort key of a list: price, number of items, second choices, costs of the best tree.
+
+    Second choices are mixtures and nodes that units make (:meth:`Shop.is_second_choice`).
+    """
     assert outcome.costs is not None
-    second = sum(map(shop.is_second_choice, candidate.items))
+    second_choices = sum(map(shop.is_second_choice, candidate.items))
     costs = outcome.costs.key(levels(outcome.objectives))
-    return candidate.price, len(candidate.items), second, tuple(costs)
+    return candidate.price, len(candidate.items), second_choices, tuple(costs)
 
 
-def _refuse_far_rules(program: Program) -> None:
-    """Raise :class:`UserError` for a rule whose meaning depends on the items bought."""
+def _refuse_nonlocal_rules(program: Program) -> None:
+    """Raise :class:`UserError` for a rule whose meaning depends on units outside the tree.
+
+    Bought items make more units executable, and so would change what the rule says.
+    """
     for rule in program.understood.rules if program.understood else ():
         if rule.nonlocality:
             raise UserError(
@@ -402,8 +423,11 @@ def _refuse_far_rules(program: Program) -> None:
             )
 
 
-def _listed(prices: File | Mapping[str, Number]) -> list[Row[str | ObjectNode, Fraction]]:
-    """Return the rows of a price list, read from a file or given as a mapping."""
+def _price_rows(prices: File | Mapping[str, Number]) -> list[Row[str | ObjectNode, Fraction]]:
+    """Return the rows of a price list, from a file or a mapping.
+
+    Raises :class:`UserError` for an entry that cannot be read.
+    """
     if isinstance(prices, str | PathLike):
         return PRICES.rows(Path(prices))
     rows = []
@@ -421,11 +445,14 @@ def _listed(prices: File | Mapping[str, Number]) -> list[Row[str | ObjectNode, F
     return rows
 
 
-def _priced(problem: Problem, listed: Sequence[Row[str | ObjectNode, Fraction]]) -> dict[int, Fraction]:
-    """Return the prices by object id of the nodes in a price list that are not in the kitchen.
+def _prices_of_nodes(
+    problem: Problem, listed: Sequence[Row[str | ObjectNode, Fraction]]
+) -> dict[int, Fraction]:
+    """Return the prices, by id of the object node, of the nodes in a price list.
 
-    Each entry that matches no node causes a warning. A label alone stands for all of its nodes that would
-    be for sale without prices.
+    An entry with a label alone stands for all of its nodes that would be for sale without prices; an entry
+    with a whole node overrides it. Nodes that are in the kitchen without a limit are left out. An entry that
+    matches no node causes a warning.
     """
     network, shop = problem.network, Shop(problem)
     prices: dict[int, Fraction] = {}
@@ -446,25 +473,25 @@ def _priced(problem: Problem, listed: Sequence[Row[str | ObjectNode, Fraction]])
     return {o: price for o, price in prices.items() if o not in problem.endless}
 
 
-def _for_sale(problem: Problem, shop: Shop) -> list[tuple[Offer, dict[int, Fraction]]]:
-    """Return the offers where no price list is given: object ids, each with the price 1."""
+def _unpriced_offers(problem: Problem, shop: Shop) -> list[tuple[Offer, dict[int, Fraction]]]:
+    """Return the offers of a shop, each larger than the one before, with the price 1 for each node by id."""
     offers = shop.offers(dead_ends(problem).roots)
     return [(offer, dict.fromkeys(sold, Fraction(1))) for offer, sold in offers]
 
 
-def _lists(
+def _lists_without_copies(
     prepared: Prepared,
     objectives: tuple[Objective, ...],
     shop: Shop,
     wares: Mapping[int, Fraction],
     max_lists: int,
 ) -> _Lists:
-    """Return the cheapest lists from ``wares``."""
+    """Return the cheapest lists of ``wares``, which are prices by id of the node, where items last."""
     if prepared.tree is None:
         return _Lists([], complete=not prepared.stopped)
     problem = prepared.problem
-    met = {*problem.goals, *(o for unit in prepared.units for o in problem.needs[unit])}
-    sold = {o: price for o, price in wares.items() if o in met}
+    needed_objects = {*problem.goals, *(o for unit in prepared.units for o in problem.needs[unit])}
+    sold = {o: price for o, price in wares.items() if o in needed_objects}
     second_choices = frozenset(filter(shop.is_second_choice, sold))
     if prepared.program.own:
         without = Purchases(problem, sold, second_choices, objectives).without
@@ -473,10 +500,10 @@ def _lists(
 
 
 class _Shopper:
-    """A search for the cheapest lists by a hitting-set tree of wares that are left out (Reiter 1987).
+    """A search for the cheapest shopping lists by a hitting-set tree (Reiter 1987).
 
-    A list is what an optimal tree or plan without some wares buys. The next list is the best one that lacks
-    an item of every earlier list.
+    A node of the hitting-set tree is a set of wares to leave out. Its list is what an optimal tree or plan
+    buys of the other wares. The next list is the best one that lacks an item of every earlier list.
     """
 
     def __init__(
@@ -493,48 +520,55 @@ class _Shopper:
         """
         self._problem, self._settings, self._wares = problem, settings, wares
         self._purchases, self._objectives = purchases, objectives
-        self._waiting: list[tuple[tuple[int | Fraction, ...], int, frozenset[int], _PricedList]] = []
+        self._queue: list[tuple[tuple[int | Fraction, ...], int, frozenset[int], _PricedList]] = []
         self._seen: set[frozenset[int]] = set()
-        self._listed: list[_PricedList] = []
+        self._chosen_lists: list[_PricedList] = []
         self._solved = SolvedGoals()
 
     def lists(self, max_lists: int) -> _Lists:
-        """Return the cheapest lists."""
-        if not self._look(frozenset(), caller().reporter):
-            return _Lists(self._listed, complete=False)
-        while self._waiting:
-            _, _, left_out, listed = heappop(self._waiting)
-            if all(listed.items != earlier.items for earlier in self._listed):
-                self._listed.append(listed)
-                if not listed.items or len(self._listed) == max_lists:
-                    return _Lists(self._listed, complete=not listed.items)
-            if not all(self._look(left_out | {item}, Reporter()) for item in listed.items):
-                return _Lists(self._listed, complete=False)
-        return _Lists(self._listed, complete=True)
+        """Return up to ``max_lists`` lists, the cheapest first; those found so far at a limit."""
+        if not self._search_without(frozenset(), caller().reporter):
+            return _Lists(self._chosen_lists, complete=False)
+        while self._queue:
+            _, _, left_out, listed = heappop(self._queue)
+            if all(listed.items != earlier.items for earlier in self._chosen_lists):
+                self._chosen_lists.append(listed)
+                if not listed.items or len(self._chosen_lists) == max_lists:
+                    return _Lists(self._chosen_lists, complete=not listed.items)
+            if not all(self._search_without(left_out | {item}, Reporter()) for item in listed.items):
+                return _Lists(self._chosen_lists, complete=False)
+        return _Lists(self._chosen_lists, complete=True)
 
-    def _look(self, left_out: frozenset[int], reporter: Reporter) -> bool:
-        """Find the best list without some wares; return false at a limit."""
+    def _search_without(self, left_out: frozenset[int], reporter: Reporter) -> bool:
+        """Add the best list without the wares ``left_out`` to the queue, once; return false at a limit.
+
+        If an earlier list has none of these wares, it is branched on: each of its items is left out, too. At
+        a limit without any list yet, the best list found is kept, unproved.
+        """
         if left_out in self._seen:
             return True
         self._seen.add(left_out)
-        for earlier in self._listed:
+        for earlier in self._chosen_lists:
             if left_out.isdisjoint(earlier.items):  # which the best list might be
-                return all(self._look(left_out | {item}, reporter) for item in earlier.items)
+                return all(self._search_without(left_out | {item}, reporter) for item in earlier.items)
         purchases = self._purchases(left_out)
-        by = purchases.objectives
-        outcome = solve(purchases.problem, by, self._settings, reporter, solved=self._solved)
+        objectives = purchases.objectives
+        outcome = solve(purchases.problem, objectives, self._settings, reporter, solved=self._solved)
         if outcome.status is Status.OPTIMAL and outcome.costs is not None:
-            listed = self._list(outcome, purchases)
-            heappush(self._waiting, (outcome.costs.key(levels(by)), len(self._seen), left_out, listed))
-        if outcome.status is Status.FEASIBLE and not self._listed:
-            self._listed.append(self._list(outcome, purchases))
+            listed = self._bought_list(outcome, purchases)
+            heappush(self._queue, (outcome.costs.key(levels(objectives)), len(self._seen), left_out, listed))
+        if outcome.status is Status.FEASIBLE and not self._chosen_lists:
+            self._chosen_lists.append(self._bought_list(outcome, purchases))
         return outcome.status in {Status.OPTIMAL, Status.INFEASIBLE}
 
-    def _list(self, outcome: Outcome, purchases: Purchases) -> _PricedList:
-        """Return the list that a tree or plan buys, and the tree or plan."""
+    def _bought_list(self, outcome: Outcome, purchases: Purchases) -> _PricedList:
+        """Return the list that a tree or plan with purchases buys, with the tree or plan as its outcome.
+
+        Raises :class:`BugError` if the plan does not execute with what is bought.
+        """
         assert outcome.units is not None
         bought, units = purchases.split(outcome.units)
-        problem = _stocked(self._problem, bought)
+        problem = _with_bought_items(self._problem, bought)
         if problem.items is None:
             order = Postconditions(problem, levels(self._objectives), self._settings).require_executable(
                 units
@@ -566,9 +600,11 @@ def _lists_under_rules(
     max_lists: int,
     compared: bool,
 ) -> _Lists:
-    """Return the cheapest lists under rules, which may look at all units: one run of clingo each.
+    """Return the cheapest lists of ``sold`` wares (prices by id) under rules, by one run of clingo for each.
 
-    If trees are ``compared`` by more than their size, all lists of the last price are found, too.
+    clingo prefers lists without ``second_choices``, which are mixtures and nodes that units make. If trees
+    are ``compared``, up to 30 lists are found, as long as they have the price of the last one; the caller
+    then chooses by the trees. Raises :class:`UserError` for prices beyond 32 bits.
     """
     scale = math.lcm(*(price.denominator for price in sold.values()))
     if any(price * scale > INT32_MAX for price in sold.values()):

@@ -15,14 +15,14 @@ from foon_asp.questions.durations import Durations, stated_durations
 from foon_asp.questions.options import AMOUNT, ITEMS, SOFT, TREE
 from foon_asp.questions.python_arguments import (
     Objectives,
-    asked_with,
-    at_least,
     chosen_objectives,
     constraint_weights,
-    read,
-    whole,
+    over_whole_network,
+    problem_for_rules,
+    read_deferred,
+    require_at_least,
 )
-from foon_asp.questions.question import TABLES, Kind, Option, Role, not_built, question
+from foon_asp.questions.question import TABLES, Kind, Option, Role, not_for_used_up_items, question
 from foon_asp.questions.result import Result
 
 
@@ -41,7 +41,10 @@ def solve_or_each(
     all_goals: bool = False,
     **options: Unpack[CommonOptions],
 ) -> Result:
-    """Solve as ``foon-asp solve`` does: all goals by one tree, or each by itself."""
+    """Return the best tree for all goals, or with ``all_goals`` the best tree for each goal by itself.
+
+    Raises :class:`UserError` for options that do not go with ``all_goals``.
+    """
     if not all_goals:
         return solve(
             problem,
@@ -184,9 +187,9 @@ def solve(
     weights = constraint_weights(soft or {})
     seconds = stated_durations(durations)
     if soft is not None and problem.items is not None:
-        raise not_built("solve --soft")
+        raise not_for_used_up_items("solve --soft")
     if retries is not None and problem.items is not None:
-        raise not_built("solve --retries")
+        raise not_for_used_up_items("solve --retries")
     if retries is not None and soft is not None:
         raise UserError("retries are about the best trees; leave the soft constraints out")
     if soft is not None and certificate is not None:
@@ -195,18 +198,18 @@ def solve(
         from foon_asp.engines import find_engines  # noqa: PLC0415
         from foon_asp.questions.cross_check import cross_check_answer  # noqa: PLC0415
 
-        problem, engines = whole(problem), find_engines()
+        problem, engines = over_whole_network(problem), find_engines()
     skipped: tuple[SkippedGoal, ...] = ()
     if skip_unreachable:
         from foon_asp.questions.unreachable_goals import without_unreachable  # noqa: PLC0415
 
-        problem, skipped = without_unreachable(asked_with(problem, settings))
+        problem, skipped = without_unreachable(problem_for_rules(problem, settings))
     # without reading more of a large store
     has_several_goals = soft is None and len(shown(problem).goals) > 1
     if soft is not None:
-        from foon_asp.questions.solve_soft import softly_answered  # noqa: PLC0415
+        from foon_asp.questions.solve_soft import solve_under_soft_constraints  # noqa: PLC0415
 
-        answer = softly_answered(read(problem), chosen, settings, weights)
+        answer = solve_under_soft_constraints(read_deferred(problem), chosen, settings, weights)
     elif certificate is not None:
         from foon_asp.questions.certifying import solve_with_certificate  # noqa: PLC0415
 
@@ -223,5 +226,5 @@ def solve(
     if retries is not None:
         from foon_asp.questions.retry_policy import with_policy  # noqa: PLC0415
 
-        answer = with_policy(answer, at_least(retries, 0, "retries"), settings, **options)
+        answer = with_policy(answer, require_at_least(retries, 0, "retries"), settings, **options)
     return answer.knowing(durations=seconds)

@@ -9,20 +9,25 @@ from foon_asp.asp.soft import solve_soft as find
 from foon_asp.problem import Objective, Problem
 from foon_asp.questions.answer import Answer, SoftConstraint
 from foon_asp.questions.caller import caller
-from foon_asp.questions.python_arguments import whole
+from foon_asp.questions.python_arguments import over_whole_network
 from foon_asp.rules.passed_constraint import Constraint
 
 
-def softly_answered(
+def solve_under_soft_constraints(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, weights: Mapping[Constraint, int]
 ) -> Answer:
-    """Solve a problem under soft constraints with their weights."""
-    who = caller()
-    outcome, penalty, constraints = find(whole(problem), objectives, settings, weights, who.reporter)
-    if who.read_seconds is not None:
-        outcome.seconds["read"] = who.read_seconds
+    """Return the best answer under soft constraints; breaking one costs its weight.
+
+    The answer has the total penalty, and for each constraint how it is broken.
+    """
+    current_caller = caller()
+    outcome, penalty, constraints = find(
+        over_whole_network(problem), objectives, settings, weights, current_caller.reporter
+    )
+    if current_caller.read_seconds is not None:
+        outcome.seconds["read"] = current_caller.read_seconds
     listed = tuple(
-        SoftConstraint(**asdict(rule.listed), weight=weight, broken=ways)
-        for rule, weight, ways in constraints
+        SoftConstraint(**asdict(rule.listed), weight=weight, broken=broken)
+        for rule, weight, broken in constraints
     )
     return Answer.of(outcome, penalty=penalty, soft_constraints=listed)

@@ -1,4 +1,4 @@
-"""Stand-ins as values: what a tree uses in place of what, why it costs that, and what is next best."""
+"""Stand-ins as values: the node used, the node it replaces, its price, and the next best node."""
 
 from collections.abc import Collection, Iterator, Sequence
 from fractions import Fraction
@@ -15,8 +15,8 @@ class NodeEdit(Value, frozen=True):
 
     Attributes:
         edit: The kind of edit in the table of stand-ins.
-        served: The text of the node that is stood in for; empty where it has none.
-        serving: The text of the node that is used; empty where it has none.
+        served: The differing part of the node that is replaced; empty where it has none.
+        serving: The differing part of the node that is used; empty where it has none.
         price: The price in the table.
     """
 
@@ -59,7 +59,7 @@ class StandIn(Value, frozen=True):
     next_best: NextStandIn | None
 
     def lines(self) -> Iterator[str]:
-        """Return the lines for people."""
+        """Yield lines of text: the two nodes, the price with its edits, and the next best node."""
         yield f"  {self.used}"
         yield f"    for {self.stands_in_for}"
         yield f"    costs {_price_text(self.dissimilarity)}: {', '.join(map(str, self.edits))}"
@@ -68,7 +68,7 @@ class StandIn(Value, frozen=True):
 
 
 def stand_ins_in(problem: Problem, tree: Collection[int]) -> tuple[StandIn, ...]:
-    """Return the stand-ins of a tree, by unit ids."""
+    """Return the stand-ins of a tree, whose units are given by id."""
     from foon_asp.standins.next_best import stand_ins_of  # noqa: PLC0415 (few answers have stand-ins)
 
     network = problem.network
@@ -89,7 +89,7 @@ def stand_ins_in(problem: Problem, tree: Collection[int]) -> tuple[StandIn, ...]
 
 
 def stand_in_lines(stand_ins: Sequence[StandIn]) -> Iterator[str]:
-    """Return the lines of all stand-ins of a tree, for people."""
+    """Yield lines of text on all stand-ins of a tree, with their total price; or that none are needed."""
     if not stand_ins:
         yield "no stand-ins are needed"
         return
@@ -100,21 +100,24 @@ def stand_in_lines(stand_ins: Sequence[StandIn]) -> Iterator[str]:
 
 
 def _edits(problem: Problem, serving: int, served: int) -> tuple[Difference, ...]:
+    """Return the differences between two nodes, by id, with their prices in the table of stand-ins."""
     assert problem.stand_ins is not None
     objects = problem.network.objects
     return problem.stand_ins.table.differences(objects[serving], objects[served]) or ()
 
 
 def _next_stand_in(network: Network, o: int, dissimilarity: Fraction) -> NextStandIn:
+    """Return the next best node, by id, as a value with its dissimilarity."""
     return node_as(NextStandIn, network, o, dissimilarity=dissimilarity)
 
 
 def _price_text(price: Fraction) -> str:
+    """Return a price of the table of stand-ins, a dissimilarity, as text."""
     return figure_text(Objective.DISSIMILARITY, price)
 
 
 def _edit_text(edit: Edit, served: str, serving: str) -> str:
-    """Return a difference in words: what is used, compared with what it stands in for."""
+    """Return in words how the node used differs from the node that it stands in for, as ``also chopped``."""
     if edit is Edit.NODE:
         return "listed"
     if edit in {Edit.MORE_STATE, Edit.FEWER_STATE}:

@@ -17,7 +17,7 @@ from foon_asp.network.statistics import MANY, Statistics, most_connected_labels,
 from foon_asp.problem import DEFAULT_RULE, ContainerRule, UsedUp, container_rule, needed_inputs
 from foon_asp.questions.common_options import Limits, start_deadline
 from foon_asp.questions.options import CONTAINERS, ITEMS
-from foon_asp.questions.posing import the_data
+from foon_asp.questions.posing import pose_data
 from foon_asp.questions.question import TABLES, Kind, Option, Role, question
 from foon_asp.questions.result import Result
 from foon_asp.results.table import Block, Table
@@ -73,8 +73,8 @@ class StartingNodes(Value, frozen=True):
 
     Attributes:
         files: How many files of recipes there are.
-        not_made: What no unit makes out of others.
-        made_too: What a unit makes too, but the units of some file need to run.
+        not_made: The nodes that no unit makes from other nodes.
+        made_too: The nodes that a unit makes, but without which the units of some file cannot run.
     """
 
     files: int
@@ -102,13 +102,13 @@ class Stats(Result, frozen=True, kw_only=True, tag=schema_name("stats")):
 
     Attributes:
         units_read: How many units were read, copies included.
-        copies: How many of them are the same as one before.
+        copies: How many of them equal a unit that was read before.
         files: The files that they were read from.
-        videos: The addresses that annotators worked from.
-        reached_from: What depth and reach are counted from.
-        starting_kitchen: null where a kitchen was given.
-        levels: The counts at the levels of detail 1 to 3; of data below level 3, at their own. ``producers``
-            are how many nodes 0, 1, 2, 3 and 4 or more units make.
+        videos: The addresses of the annotated videos.
+        reached_from: The nodes from which depth and reach are counted.
+        starting_kitchen: The starting kitchen; null where a kitchen was given.
+        levels: The counts at the levels of detail 1 to 3; for data below level 3, only at their own level.
+            ``producers`` are the numbers of nodes that 0, 1, 2, 3 and 4 or more units make.
         most_connected_labels: The labels that most units have.
         most_connected_objects: The object nodes that most units touch.
 
@@ -131,7 +131,7 @@ class Stats(Result, frozen=True, kw_only=True, tag=schema_name("stats")):
 
     @classmethod
     def of(cls, data: Data) -> "Stats":
-        """Count the nodes, units and labels in data.
+        """Return the counts of the nodes, units and labels in data.
 
         Parameters:
             data: A network, and the kitchen beside it if one was given.
@@ -157,7 +157,7 @@ class Stats(Result, frozen=True, kw_only=True, tag=schema_name("stats")):
         )
 
     def show(self) -> Iterator[Block]:
-        """Return a table with a column for each level, and the most connected labels and nodes."""
+        """Return a table with a column for each level, then the most connected labels and nodes."""
         places = f"{counted(len(self.files), 'file', ',')}, {counted(len(self.videos), 'source video', ',')}"
         yield f"{counted(self.units_read, 'unit', ',')} read from {places}"
         are = "is a copy of another" if self.copies == 1 else "are copies of others"
@@ -190,8 +190,8 @@ class Stats(Result, frozen=True, kw_only=True, tag=schema_name("stats")):
                 rows.append(f"reach from the {self.reached_from}" if group == "reach" else group)
                 heading = group
             figures = [figure(statistics) for statistics in self.levels]
-            shown = [f"{value:,}" if isinstance(value, int) else str(value) for value in figures]
-            rows.append([f"  {name}" if group else name, *shown])
+            figure_texts = [f"{value:,}" if isinstance(value, int) else str(value) for value in figures]
+            rows.append([f"  {name}" if group else name, *figure_texts])
         return Table(["at level", *(str(level.level) for level in self.levels)], rows, frozenset({0}))
 
 
@@ -199,8 +199,8 @@ class ExplainedInput(Node, frozen=True, kw_only=True):
     """An input of a unit.
 
     Attributes:
-        stays: Whether it is still there when the unit has run.
-        why: Why it stays, or is used up.
+        stays: Whether it is still there when the unit has run; left out unless asked for.
+        why: Why it stays, or is used up; left out unless asked for.
     """
 
     stays: bool | UnsetType = UNSET
@@ -208,7 +208,7 @@ class ExplainedInput(Node, frozen=True, kw_only=True):
 
 
 class ExplainedUnit(Unit, frozen=True):
-    """A unit, with the fate of its inputs on request."""
+    """A unit; on request, each input says whether it stays or is used up."""
 
     inputs: tuple[ExplainedInput, ...]
 
@@ -219,7 +219,7 @@ class ListedUnits(Result, frozen=True, kw_only=True, tag=schema_name("units")):
     Attributes:
         containers: The container rule under which inputs are used up.
         level: The level at which object nodes are compared.
-        units: Those that were asked for, or all.
+        units: The units that were asked for by id, or all.
 
     Example:
         >>> listed = foon_asp.stats(foon_asp.load(), unit=[0], explain_items=True)
@@ -234,7 +234,7 @@ class ListedUnits(Result, frozen=True, kw_only=True, tag=schema_name("units")):
     units: tuple[ExplainedUnit, ...]
 
     def show(self) -> Iterator[Block]:
-        """Return the units, with the fate of their inputs."""
+        """Return a line for each unit; on request, also its inputs, with why they stay, and its outputs."""
         for unit in self.units:
             yield from step_lines([unit])
             explained = [node for node in unit.inputs if node.why is not UNSET]
@@ -267,7 +267,7 @@ class ListedUnits(Result, frozen=True, kw_only=True, tag=schema_name("units")):
 
     Exits with 0.
     """,
-    pose=the_data,
+    pose=pose_data,
 )
 def stats(
     foon: Foon | File,
@@ -305,26 +305,31 @@ def stats(
     with start_deadline(limits).watched("counting"):
         dataset = (foon if isinstance(foon, Foon) else load(foon)).dataset
         if units or unit or explains:
-            return _listed(dataset, tuple(dict.fromkeys(unit)), container_rule(containers), explains, stays)
+            return _list_units(
+                dataset, tuple(dict.fromkeys(unit)), container_rule(containers), explains, stays
+            )
         return Stats.of(dataset.data)
 
 
-def _listed(
+def _list_units(
     dataset: Dataset, numbers: Sequence[int], rule: ContainerRule, explains: bool, stays: Stays | None
 ) -> ListedUnits:
-    """Return the units with the given ids, or all; if ``explains``, with the fate of their inputs."""
+    """Return the units with the given ids, or all; if ``explains``, each input says whether it stays.
+
+    ``stays`` overrides this for labels and nodes. Unknown ids raise :class:`UserError`.
+    """
     items = items_of(dataset, "used-up", None, stays) if explains else None
     network = (dataset.part((), numbers)[0] if numbers else dataset.data).network
     unit_ids = [network.unit_of_number(number) for number in numbers]
-    ids = [u for u in unit_ids if u is not None] if numbers else range(len(network))
-    listed = tuple(_explained(network, u, rule, dataset.utensils, items) for u in ids)
+    ids = [unit for unit in unit_ids if unit is not None] if numbers else range(len(network))
+    listed = tuple(_explained_unit(network, unit, rule, dataset.utensils, items) for unit in ids)
     return ListedUnits(containers=rule, level=network.level, units=listed)
 
 
-def _explained(
+def _explained_unit(
     network: Network, unit: int, rule: ContainerRule, utensils: frozenset[str], items: UsedUp | None
 ) -> ExplainedUnit:
-    """Return a unit; where items may be used up, with whether and why each input stays."""
+    """Return a unit as a value; with ``items``, each input says whether and why it stays."""
     plain, value = unit_of(network, unit), network.unit(unit)
     needed = set() if items is None else set(needed_inputs(value, rule, utensils, network))
     inputs = []
@@ -341,7 +346,7 @@ def _explained(
 
 
 def _starting_nodes(network: Network) -> StartingNodes:
-    """Return the starting kitchen of a network: what no unit makes, and what units make too."""
+    """Return the starting kitchen of a network, as nodes that no unit makes and nodes that units make."""
     kitchen = starting_kitchen(network)
     not_made, made_too = (
         nodes_of(network, sorted(nodes)) for nodes in (kitchen.nodes - kitchen.made_too, kitchen.made_too)

@@ -17,11 +17,11 @@ from foon_asp.proof.replay import Replay, replay_for, replayable
 from foon_asp.questions.answer import Answer, answer_problem
 from foon_asp.questions.common_options import Posed, start_deadline
 from foon_asp.questions.options import AMOUNT, CONTAINERS, GOAL_OF_PLAN, OBJECTIVES, PLAN_ITEMS
-from foon_asp.questions.posing_plan import a_plan_or_state
-from foon_asp.questions.python_arguments import Objectives, chosen_objectives, read_as
+from foon_asp.questions.posing_plan import pose_plan_or_state
+from foon_asp.questions.python_arguments import Objectives, chosen_objectives, with_items
 from foon_asp.questions.question import TABLES, Kind, Option, Role, question
 from foon_asp.questions.result import Ending, Result
-from foon_asp.questions.tree import OTHER_READING, Tree, posed_tree
+from foon_asp.questions.tree import OTHER_READING, Tree, as_tree
 from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block
 from foon_asp.results.values import Copies, Copy, Unit, Value, changed_motions
@@ -40,9 +40,9 @@ class TracedStep(Value, frozen=True):
     Attributes:
         step: The number of the step, from 1.
         gone: The copies that it uses up.
-        stayed: The copies that it needs and leaves there.
+        stayed: The copies that it needs and does not use up.
         came: The copies that it makes.
-        there: The copies after the step of each consumable object node.
+        there: The number of copies of each consumable object node after the step.
     """
 
     step: int
@@ -54,13 +54,13 @@ class TracedStep(Value, frozen=True):
 
 
 class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("trace")):
-    """The copies added and used up by each step of a plan, and the best way on from a failed step.
+    """The copies that each step of a plan makes and uses up, and the best plan from a failed step on.
 
     Attributes:
-        executed: The steps that ran.
-        stopped: What stops the plan, if anything does.
-        failed: The step that failed, from 1.
-        answer: The best plan from the kitchen before the step that failed.
+        executed: The steps that run.
+        stopped: In words, the copy that is missing for the next step or a goal; null if the plan runs.
+        failed: The number of the step that failed, from 1; null if none did.
+        answer: The best plan from the kitchen before the failed step; null if no step failed.
 
     Example:
         >>> problem = foon_asp.load().problem("ice", items="used-up")
@@ -88,7 +88,7 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
 
     @property
     def ending(self) -> Ending:
-        """The ending of the new plan, if a step failed; else ``DONE`` if the plan runs."""
+        """The ending of the new plan, if a step failed; else ``DONE`` if the plan runs, or ``NEGATIVE``."""
         if self.answer is not None:
             return self.answer.ending
         return Ending.DONE if self.stopped is None else Ending.NEGATIVE
@@ -119,7 +119,7 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
         """
         problem = self.plan.problem
         kitchen = (problem.network.objects[o] for o in sorted(problem.kitchen))
-        endless = (node for node in kitchen if node not in _stock(problem))
+        endless = (node for node in kitchen if node not in _stated_stock(problem))
         return "".join(map(write_node, endless)) + self.stock_text(after)
 
     def stock_text(self, after: int) -> str:
@@ -131,25 +131,29 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
         return "".join(write_counted_node(node, n) for node, n in self.copies(after).items())
 
     def show(self) -> Iterator[Block]:
-        """Return the steps with consumed and added copies, and the final kitchen."""
+        """Return the steps with the copies used up and made, and the copies in the end.
+
+        If a step failed, these are the copies before it, and the new plan follows. If the plan does not run,
+        the copy that is missing follows.
+        """
         done = len(self.executed) if self.failed is None else self.failed - 1
         for step in self.executed[:done]:
             yield f"{step.step:>3}  {step.unit.motion}    [{step.unit.source[0]}]"
-            yield from (f"     - {copies}" for copies in _counted(step.gone))
-            yield from (f"     + {copies}" for copies in _counted(step.came))
+            yield from (f"     - {copies}" for copies in _copy_texts(step.gone))
+            yield from (f"     + {copies}" for copies in _copy_texts(step.came))
         yield f"after step {done} there are, beside what never runs out:"
         yield from (f"     {n} x {node}" for node, n in self.copies(done).items())
         if self.answer is not None:
             yield f"step {self.failed} failed; from here:"
-            yield self._change(self.answer)
+            yield self._plan_change_text(self.answer)
             yield from self.answer.show()
         elif self.stopped is not None:
             yield self.stopped
             if self.plan.problem.items is not None:
                 yield OTHER_READING
 
-    def _change(self, answer: Answer) -> str:
-        """Return in words the differences between the new plan and the rest of the old one."""
+    def _plan_change_text(self, answer: Answer) -> str:
+        """Return in words the units in which the new plan differs from what remained of the old one."""
         assert self.failed is not None
         if answer.tree is None:
             return "no plan was found"
@@ -160,19 +164,23 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
         return f"compared with what was left of the plan: {changes}"
 
 
-def _counted(copies: Iterable[Copy]) -> Iterator[str]:
-    """Return the object nodes of copies, each with its number where that is not one."""
+def _copy_texts(copies: Iterable[Copy]) -> Iterator[str]:
+    """Yield each object node of the copies once, with their number if that is not one: ``2 x egg``."""
     for node, number in Counter(map(str, copies)).items():
         yield node if number == 1 else f"{number} x {node}"
 
 
-def _stock(problem: Problem) -> dict[ObjectNode, int]:
+def _stated_stock(problem: Problem) -> dict[ObjectNode, int]:
+    """Return the number of copies of each node in stock; empty if items last."""
     return {} if problem.items is None else dict(problem.items.stock)
 
 
-def _states(problem: Problem, replay: Replay) -> Iterator[dict[ObjectNode, int]]:
-    """Yield the number of copies of each node, at the beginning and after each step."""
-    stock = _stock(problem)
+def _copies_after_steps(problem: Problem, replay: Replay) -> Iterator[dict[ObjectNode, int]]:
+    """Yield the number of copies of each consumable node, at the beginning and after each step.
+
+    Nodes without a copy are left out. Available nodes without a stock never run out, and are not counted.
+    """
+    stock = _stated_stock(problem)
     counts = Counter({node: n for node, n in stock.items() if problem.at_hand(node)})
     changes = [((), ()), *((step.came, step.gone) for step in replay.steps)]
     for added, consumed in changes:
@@ -195,7 +203,12 @@ def _trace_and_write(
     state: Path | None = None,
     **options: Any,
 ) -> Result:
-    """Trace as ``foon-asp trace`` does, and write the kitchen and the stock of a step."""
+    """Trace a plan, and write the kitchen and the stock after a step into files, where named.
+
+    ``after`` is the number of steps done; by default, all that run, or those before the failed step. With a
+    ``state``, the result is that of :func:`ways_on`. Raises :class:`UserError` for options that do not go
+    together.
+    """
     if state is not None:
         from foon_asp.questions.ways_on import ways_on  # noqa: PLC0415 (most traces are of plans)
 
@@ -253,7 +266,7 @@ def _trace_and_write(
     CONTAINERS,
     *PLAN_ITEMS,
     AMOUNT,
-    pose=a_plan_or_state,
+    pose=pose_plan_or_state,
     formats=TABLES,
     command=_trace_and_write,
     help_="""
@@ -306,18 +319,18 @@ def trace(
         (9, 6)
     """
     chosen = chosen_objectives(problem, objectives)
-    problem = read_as(problem, items)
-    tree = posed_tree(problem, plan)
+    problem = with_items(problem, items)
+    tree = as_tree(problem, plan)
     network = tree.problem.network
     replay = replay_for(replayable(tree.problem, tree), tree)
-    states = tuple(_states(tree.problem, replay))
+    states = tuple(_copies_after_steps(tree.problem, replay))
     lack, answer = replay.shortage, None
     if failed is not None:
         if not 1 <= failed <= len(replay.steps):
             last = len(replay.steps)
             raise UserError(f"found the step {failed}, expected one up to which the plan runs: 1 to {last}")
         limits = Settings(deadline=start_deadline(options))
-        answer = answer_problem(_from_here(problem, states[failed - 1]), chosen, limits)
+        answer = answer_problem(_problem_from(problem, states[failed - 1]), chosen, limits)
     executed = []
     for number, step in enumerate(replay.steps, 1):
         gone, stayed, came = (
@@ -335,12 +348,16 @@ def trace(
     return traced.knowing(plan=tree, states=states)
 
 
-def _from_here(problem: Problem, copies: dict[ObjectNode, int]) -> Problem:
-    """Return a problem whose kitchen holds the given copies."""
-    whole = problem.whole
-    network = whole.network
+def _problem_from(problem: Problem, copies: dict[ObjectNode, int]) -> Problem:
+    """Return the problem over the whole network in which the available nodes are those with copies.
+
+    If items last, the nodes are added to the kitchen. If items are used up, the copies are the stock, and
+    nodes that never run out stay available.
+    """
+    problem = problem.whole
+    network = problem.network
     present = {o for node in copies if (o := network.object_id(node)) is not None}
-    if whole.items is None:
-        return replace(whole, kitchen=whole.kitchen | present, origin=None)
-    items = replace(whole.items, stock=copies)
-    return replace(whole, kitchen=whole.endless | present, items=items, origin=None)
+    if problem.items is None:
+        return replace(problem, kitchen=problem.kitchen | present, origin=None)
+    items = replace(problem.items, stock=copies)
+    return replace(problem, kitchen=problem.endless | present, items=items, origin=None)

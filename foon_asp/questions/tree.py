@@ -23,7 +23,7 @@ if TYPE_CHECKING:  # only drawings need it
     from foon_asp.pictures.drawing import Drawing
 
 OTHER_READING = "if what is there can be used again: --items lasting"
-"""How else a plan that lacks a copy can be read."""
+"""Advice for a plan that lacks a copy: it may run if items last."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -90,7 +90,7 @@ class Tree(TaskTree):
         Raises:
             UserError: for a file that is not understood or has no tree.
         """
-        listed, _ = read_listed(Path(file), lambda: problem.whole.network)
+        listed, _ = read_listed_units(Path(file), lambda: problem.whole.network)
         return cls.given(problem, [unit for unit, _ in listed], [source for _, source in listed])
 
     @property
@@ -100,11 +100,11 @@ class Tree(TaskTree):
         return tuple(unit for unit in ids if unit is not None)
 
     def __str__(self) -> str:
-        comments = filter(None, [f"Task tree for: {self._goals()}", self.claim])
+        comments = filter(None, [f"Task tree for: {self._goals_text()}", self.claim])
         return write_units(self.units, comments, self.problem.amounts)
 
     def __repr__(self) -> str:
-        return f"<Tree for {self._goals()}: {counted(len(self), 'unit')}>"
+        return f"<Tree for {self._goals_text()}: {counted(len(self), 'unit')}>"
 
     def lack_text(self, lack: Lack) -> str:
         """Return in words the missing copy, the step that needs it, and the steps that used up the copies.
@@ -150,15 +150,18 @@ class Tree(TaskTree):
         return f"{self.units[position - 1].motion}    [{self.places[position - 1].short}]"
 
     def drawing(self) -> "Drawing":
-        """Return the drawing; units of a tree without a claim are numbered as they execute."""
+        """Return the drawing of the tree; of a plan if items are used up.
+
+        Units of a tree without a claim are numbered as they execute.
+        """
         from foon_asp.pictures.tree_drawing import plan_drawing, tree_drawing  # noqa: PLC0415
         from foon_asp.questions.used_up_note import used_up_note  # noqa: PLC0415
 
         if self.problem.items is not None:
             return plan_drawing(self.problem, self.units, caption=self.claim)
         network = self.problem.network
-        met = {node for unit in self.units for nodes in (unit.inputs, unit.outputs) for node in nodes}
-        kitchen = {node for node in met.union(self.problem.goal_nodes) if self.problem.at_hand(node)}
+        touched = {node for unit in self.units for nodes in (unit.inputs, unit.outputs) for node in nodes}
+        kitchen = {node for node in touched.union(self.problem.goal_nodes) if self.problem.at_hand(node)}
         goals = self.problem.goal_nodes
         rule, utensils = self.problem.containers, self.problem.utensils
         claim = [self.claim, *used_up_note(self.problem, self.units)] if self.claim else ()
@@ -174,7 +177,8 @@ class Tree(TaskTree):
 
         return svg_picture(self.drawing())
 
-    def _goals(self) -> str:
+    def _goals_text(self) -> str:
+        """Return the goal nodes in one-line notation, joined by ``+``."""
         return " + ".join(map(str, self.problem.goal_nodes))
 
     def _repr_mimebundle_(
@@ -186,32 +190,37 @@ class Tree(TaskTree):
         return picture_bundle(self, self.drawing())
 
 
-def posed_tree(problem: Problem, tree: str | PathLike[str] | Iterable[FunctionalUnit]) -> Tree:
-    """Make a tree for a problem from the path of a file, from units, or from a tree with its places."""
+def as_tree(problem: Problem, tree: str | PathLike[str] | Iterable[FunctionalUnit]) -> Tree:
+    """Return a tree for a problem: read from the path of a file, or made of units or of another tree."""
     if isinstance(tree, str | PathLike):
         return Tree.read(problem, tree)
     return Tree.given(problem, tree, tree.places if isinstance(tree, Tree) else ())
 
 
-def read_listed(
+def read_listed_units(
     file: Path, network: Callable[[], Network]
 ) -> tuple[Sequence[tuple[FunctionalUnit, Source]], Sequence[ObjectNode]]:
-    """Return the units of a tree in the order listed, with their places, and the goals if an answer has them.
+    """Return the units that a file lists, each with its place, and the goals if the file is an answer.
 
-    ``network`` is called if the file has ids, and returns the network that the ids refer to. Assumptions are
-    warnings to the caller. Raises :class:`UserError` as :meth:`Tree.read`.
+    ``network`` returns the network that ids in the file refer to; it is called only if there are ids.
+    Assumptions of the reader are warnings. Raises :class:`UserError` for a file that is not understood or has
+    no tree.
     """
     listed = read_answer(file).with_units(file, network)
     return listed.units or (), listed.goals
 
 
 def read_answer(file: Path) -> ListedTree:
-    """Read the units of a tree as :func:`read_listed` does, and the other fields of an answer."""
-    who = caller()
-    reader = FoonReader(who.lenient)
+    """Return the tree in a file, with the other fields if the file is an answer.
+
+    Units that the file gives by id are not looked up. Assumptions of the reader are warnings. Raises
+    :class:`NoTreeError` for an answer without a tree.
+    """
+    current_caller = caller()
+    reader = FoonReader(current_caller.lenient)
     listed = read_listed_tree(file, reader)
     for remark in summarize(reader.diagnostics):
-        who.reporter.warning(remark)
+        current_caller.reporter.warning(remark)
     if listed.units is None:
         raise NoTreeError(f"{file}: the answer has no tree ({listed.status})")
     return listed

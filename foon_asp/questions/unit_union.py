@@ -1,4 +1,4 @@
-"""Units of every optimal tree and of some, proved without a list of the trees."""
+"""The units that are in every optimal tree or in some of them, proved without a list of the trees."""
 
 from collections.abc import Iterator
 from enum import StrEnum
@@ -11,8 +11,13 @@ from foon_asp.problem import Problem
 from foon_asp.questions.answer import Answer, WithAnswer
 from foon_asp.questions.caller import caller
 from foon_asp.questions.common_options import CommonOptions, settings_of
-from foon_asp.questions.python_arguments import Objectives, asked_with, at_least, chosen_objectives
-from foon_asp.questions.question import asked_in_python, not_built
+from foon_asp.questions.python_arguments import (
+    Objectives,
+    chosen_objectives,
+    problem_for_rules,
+    require_at_least,
+)
+from foon_asp.questions.question import not_for_used_up_items, python_question
 from foon_asp.questions.result import Ending
 from foon_asp.results.table import Block
 from foon_asp.results.values import Mention
@@ -21,7 +26,7 @@ from foon_asp.text.json_value import schema_name
 
 
 class Membership(StrEnum):
-    """In which of the trees a unit is."""
+    """Whether a unit is in every one of the trees, in some, or not decided."""
 
     EVERY = "every"
     NOT_EVERY = "some"
@@ -36,7 +41,7 @@ _HEADINGS = {
 
 
 class UnitOfTrees(Mention, frozen=True, kw_only=True):
-    """A unit, and in which of the trees it is.
+    """A unit that is in some of the trees, or in all.
 
     Attributes:
         trees: Whether ``every`` tree has it, or only ``some``; ``unknown`` where a limit came first.
@@ -46,13 +51,13 @@ class UnitOfTrees(Mention, frozen=True, kw_only=True):
 
 
 class UnitUnion(WithAnswer, frozen=True, kw_only=True, tag=schema_name("unit-union")):
-    """The units of every optimal tree, and those of some.
+    """The units that are in every optimal tree, and those that are in some of them.
 
     Attributes:
         within: How much worse than the best tree a tree may be by the first objective, in percent; 0 for
             optimal trees.
-        complete: Whether all units are listed, and of each it is proved in which trees it is.
-        units: Those of every tree first, then those of some, by id.
+        complete: Whether it is proved for each unit in which trees it is.
+        units: The units of every tree first, then the others, in the order of their ids.
         answer: The best tree.
 
     Example:
@@ -70,7 +75,7 @@ class UnitUnion(WithAnswer, frozen=True, kw_only=True, tag=schema_name("unit-uni
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if everything is proved, ``NEGATIVE`` if no tree exists."""
+        """The ending of the best tree; ``LIMIT`` unless everything is proved."""
         return self.answer.ending if self.complete else Ending.LIMIT
 
     def show(self) -> Iterator[Block]:
@@ -88,7 +93,7 @@ class UnitUnion(WithAnswer, frozen=True, kw_only=True, tag=schema_name("unit-uni
             yield from (f"  {unit.id}  {unit}" for unit in units)
 
 
-@asked_in_python
+@python_question
 def unit_union(
     problem: Problem,
     objectives: Objectives = "units",
@@ -98,7 +103,7 @@ def unit_union(
 ) -> UnitUnion:
     """Find the units of every optimal tree and those of some, without a list of the trees.
 
-    A tree that is worse than the best one counts only if it needs each of its units.
+    A tree that is worse than the best one counts only if no unit of it can be left out.
 
     Parameters:
         objectives: What is best: one objective, or several in a list, the most important first.
@@ -116,15 +121,16 @@ def unit_union(
         >>> {str(unit.trees) for unit in found.units}, len(found.units)
         ({'every'}, 9)
     """
-    at_least(within, 0, "within")
+    require_at_least(within, 0, "within")
     chosen, settings = chosen_objectives(problem, objectives), settings_of(options)
-    problem = asked_with(problem, settings)
+    problem = problem_for_rules(problem, settings)
     if problem.items is not None:
-        raise not_built("alternatives --union")
+        raise not_for_used_up_items("alternatives --union")
     union = tree_union(problem, chosen, settings, caller().reporter, Fraction(within, 100))
     network = problem.network
 
     def membership(unit: int) -> Membership:
+        """Return whether a unit of the union, by id, is in every tree, in some, or not decided."""
         if unit in union.undecided:
             return Membership.UNKNOWN
         return Membership.EVERY if unit in union.in_every else Membership.NOT_EVERY
@@ -137,6 +143,9 @@ def unit_union(
         **head_of(problem, chosen),
         within=within,
         complete=not union.undecided and union.best.proof is not None,
-        units=tuple(UnitOfTrees(m.id, m.motion, m.source, trees=trees) for m, trees in mentions),
+        units=tuple(
+            UnitOfTrees(mention.id, mention.motion, mention.source, trees=trees)
+            for mention, trees in mentions
+        ),
         answer=Answer.of(union.best),
     )

@@ -1,4 +1,4 @@
-"""A note where a tree would not run if items were used up."""
+"""The note that a tree would not run if items were used up."""
 
 from collections.abc import Iterable, Sequence
 
@@ -10,27 +10,31 @@ from foon_asp.proof.used_up_run import used_up_run
 
 
 def used_up_note(problem: Problem, tree: Iterable[FunctionalUnit]) -> list[str]:
-    """Return a note of one line if items last and the tree would not run with items used up, else none.
+    """Return a note, in a list, that a tree for lasting items would not run if items were used up.
 
-    There is no note if no step used up the copy that is missing. If units, the kitchen or the goals have
-    amounts that matter for the tree, the note says that amounts are not counted.
+    The list is empty if the tree would run, or if no step uses up the copy that is missing. It is also empty
+    for a problem whose items are used up. If the tree has units, items or goals with amounts, the note says
+    instead that amounts are not counted.
     """
     units = tuple(tree)
     if problem.items is not None:
         return []
-    counted = _counted(problem, units)
-    if counted:
-        return [f"note: amounts, as {counted}, are not counted where items last: --items used-up"]
+    amount_text = _amount_text(problem, units)
+    if amount_text:
+        return [f"note: amounts, as {amount_text}, are not counted where items last: --items used-up"]
     run = used_up_run(problem, units)
     if run.shortage is None or not run.shortage.consumers:
         return []
-    text = _lack_text(problem, units, run.shortage)
-    text += "" if run.proved else ", and no other order was found"
-    return [f"note: {text}: with each item used once, see --items used-up"]
+    shortage_text = _shortage_text(problem, units, run.shortage)
+    shortage_text += "" if run.proved else ", and no other order was found"
+    return [f"note: {shortage_text}: with each item used once, see --items used-up"]
 
 
-def _counted(problem: Problem, units: Sequence[FunctionalUnit]) -> str:
-    """Return in words an amount that a tree does not count, of a unit, an item or a goal; empty if none."""
+def _amount_text(problem: Problem, units: Sequence[FunctionalUnit]) -> str:
+    """Return in words the first amount that concerns a tree: ``of flour in the kitchen``.
+
+    Amounts are those of its units, its items in the kitchen, and the goals. The text is empty without one.
+    """
     if problem.amounts:
         for unit in units:
             if problem.amounts.get(unit):
@@ -49,14 +53,14 @@ def _counted(problem: Problem, units: Sequence[FunctionalUnit]) -> str:
     return ""
 
 
-def _lack_text(problem: Problem, units: Sequence[FunctionalUnit], lack: Shortage) -> str:
-    """Return in words which steps compete for the copy that is missing."""
-    node, before = lack.node, [position + 1 for position in lack.consumers]
+def _shortage_text(problem: Problem, units: Sequence[FunctionalUnit], shortage: Shortage) -> str:
+    """Return in words which steps compete for the copy that is missing: ``steps 1 and 3 both take flour``."""
+    node, before = shortage.node, [position + 1 for position in shortage.consumers]
     used = f"{_steps_text(before)} use{'s' if len(before) == 1 else ''} up"
-    if lack.step is None:
+    if shortage.step is None:
         return f"{used} the goal {node}"
-    step = lack.step + 1
-    if UsedUp().fate(units[lack.step], node, problem.utensils).stays:
+    step = shortage.step + 1
+    if UsedUp().fate(units[shortage.step], node, problem.utensils).stays:
         return f"step {step} needs {node}, which {used}"
     if len(before) == 1:
         return f"{_steps_text(sorted([*before, step]))} both take {node}"
@@ -64,5 +68,6 @@ def _lack_text(problem: Problem, units: Sequence[FunctionalUnit], lack: Shortage
 
 
 def _steps_text(steps: Sequence[int]) -> str:
+    """Return the numbers of steps in words: ``steps 1, 2 and 4``."""
     *first, last = map(str, steps)
     return f"steps {', '.join(first)} and {last}" if first else f"step {last}"

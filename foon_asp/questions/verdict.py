@@ -1,4 +1,4 @@
-"""The verdict of a simulation, as values and in words: the order that executes, or the obstacle."""
+"""The verdict of a simulation, as values and in words: an order that executes, or the obstacle."""
 
 from collections.abc import Iterator
 from typing import TypedDict
@@ -21,9 +21,9 @@ class Stop(Value, frozen=True):
     Attributes:
         position: The first step that cannot be done, from 1; null where a goal is missing in the end.
         unit: The unit of that step, or null.
-        missing: What the step lacks, or the goal.
-        cycle: The steps that wait for each other, from 1; none where no cycle is to blame.
-        used_up_by: Where items are used up: the steps that use up the copies there are.
+        missing: The node that the step lacks, or the goal that is missing.
+        cycle: The numbers of the steps that wait for each other, from 1; empty if no cycle is the cause.
+        used_up_by: Where items are used up: the numbers of the steps that used up the copies, from 1.
     """
 
     position: int | None
@@ -48,7 +48,7 @@ class Stop(Value, frozen=True):
 
 
 class SimulationFields(TypedDict):
-    """Fields of a result about a simulation; ``None`` without a tree."""
+    """The fields of a result that are about the simulation of a tree."""
 
     verdict: Verdict
     as_listed: Stop | None
@@ -58,7 +58,7 @@ class SimulationFields(TypedDict):
 
 
 def simulation_fields(tree: Tree, simulation: Simulation) -> SimulationFields:
-    """Return the fields of a result that are about the simulation of a tree."""
+    """Return the fields of a result from the simulation of its tree; positions count from 1."""
     return {
         "verdict": simulation.verdict,
         "as_listed": Stop.of(tree, simulation.as_listed),
@@ -69,7 +69,10 @@ def simulation_fields(tree: Tree, simulation: Simulation) -> SimulationFields:
 
 
 def verdict_lines(tree: Tree, simulation: Simulation) -> Iterator[str]:
-    """Return lines with the verdict: the order that executes, or the obstacle."""
+    """Yield lines: the verdict, the obstacles, the costs and notes.
+
+    If only another order executes, it follows. Units that the network lacks are listed in place of the costs.
+    """
     problem, verdict = tree.problem, simulation.verdict
     yield f"{verdict} ({problem.conditions})"
     for order, obstacle in (("as listed", simulation.as_listed), ("in any order", simulation.obstacle)):
@@ -92,14 +95,17 @@ def verdict_lines(tree: Tree, simulation: Simulation) -> Iterator[str]:
 
 
 def _obstacle_text(tree: Tree, obstacle: Obstacle) -> str:
-    """Return in words why a tree does not execute."""
+    """Return in words which unit lacks which node, or which goal is not made, and the causes.
+
+    Causes are a unit that took the node as given, units that used it up, and a cycle of units.
+    """
     missing = f"{obstacle.amount} x {obstacle.missing}" if obstacle.amount > 1 else str(obstacle.missing)
     if obstacle.unit is None:
         text = f"every unit runs, but the goal is not made: {missing}"
     else:
         position = obstacle.unit + 1
         text = f"unit {position}, {tree.step_text(position)}, lacks {missing}"
-    skipping = [n for n, unit in enumerate(tree, 1) if _skips(tree.problem, unit, obstacle.missing)]
+    skipping = [n for n, unit in enumerate(tree, 1) if _takes_as_given(tree.problem, unit, obstacle.missing)]
     if skipping:
         first = f"unit {skipping[0]}, {tree.step_text(skipping[0])}"
         text += f"; {first}, took it as given, and so did not make it"
@@ -112,8 +118,8 @@ def _obstacle_text(tree: Tree, obstacle: Obstacle) -> str:
     return text
 
 
-def _skips(problem: Problem, unit: FunctionalUnit, node: ObjectNode) -> bool:
-    """Return whether a unit lists a node as an output but, by the container rule, does not make it."""
+def _takes_as_given(problem: Problem, unit: FunctionalUnit, node: ObjectNode) -> bool:
+    """Return whether a unit has a node among its outputs but, by the container rule, does not make it."""
     if node not in unit.outputs:
         return False
     return node not in given_outputs(unit, problem.containers, problem.utensils, problem.network)

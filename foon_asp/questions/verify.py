@@ -21,7 +21,7 @@ from foon_asp.proof.rule_meaning import ALL_STEPS, OWN, Rule
 from foon_asp.proof.verify_plan import is_of_plan, verify_any
 from foon_asp.questions.certificate_text import bound_text, proof_size, trusted_text
 from foon_asp.questions.common_options import Limits, start_deadline
-from foon_asp.questions.posing import DATA, Command, the_data
+from foon_asp.questions.posing import DATA, Command, pose_data
 from foon_asp.questions.question import Kind, Option, Role, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.results.document import AboutGoals
@@ -49,7 +49,10 @@ _NAMED_BY = {
 
 
 class OtherDataError(proof.RefusedError):
-    """The certificate is about other data than those named; ``differing`` names the digest that differs."""
+    """The certificate is about other data than those named.
+
+    ``differing`` is the name of the part that differs, for example ``kitchen``.
+    """
 
     def __init__(self, differing: str, message: str) -> None:
         super().__init__(message)
@@ -63,18 +66,18 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
         verified: True; a certificate that is refused has no claim.
         claim: optimal: no tree is better than this one; bound: no tree costs less than the bound;
             infeasible: there is no tree.
-        bound: The bound in words, or null.
+        bound: The bound in words; null for another claim.
         costs: What the tree costs by the objectives of the claim; null without a tree.
         rules: The ready-made constraints that the claim is about, with their values.
-        trusted: The assumptions in words: about user-defined measures and rules, and digests that a store
+        trusted: In words, what is assumed of user-defined measures and rules, and of digests that a store
             states.
-        checked: The assumptions that clingo checked.
+        checked: In words, what clingo checked of user-defined measures and rules.
         not_covered: The constraints that the claim is not about.
         tree: The units of the tree, by id; null without a tree.
-        proved_by: How many cuts the proof has, and of plans the balance of how many nodes.
-        used_up: What the claim says in words of items that are used up, beside the rule; null where items
-            last.
-        proved_checker: What the checker proved in Coq says: accepted, or why it has not checked the
+        proved_by: In words, the number of cuts of the proof; for plans, also of nodes with a balance.
+        used_up: In words, the stock, the copies wanted, and the items that stay, as the claim states them;
+            null where items last.
+        proved_checker: The answer of the checker proved in Coq: accepted, or why it did not check the
             certificate; null where it was not asked.
 
     Example:
@@ -117,7 +120,7 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
             verified: The verified claim.
             network: The network of the claim.
             content: The certificate as plain values.
-            with_clingo: Whether clingo checked what is otherwise taken on trust.
+            with_clingo: Whether clingo checked the costs by measures and the user rules.
             starting: The object nodes that can be needed, by id, where no kitchen was given.
             stated: The digests that were not computed, because a store states them.
             by_proved_checker: The answer of the proved checker, if it was asked.
@@ -159,7 +162,7 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
         return Ending.DONE if self.proved_checker in (None, proved_checker.ACCEPTED) else Ending.LIMIT
 
     def show(self) -> Iterator[Block]:
-        """Return the goals, the claim, and its assumptions."""
+        """Return the goals, the claim, its assumptions, and the size of the proof."""
         yield from (f"goal: {goal}" for goal in self.goals)
         tree, trees = ("task tree", "trees") if self.items == "lasting" else ("plan", "plans")
         under = self.conditions
@@ -171,7 +174,7 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
         elif self.bound is not None:
             yield f"verified: a bound on all {tree}s ({under}): {self.bound}"
         else:
-            figures = ", ".join(_figure(objective, cost) for objective, cost in (self.costs or {}).items())
+            figures = ", ".join(_cost_text(objective, cost) for objective, cost in (self.costs or {}).items())
             yield f"verified: no {tree} is better by {', then '.join(self.objectives)} ({under}): {figures}"
         yield from (f"among the {trees} that keep to {rule}" for rule in self.rules)
         yield from (f"not covered, so among all {trees}: {name}" for name in self.not_covered)
@@ -183,7 +186,7 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
 
 
 class Refused(Result, frozen=True, kw_only=True, tag=schema_name("refused")):
-    """The first fault of a certificate that is wrong, as ``foon-asp verify`` shows it.
+    """A certificate that is wrong, with the first fault found, as ``foon-asp verify`` shows it.
 
     Attributes:
         verified: False.
@@ -199,12 +202,12 @@ class Refused(Result, frozen=True, kw_only=True, tag=schema_name("refused")):
         return Ending.NEGATIVE
 
     def show(self) -> Iterator[Block]:
-        """Return the reason."""
+        """Return one line with the reason."""
         yield f"refused: {self.reason}"
 
 
 def _items_lines(used_up: proof.UsedUp, network: Network) -> Iterator[str]:
-    """Yield lines on the statements of a certificate about consumable items."""
+    """Yield lines on the stock, the copies wanted, and the items that stay, as a certificate states them."""
     nodes = network.objects
     if used_up.stock:
         yield "in stock: " + ", ".join(f"{copies} x {nodes[o]}" for o, copies in used_up.stock.items())
@@ -218,21 +221,26 @@ def _items_lines(used_up: proof.UsedUp, network: Network) -> Iterator[str]:
 
 
 def _rule_text(rule: Rule) -> str:
-    """Return a rule with its values, escaped: a line end in a value could forge a claim."""
+    """Return a rule with its values as one line; line ends are escaped, since they could forge a claim."""
     values = {name: value if isinstance(value, list) else [value] for name, value in rule.items()}
     parameters = (f"{name}: {', '.join(map(str, value))}" for name, value in values.items() if name != "rule")
     return escaped(f"{rule['rule']} ({'; '.join(parameters)})")
 
 
-def _figure(objective: str, cost: int | Fraction | None) -> str:
+def _cost_text(objective: str, cost: int | Fraction | None) -> str:
+    """Return a cost with its objective, as ``3 units``; success also rounded."""
     return f"success {cost} ≈ {float(cost or 0):.4g}" if objective == "success" else f"{cost} {objective}"
 
 
-def _posed(command: Command, data_paths: Sequence[Path]) -> tuple[Foon | Problem]:
-    """Pose the data that are named, or the relaxation of a planning task."""
+def _pose_data_or_task(command: Command, data_paths: Sequence[Path]) -> tuple[Foon | Problem]:
+    """Return the data of the command with those at the paths, or the problem of a planning task there.
+
+    The result is a tuple of one. A task is read as its delete relaxation. Raises :class:`UserError` for
+    options for data beside a task.
+    """
     if not any(map(_is_task, data_paths)):
         command.add_sources(data_paths)
-        return the_data(command)
+        return pose_data(command)
     if any(map(command.given, DATA)):
         raise UserError("found options for data beside a planning task: a certificate is about one of them")
     from foon_asp.planning.task_files import read_task  # noqa: PLC0415 (it loads clingo)
@@ -242,7 +250,7 @@ def _posed(command: Command, data_paths: Sequence[Path]) -> tuple[Foon | Problem
 
 
 def _is_task(file: Path) -> bool:
-    """Return whether a file is of a planning task, by its first bytes."""
+    """Return whether a file is of a planning task (PDDL or SAS), by its first bytes."""
     from foon_asp.planning.sas_reader import BEGINNING  # noqa: PLC0415 (for few certificates)
 
     begins = read_beginning(file, 100).removeprefix(BOM_UTF8).lstrip()
@@ -263,7 +271,7 @@ def verify_or_refuse(
     proved: bool = False,
     **limits: Unpack[Limits],
 ) -> VerifiedCertificate | Refused:
-    """Check a certificate as ``foon-asp verify`` does.
+    """Check a certificate, and return the claim or, for a wrong certificate, the fault.
 
     Raises:
         UserError: for a certificate about other data, with advice on which data to name.
@@ -293,7 +301,7 @@ def verify_or_refuse(
         metavar="[RECIPE|DIR|STORE|TASK]...",
         positional=True,
     ),
-    pose=_posed,
+    pose=_pose_data_or_task,
     command=verify_or_refuse,
     help_="""
     \b
@@ -362,17 +370,23 @@ def verify(
         )
     with start_deadline(limits).watched("checking the certificate"):
         foon = data if isinstance(data, Foon) else Foon.of(data)
-        return _verified(foon, content, with_clingo, full or proved, proved)
+        return _verify_content(foon, content, with_clingo, full or proved, proved)
 
 
-def _verified(foon: Foon, content: Any, with_clingo: bool, full: bool, proved: bool) -> VerifiedCertificate:
-    """Return the claim that a certificate proves about data."""
+def _verify_content(
+    foon: Foon, content: Any, with_clingo: bool, full: bool, proved: bool
+) -> VerifiedCertificate:
+    """Return the claim that a certificate, as plain values, proves about data.
+
+    ``full`` reads all of a store; ``proved`` also asks the checker proved in Coq. Raises
+    :class:`RefusedError` for a wrong certificate, and :class:`OtherDataError` for other data.
+    """
     dataset = foon.dataset
     subject = _subject(dataset, content, full)
     try:
         verified = verify_any(content, subject)
     except proof.RefusedError as refused:
-        differing = _other_part(content, subject)
+        differing = _differing_part(content, subject)
         if differing is None:
             raise
         raise OtherDataError(differing, str(refused)) from None
@@ -383,7 +397,7 @@ def _verified(foon: Foon, content: Any, with_clingo: bool, full: bool, proved: b
     user_rules = proof.trusted(content)
     if with_clingo and (verified.trusted or user_rules is not None):
         problem = dataset.problem(verified.goals, verified.containers, everything=True)
-        _check_with_clingo(problem, verified)
+        _check_measures_with_clingo(problem, verified)
         if user_rules is not None:
             from foon_asp.certificate.own_rules import check_with_clingo  # noqa: PLC0415 (the solver)
 
@@ -398,12 +412,15 @@ def _verified(foon: Foon, content: Any, with_clingo: bool, full: bool, proved: b
 
 
 def _subject(dataset: Dataset, content: Any, full: bool) -> proof.Subject:
-    """Return the data that a certificate can be about, with the stand-ins for its goals."""
+    """Return the data that a certificate can be about; of a store, only the part it needs unless ``full``.
+
+    If there are stand-ins, or the certificate is about a repair, the data have the stand-ins for its goals.
+    """
     goals, steps = _goal_ids(content), _step_ids(content)
     if steps and dataset.stand_ins is None:  # a repair has them without being asked for
         dataset = dataset.with_stand_in_table(StandInTable.usual())
     if dataset.stand_ins is None:
-        return dataset.subject(full or _looks_at_all(content), goals)
+        return dataset.subject(full or _needs_whole_network(content), goals)
     goals = [goal for goal in goals if 0 <= goal < len(dataset.data.network.objects)]
     objectives, containers = content.get("objective"), content.get("containers")
     everything = bool(content.get("rules")) or (objectives or ["dissimilarity"])[:1] != ["dissimilarity"]
@@ -414,10 +431,11 @@ def _subject(dataset: Dataset, content: Any, full: bool) -> proof.Subject:
     return dataset.subject_with_stand_ins(goals, rule, everything, steps)
 
 
-def _other_part(content: Any, subject: proof.Subject) -> str | None:
-    """Return the name of the first part of the data with another digest than in the certificate.
+def _differing_part(content: Any, subject: proof.Subject) -> str | None:
+    """Return the name of the first part of the data whose digest differs from that in the certificate.
 
-    It is ``task`` for a certificate about a planning task, and ``None`` if no such part is found.
+    The name is ``task`` for a certificate about a planning task. It is ``None`` if no part differs, or if the
+    certificate itself is damaged.
     """
     with suppress(RecursionError, KeyError, TypeError, AttributeError):  # the content is no certificate
         if content["seal"] == proof.seal(content):
@@ -426,22 +444,24 @@ def _other_part(content: Any, subject: proof.Subject) -> str | None:
             if "stand-ins" in {*stated} ^ {*actual}:
                 return "stand-ins"
             del actual["sources"]  # only some rules depend on them
-            other = next(
+            differing = next(
                 (name for name, digest in actual.items() if stated.get(name, digest) != digest), None
             )
-            return other and ("task" if _are_facts(goal["node"] for goal in content["goals"]) else other)
+            return differing and (
+                "task" if _are_facts(goal["node"] for goal in content["goals"]) else differing
+            )
     return None
 
 
 def _goal_ids(content: Any) -> list[int]:
-    """Return the goal ids of a certificate, without values of other types; the proof check comes later."""
+    """Return the goal ids in a certificate that is not checked yet; values of other types are left out."""
     goals = content.get("goals") if isinstance(content, dict) else None
     ids = [goal.get("id") for goal in goals if isinstance(goal, dict)] if isinstance(goals, list) else []
     return [o for o in ids if type(o) is int]
 
 
 def _step_ids(content: Any) -> list[int]:
-    """Return the unit ids of the tree whose repair a certificate is about; empty for other certificates."""
+    """Return the unit ids of the tree that a certificate of a repair is about; empty for others."""
     rules = content.get("rules") if isinstance(content, dict) else None
     if not isinstance(rules, list) or len(rules) != 1 or not isinstance(rules[0], dict):
         return []
@@ -449,8 +469,8 @@ def _step_ids(content: Any) -> list[int]:
     return [unit for unit in units if type(unit) is int] if isinstance(units, list) else []
 
 
-def _looks_at_all(content: Any) -> bool:
-    """Return whether a certificate is about a plan, rules or prices, which are checked unit by unit."""
+def _needs_whole_network(content: Any) -> bool:
+    """Return whether a certificate is about a plan, rules or prices, whose check looks at every unit."""
     if not isinstance(content, dict) or is_of_plan(content):
         return True
     objectives = content.get("objective")
@@ -458,7 +478,7 @@ def _looks_at_all(content: Any) -> bool:
     return bool(content.get("rules") or content.get("forbidden")) or priced
 
 
-def _check_with_clingo(problem: Problem, verified: proof.Verified) -> None:
+def _check_measures_with_clingo(problem: Problem, verified: proof.Verified) -> None:
     """Check the stated costs of units by measures; raises :class:`RefusedError` for a wrong one."""
     from foon_asp.rules.measure import Measure, wrong_cost  # noqa: PLC0415 (the solver)
 

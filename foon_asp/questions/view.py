@@ -35,14 +35,19 @@ from foon_asp.questions.common_options import CommonOptions, Limits, settings_of
 from foon_asp.questions.options import AMOUNT, CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.page_data import PageData, UnitRate
 from foon_asp.questions.pareto import Front, pareto
-from foon_asp.questions.posing import Command, is_for_goals, one_problem, the_data
-from foon_asp.questions.python_arguments import Objectives, asked_with, chosen_objectives, whole
+from foon_asp.questions.posing import Command, is_picture_of_tree, pose_data, pose_problem
+from foon_asp.questions.python_arguments import (
+    Objectives,
+    chosen_objectives,
+    over_whole_network,
+    problem_for_rules,
+)
 from foon_asp.questions.question import Kind, Option, Role, question
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.search import Retrieved, search
-from foon_asp.questions.search_options import known_searches
+from foon_asp.questions.search_options import usable_searches
 from foon_asp.questions.shopping_list import Shopping, shopping_list
-from foon_asp.questions.tree import posed_tree, read_listed
+from foon_asp.questions.tree import as_tree, read_listed_units
 from foon_asp.questions.why_not import Explanation, why_not
 from foon_asp.results.proof_cases import ProofCases
 from foon_asp.text.json_value import Json
@@ -67,7 +72,7 @@ _FOR_THE_BEST = {
 
 
 class PagePart(StrEnum):
-    """What a page shows beside the tree."""
+    """A part that a page can show beside the tree."""
 
     SEARCHES = "searches"
     PROOF = "proof"
@@ -96,11 +101,11 @@ class View(Result, frozen=True):
     Beside the answer, the page shows each of these fields that is not empty: the trees of ``searches``, the
     certificate of the ``certified`` answer, the answer ``without_rules``, ``alternatives``, the ``front``,
     and the whole ``network`` of a problem. If there is no tree, it shows ``why_not`` and a ``shopping_list``.
-    Beside a plan it shows the answer for ``lasting`` items, which no plan is better than; the certificate
-    is about this answer. A page about a network alone has no ``answer``. A given tree, or some units, have
-    only a ``picture``. SVG, PNG and PDF raise :class:`UserError` if the picture would be too large, or
-    if the packages of ``foon-asp[pictures]`` are missing; all pictures raise :class:`NothingToDrawError` if
-    there is no tree.
+    Beside a plan, it shows the answer for ``lasting`` items; no plan is better than this answer, and the
+    certificate is about it. A page about a network alone has no ``answer``. For a given tree or given units,
+    there is only a ``picture``. SVG, PNG and PDF raise :class:`UserError` if the picture would be too large,
+    or if the packages of ``foon-asp[pictures]`` are missing; all pictures raise :class:`NothingToDrawError`
+    if there is no tree.
 
     Example:
         >>> page = foon_asp.view(foon_asp.load().problem("ice"))
@@ -130,8 +135,8 @@ class View(Result, frozen=True):
         return Ending.DONE if self.answer is None else self.answer.ending
 
     def text(self) -> str:
-        """Return the answer in words, or the caption of the picture."""
-        return self._drawn().caption[0] + "\n" if self.answer is None else self.answer.text()
+        """Return the answer in words; without an answer, the caption of the picture."""
+        return self._drawing_or_error().caption[0] + "\n" if self.answer is None else self.answer.text()
 
     @property
     def data(self) -> PageData:
@@ -164,50 +169,56 @@ class View(Result, frozen=True):
         return self.data.json_dict()
 
     def _trees(self) -> Iterator[tuple[Problem, Iterable[int]]]:
-        """Yield each tree of the page, by unit ids, with the problem that it is a tree of."""
-        bought = None if self.shopping_list is None else self.shopping_list.answer
-        for answer in (self.answer, self.lasting, self.without_rules, bought):
+        """Yield the problem and the unit ids of each tree that the page shows."""
+        shopping_answer = None if self.shopping_list is None else self.shopping_list.answer
+        for answer in (self.answer, self.lasting, self.without_rules, shopping_answer):
             if answer is not None:
                 yield answer.problem, answer.ids or ()
         for retrieved in self.searches:
             yield retrieved.problem, retrieved.ids
         if self.alternatives is not None:
-            other = self.alternatives.problem
-            yield from ((other, other.network.units_of_numbers(tree.ids)) for tree in self.alternatives.trees)
+            problem = self.alternatives.problem
+            yield from (
+                (problem, problem.network.units_of_numbers(tree.ids)) for tree in self.alternatives.trees
+            )
         if self.front is not None:
-            front = self.front.problem
-            yield from ((front, front.network.units_of_numbers(point.ids)) for point in self.front.points)
+            front_problem = self.front.problem
+            yield from (
+                (front_problem, front_problem.network.units_of_numbers(point.ids))
+                for point in self.front.points
+            )
 
     def html(self) -> str:
-        """Return the page, a document by itself."""
+        """Return the page as one HTML document, which loads no other files."""
         return self._page().html()
 
     def _page(self) -> Page:
+        """Return the page with its title, its text and its data as plain values."""
         about = self.text() if self.answer is None else " + ".join(map(str, self.answer.problem.goal_nodes))
         return Page(f"{about.strip()} - foon-asp", self.text(), self.json_dict())
 
     def dot(self) -> str:
         """Return the picture in DOT, Graphviz' language."""
-        return dot_text(self._drawn())
+        return dot_text(self._drawing_or_error())
 
     def png(self) -> bytes:
         """Return the picture as PNG."""
-        return paint(self._drawn(), "png")
+        return paint(self._drawing_or_error(), "png")
 
     def pdf(self) -> bytes:
         """Return the picture as PDF."""
-        return paint(self._drawn(), "pdf")
+        return paint(self._drawing_or_error(), "pdf")
 
     def mermaid(self) -> str:
         """Return the picture as a Mermaid flowchart."""
-        return mermaid_text(self._drawn())
+        return mermaid_text(self._drawing_or_error())
 
     def graphml(self) -> str:
         """Return the nodes and arrows of the picture as GraphML, for Gephi, networkx and the like."""
-        return graphml_text(self._drawn())
+        return graphml_text(self._drawing_or_error())
 
     def drawing(self) -> Drawing | None:
-        """Return the drawing: of the tree, the network or the units."""
+        """Return the drawing of the tree, or else of the network or the units; ``None`` if no tree exists."""
         if self.answer is not None:
             return self.answer.drawing()
         if self.network is None:
@@ -218,20 +229,24 @@ class View(Result, frozen=True):
         ]
         return network_drawing(network, range(len(network)), self.network.kitchen, (), caption)
 
-    def _drawn(self) -> Drawing:
+    def _drawing_or_error(self) -> Drawing:
+        """Return the drawing; raises :class:`NothingToDrawError` if no tree exists."""
         drawing = self.drawing()
         if drawing is None:
             raise NothingToDrawError("there is no tree to draw")
         return drawing
 
     def remark(self, format_: str) -> str:
-        """Return the claim, if the tree is not proved optimal."""
+        """Return the remark of the answer, which is its claim if the tree is not proved optimal."""
         return "" if self.answer is None else self.answer.remark(format_)
 
     def write(self, file: File, format_: str | None = None) -> None:
-        """Write the page or the picture as :meth:`Result.write` does; ``.md`` is a page with a flowchart."""
+        """Write the page or the picture into a file, as :meth:`Result.write` does for other results.
+
+        A file that ends in ``.md`` is Markdown with a flowchart.
+        """
         if format_ in {None, "mermaid"} and Path(file).suffix.lower() == _MERMAID_PAGE:
-            write_whole(Path(file), utf_8(mermaid_markdown(self._drawn())))
+            write_whole(Path(file), utf_8(mermaid_markdown(self._drawing_or_error())))
         else:
             super().write(file, format_)
 
@@ -245,7 +260,7 @@ class View(Result, frozen=True):
         return {"text/plain": repr(self), "text/html": self._page().frame()}
 
 
-def _posed(
+def _pose_goals_or_data(
     command: Command,
     goals_named: Sequence[str],
     containers: str,
@@ -253,19 +268,22 @@ def _posed(
     units: Sequence[int],
     **items: Any,
 ) -> tuple[Problem | Foon]:
-    """Pose the goals that are named or that a recipe has; without goals, return the data."""
+    """Return the problem of the goals that are named or that a recipe has; without goals, the data.
+
+    The result is a tuple of one. Raises :class:`UserError` for options that do not go with what is shown.
+    """
     listed = tree is not None or bool(units)
-    for_goals = bool(goals_named) or (not listed and is_for_goals(command, goals_named))
+    for_goals = bool(goals_named) or (not listed and is_picture_of_tree(command, goals_named))
     for option, flag in _FOR_THE_BEST.items():
         if command.given(option) and (listed or not for_goals):
             raise UserError(f"{flag} is for the best tree for a --goal; nothing is solved here")
     if command.given("beside") and caller().form in _PICTURES:
         raise UserError("--beside is for a page: end the file in .html")
     if for_goals:
-        return one_problem(command, goals_named, containers, **items)
+        return pose_problem(command, goals_named, containers, **items)
     if command.given("items"):
         raise UserError("--items is for a plan for a --goal: name one")
-    return the_data(command)
+    return pose_data(command)
 
 
 @question(
@@ -312,7 +330,7 @@ def _posed(
     """,
     formats=(*_PAGES, *_PICTURES),
     suffixes=View.SUFFIXES,
-    pose=_posed,
+    pose=_pose_goals_or_data,
 )
 def view(
     about: Problem | Foon | Answer,
@@ -367,15 +385,15 @@ def view(
         chosen, settings = chosen_objectives(about, objectives), settings_of(options)
         if not wanted or caller().form in _PICTURES:
             return View(answer_under_rules(about, chosen, settings))
-        *_, grown = pages(about, chosen, settings, wanted, rules)
-        return grown
+        *_, complete_page = pages(about, chosen, settings, wanted, rules)
+        return complete_page
     if any(rules.values()):
         raise UserError("rules are for the best tree of a problem; nothing is solved here")
     if listed:
         return View(None, picture=_units_drawing(about, listed))
     if tree is not None:
         drawing = (
-            posed_tree(about, tree).drawing()
+            as_tree(about, tree).drawing()
             if isinstance(about, Problem)
             else _drawing_without_goals(about, container_rule(rule), tree)
         )
@@ -389,7 +407,7 @@ def view(
 
 
 def _units_drawing(about: Problem | Foon, unit_ids: Sequence[int]) -> Drawing:
-    """Draw units by id in the whole network; the goals of a problem are marked."""
+    """Return the drawing of some units, by id in the whole network; the goals of a problem are marked."""
     goal_ids: Sequence[int] = ()
     if isinstance(about, Problem):
         posed = shown(about)
@@ -410,11 +428,11 @@ def _drawing_without_goals(
 ) -> Drawing:
     """Return the drawing of a tree without goals, with the part of the data that it touches."""
     if isinstance(tree, str | PathLike):
-        tree = [unit for unit, _ in read_listed(Path(tree), lambda: foon.dataset.whole_network)[0]]
-    read = TaskTree(tuple(dict.fromkeys(unit_at_level(unit, foon.level) for unit in tree)))
-    data, _ = foon.dataset.part((), tree=read)
+        tree = [unit for unit, _ in read_listed_units(Path(tree), lambda: foon.dataset.whole_network)[0]]
+    task_tree = TaskTree(tuple(dict.fromkeys(unit_at_level(unit, foon.level) for unit in tree)))
+    data, _ = foon.dataset.part((), tree=task_tree)
     kitchen = {data.network.objects[o] for o in data.kitchen}
-    return tree_drawing(read, kitchen, (), rule, data.utensils, data.network)
+    return tree_drawing(task_tree, kitchen, (), rule, data.utensils, data.network)
 
 
 def pages(
@@ -426,39 +444,47 @@ def pages(
 ) -> Iterator[View]:
     """Yield a growing page about a tree: first with its answer, then each time with one more part.
 
-    ``rules`` are the rules of the settings, as questions take them. A plan, in which items are used up, costs
-    no less than the best tree, in which items last; so the proof beside a plan is about that tree. There is
-    no such proof by ``kitchen``, nor under rules, which may count how often units are executed.
+    ``wanted`` are the names of the parts (:class:`PagePart`); ``rules`` are the rules of the settings, as
+    keywords of questions. If there is no tree, the last page says why instead. Where items are used up, a
+    plan costs no less than the best tree for lasting items, so the proof is about that tree. There is no such
+    proof by ``kitchen``, nor under rules, which may count how often units are executed.
     """
     deadline = settings.begun
     settings = settings._replace(deadline=deadline)
-    ruled = bool(settings.constraints) or settings.encodings is not None
-    plans, endless = problem.items is not None, replace(problem, items=None)
+    has_rules = bool(settings.constraints) or settings.encodings is not None
+    is_of_plan, lasting_problem = problem.items is not None, replace(problem, items=None)
     proof = (
-        solve_with_certificate(problem, chosen, settings) if PagePart.PROOF in wanted and not plans else None
+        solve_with_certificate(problem, chosen, settings)
+        if PagePart.PROOF in wanted and not is_of_plan
+        else None
     )
-    answer = answer_problem(asked_with(problem, settings), chosen, settings) if proof is None else proof
-    page = View(answer, certified=proof, network=whole(problem) if PagePart.NETWORK in wanted else None)
+    answer = (
+        answer_problem(problem_for_rules(problem, settings), chosen, settings) if proof is None else proof
+    )
+    page = View(
+        answer, certified=proof, network=over_whole_network(problem) if PagePart.NETWORK in wanted else None
+    )
     yield page
 
     def remaining_limits() -> Limits:
+        """Return the time that remains, in seconds, and the memory limit."""
         return {"time_limit": deadline.left, "memory_limit": deadline.memory}
 
-    if plans and not ruled:
-        below = Objective.KITCHEN not in chosen  # a plan need not take from the kitchen items that it makes
-        proof = (
-            solve_with_certificate(endless, chosen, settings) if PagePart.PROOF in wanted and below else None
-        )
-        lasting = answer_problem(endless, chosen, settings) if proof is None else proof
-        if below:
-            Postconditions(endless, levels(tuple(chosen)), settings).require_no_better(
+    if is_of_plan and not has_rules:
+        # a plan need not take from the kitchen items that it makes
+        is_bounded = Objective.KITCHEN not in chosen
+        wants_proof = is_bounded and PagePart.PROOF in wanted
+        proof = solve_with_certificate(lasting_problem, chosen, settings) if wants_proof else None
+        lasting = answer_problem(lasting_problem, chosen, settings) if proof is None else proof
+        if is_bounded:
+            Postconditions(lasting_problem, levels(tuple(chosen)), settings).require_no_better(
                 answer.outcome, lasting.outcome, "where items last"
             )
         if lasting and not answer:
             proof = None  # it proves a tree optimal, but there is no plan
         page = structs.replace(page, certified=proof, lasting=lasting)
         yield page
-    if ruled:
+    if has_rules:
         page = structs.replace(
             page,
             without_rules=answer_problem(
@@ -467,16 +493,16 @@ def pages(
         )
         yield page
     if answer.ending is Ending.NEGATIVE:
-        explained = why_not(endless, **rules, **remaining_limits())
-        if plans and explained.tree_exists:
+        explained = why_not(lasting_problem, **rules, **remaining_limits())
+        if is_of_plan and explained.tree_exists:
             return  # items run out, which why_not does not explain
-        helped = (
-            None if explained.tree_exists else shopping_list(endless, chosen, **rules, **remaining_limits())
-        )
-        yield structs.replace(page, why_not=explained, shopping_list=helped)
+        shopping = None
+        if not explained.tree_exists:
+            shopping = shopping_list(lasting_problem, chosen, **rules, **remaining_limits())
+        yield structs.replace(page, why_not=explained, shopping_list=shopping)
         return
     if PagePart.SEARCHES in wanted:
-        methods = known_searches(problem.rates is not None)
+        methods = usable_searches(problem.rates is not None)
         page = structs.replace(
             page, searches=tuple(search(problem, method.name, **remaining_limits()) for method in methods)
         )
@@ -487,14 +513,15 @@ def pages(
         )
         yield page
     if PagePart.FRONT in wanted:
-        front_objectives = chosen if len(chosen) > 1 else _against(chosen, problem.rates is not None)
+        front_objectives = chosen if len(chosen) > 1 else _front_objectives(chosen, problem.rates is not None)
         yield structs.replace(page, front=pareto(problem, front_objectives, **rules, **remaining_limits()))
 
 
-def _against(chosen: Sequence[Objective], rated: bool) -> tuple[Objective, ...]:
-    """Return the objectives of a front: a list of objectives, and one more.
+def _front_objectives(chosen: Sequence[Objective], rated: bool) -> tuple[Objective, ...]:
+    """Return the objectives of a front: those of the question, and one more.
 
-    The additional objective is units. If the list has units, it is success, or inputs without rates.
+    The additional objective is ``units``. If the question has ``units``, it is ``success``, or ``inputs``
+    without rates.
     """
     if Objective.UNITS not in chosen:
         return (*chosen, Objective.UNITS)

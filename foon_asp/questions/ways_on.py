@@ -1,4 +1,4 @@
-"""From a state: which units lead to the goals, and what is missing."""
+"""The units that lead from a state to the goals, and the object nodes that are missing."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
@@ -13,8 +13,8 @@ from foon_asp.problem.relevance import reach, relevant_units
 from foon_asp.questions.answer import Answer, WithAnswer, answer_problem
 from foon_asp.questions.caller import asked_by, caller
 from foon_asp.questions.common_options import Posed, start_deadline
-from foon_asp.questions.python_arguments import Objectives, chosen_objectives, whole
-from foon_asp.questions.question import asked_in_python, not_built
+from foon_asp.questions.python_arguments import Objectives, chosen_objectives, over_whole_network
+from foon_asp.questions.question import not_for_used_up_items, python_question
 from foon_asp.questions.result import Ending
 from foon_asp.questions.shopping_list import shopping_list
 from foon_asp.results.table import Block
@@ -25,25 +25,25 @@ from foon_asp.text.line_parser import parse_node
 
 
 class WayOn(Unit, frozen=True, kw_only=True):
-    """A unit that leads to the goals.
+    """A unit that leads to the goals: some irredundant tree from the state has it.
 
     Attributes:
-        lacks: The inputs that it needs and that are not in the state; without any, it can run now.
+        lacks: The inputs that it needs and that the state does not have; if empty, it can run now.
     """
 
     lacks: tuple[Node, ...]
 
 
 class WaysOn(WithAnswer, frozen=True, kw_only=True, tag=schema_name("state")):
-    """The units that lead from a state to the goals, and what lacks.
+    """The units that lead from a state to the goals, and the nodes that the state lacks.
 
     Attributes:
         reached: Whether the goals are in the state.
-        lacks: The fewest object nodes to add to the state so that the goals can be made, as a shopping list
-            has them; empty if they can be made without, null if nothing helps, or a limit came first.
-        units: The units that some irredundant tree from the state has, once what lacks is there; those that
-            can run now come first, and of these those of the best tree.
-        answer: The best tree from the state, once what lacks is there; null without one.
+        lacks: The fewest object nodes to add to the state so that the goals can be made, found as a shopping
+            list. Empty if the goals can be made already; null if nothing helps, or a limit came first.
+        units: The units of all irredundant trees from the state with the nodes it lacks. Those that can run
+            now come first; among these, those of the best tree.
+        answer: The best tree from the state with the nodes it lacks; null without one.
 
     Example:
         >>> ways = foon_asp.ways_on(foon_asp.load().problem("ice"), ["ice; crushed; in [drinking glass]"])
@@ -59,13 +59,16 @@ class WaysOn(WithAnswer, frozen=True, kw_only=True, tag=schema_name("state")):
 
     @property
     def ending(self) -> Ending:
-        """The ending of the best tree; ``NEGATIVE`` if something is missing."""
+        """The ending of the best tree; ``NEGATIVE`` if the state lacks nodes, or without a tree."""
         if self.lacks:
             return Ending.NEGATIVE
         return Ending.NEGATIVE if self.answer is None else self.answer.ending
 
     def show(self) -> Iterator[Block]:
-        """Return what is missing, the units that can run now, those that cannot yet, and the best tree."""
+        """Return the nodes that the state lacks, the units that can run now, and the best tree.
+
+        Of the other units, only the number is shown. If the state has the goals, a line says so.
+        """
         yield from self.goal_lines()
         if self.reached:
             yield "the state has it: nothing to do"
@@ -89,7 +92,7 @@ class WaysOn(WithAnswer, frozen=True, kw_only=True, tag=schema_name("state")):
             yield from self.answer.findings()
 
 
-@asked_in_python
+@python_question
 def ways_on(
     problem: Problem,
     state: str | PathLike[str] | Iterable[str | ObjectNode],
@@ -98,8 +101,8 @@ def ways_on(
 ) -> WaysOn:
     """Find the units that lead from a state to the goals, and what is missing.
 
-    Whatever is in the state can be used again and again. A verifier of plans that a language model proposes
-    asks this after each step (as in arXiv 2503.21564).
+    Whatever is in the state can be used again and again. This question is for verifiers that check the plan
+    of a language model after each step (as in arXiv 2503.21564).
 
     Parameters:
         problem: The problem: the data, and the goals. Its kitchen is not used.
@@ -120,9 +123,9 @@ def ways_on(
         (['drinking glass; contains {ice}'], [])
     """
     if problem.items is not None:
-        raise not_built("trace --state")
-    named: Any = as_path(state) if isinstance(state, str | PathLike) else tuple(state)
-    problem = whole(problem.vary(kitchen=named))
+        raise not_for_used_up_items("trace --state")
+    state_source: Any = as_path(state) if isinstance(state, str | PathLike) else tuple(state)
+    problem = over_whole_network(problem.vary(kitchen=state_source))
     chosen, limits = chosen_objectives(problem, objectives), Settings(deadline=start_deadline(options))
     answer: Answer | None = answer_problem(problem, chosen, limits)
     lacks: tuple[Node, ...] | None = ()
@@ -136,13 +139,16 @@ def ways_on(
         **head_of(problem, chosen),
         reached=problem.kitchen.issuperset(problem.goals),
         lacks=lacks if lacks is None else tuple(node_of(problem.network, o) for o in sorted(added)),
-        units=tuple(_units(problem, replace(problem, kitchen=problem.kitchen | added), answer)),
+        units=tuple(_units_to_goals(problem, replace(problem, kitchen=problem.kitchen | added), answer)),
         answer=answer,
     )
 
 
-def _units(problem: Problem, stocked: Problem, answer: Answer | None) -> Iterator[WayOn]:
-    """Yield the units that lead to the goals of a stocked problem, in the order of :class:`WaysOn`."""
+def _units_to_goals(problem: Problem, stocked: Problem, answer: Answer | None) -> Iterator[WayOn]:
+    """Yield the units that lead to the goals, in the order of :class:`WaysOn`, with the inputs they lack.
+
+    ``stocked`` is the problem with the lacking nodes added to its kitchen.
+    """
     best = frozenset() if answer is None else frozenset(answer.ids or ())
     lacking = {
         unit: [o for o in problem.needs[unit] if o not in problem.kitchen]

@@ -8,7 +8,7 @@ from foon_asp.problem import Problem, reach
 
 
 def why_infeasible(problem: Problem, deadline: Deadline | None = None) -> Iterator[str]:
-    """Return lines with the reasons why there is no tree, if these are found by the deadline."""
+    """Yield lines with the reasons why there is no tree; one line refers to ``why-not`` if time runs out."""
     try:
         with (deadline or Deadline()).watched("looking for the reason", late=True, grace=True):
             lines = list(_reasons(problem))
@@ -18,9 +18,10 @@ def why_infeasible(problem: Problem, deadline: Deadline | None = None) -> Iterat
 
 
 def _reasons(problem: Problem, shown: int = 5) -> Iterator[str]:
-    """Yield for each unreachable goal its achievers, and the missing inputs of the first ones.
+    """Yield lines: for each unreachable goal the inputs that its achievers lack, then the causes.
 
-    Where every goal can be made, the constraints are the reason.
+    Up to ``shown`` achievers are listed. If every goal can be made, the lines say that constraints rule out
+    every tree, or that the plan would use up too much.
     """
     available = reach(problem).available
     network = problem.network
@@ -56,7 +57,11 @@ def _reasons(problem: Problem, shown: int = 5) -> Iterator[str]:
 
 
 def _cause_lines(problem: Problem, shown: int = 3) -> Iterator[str]:
-    """Yield a sentence on each cause, first for the causes on the easiest way to the goals."""
+    """Yield a line for each of the first ``shown`` causes on the easiest way to the goals.
+
+    A cause is a missing node, or a cycle of nodes that can only be made from each other. A missing goal is
+    left out, since another line names it.
+    """
     from foon_asp.problem.dead_ends import dead_ends  # noqa: PLC0415 (only where there is no tree)
 
     objects = problem.network.objects
@@ -67,10 +72,10 @@ def _cause_lines(problem: Problem, shown: int = 3) -> Iterator[str]:
                 yield f"the cause: {objects[root.object]} is not in the kitchen, and no unit makes it"
             continue
         first, *others = [str(objects[o]) for o, _ in reversed(root.cycle.steps)]
-        back = (*others, first)
-        cycle_text = "".join(f", and that only from {other}" for other in back[1:3])
-        if len(back) > 3:
-            cycle_text += f", and so on: {len(back)} object nodes wait for each other"
-        yield f"the cause: {first} can only be made from {back[0]}{cycle_text}"
+        needed_nodes = (*others, first)
+        cycle_text = "".join(f", and that only from {other}" for other in needed_nodes[1:3])
+        if len(needed_nodes) > 3:
+            cycle_text += f", and so on: {len(needed_nodes)} object nodes wait for each other"
+        yield f"the cause: {first} can only be made from {needed_nodes[0]}{cycle_text}"
     if len(roots) > shown:
         yield f"  ... and {len(roots) - shown} more"

@@ -16,7 +16,7 @@ from foon_asp.problem.dead_ends import Cause, DeadEnds, RootCause, dead_ends
 from foon_asp.problem.for_sale import Shop
 from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.options import CONTAINERS, GOALS
-from foon_asp.questions.python_arguments import constraint_weights, whole
+from foon_asp.questions.python_arguments import constraint_weights, over_whole_network
 from foon_asp.questions.question import Kind, Option, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.stand_in import StandIn, stand_ins_in
@@ -33,9 +33,8 @@ if TYPE_CHECKING:  # takes clingo along, which only rules need
 
 
 class _MaxShown(NamedTuple):
-    """How much of an explanation is shown as text; JSON has all of it.
+    """The greatest numbers that an explanation shows as text; JSON has all of it.
 
-    All fields are greatest numbers.
     ``roots``: causes that are explained.
     ``dead_ends``: dead ends that are expanded.
     ``other_units``: achievers of a node, beside the first.
@@ -64,9 +63,9 @@ class NearName(Value, frozen=True):
         name: A node of the network, or an entry of the kitchen file that matches no node.
         differs_in: The part that differs: label, state, relation, container or ingredient.
         kitchen_entry: Where the kitchen file has the entry; null for a node of the network.
-        missing_part: That part of the missing node.
-        near_part: That part of the name.
-        in_kitchen: Whether it is in the kitchen; otherwise it can be made.
+        missing_part: The differing part of the missing node.
+        near_part: The differing part of the name.
+        in_kitchen: Whether the name is in the kitchen; otherwise it can be made.
     """
 
     name: str
@@ -77,7 +76,7 @@ class NearName(Value, frozen=True):
     in_kitchen: bool
 
     def __str__(self) -> str:
-        shown = f"{self.name} {_from(self.in_kitchen)}"
+        shown = f"{self.name} {_origin_text(self.in_kitchen)}"
         if self.kitchen_entry is not None:
             shown = f"{self.kitchen_entry} has {self.name}, which is no node of the network"
         return f"{shown}: the {self.differs_in} {self.missing_part!r} for {self.near_part!r}"
@@ -101,18 +100,19 @@ class CycleStep(Value, frozen=True):
 
 
 class Root(Value, frozen=True):
-    """An object node at the root of dead ends.
+    """A cause of dead ends: an object node that is missing, or that can only be made from itself.
 
     Attributes:
         cause: missing: it is not in the kitchen and no unit makes it; cycle: it can only be made from itself.
-        on_the_easiest_way: Whether it is on the way to the goals that takes the fewest things.
+        on_the_easiest_way: Whether it is on the path to the goals that lacks the fewest nodes.
         stops: The units that lack it.
-        handed_on_by: The units that give a missing node and need it too.
-        taken_as_given_by: The units that have a missing node among their outputs, but took it as given.
-        cycle: Once around the cycle; null for a missing node.
+        handed_on_by: The units that make a missing node and need it, too.
+        taken_as_given_by: The units that have a missing node among their outputs, but take it as given by the
+            container rule.
+        cycle: The steps once around the cycle; null for a missing node.
         cycle_objects: All object nodes that can only be made from each other; empty for a missing node.
-        near: Names one edit away.
-        alike: Nodes with the same label, in the kitchen or makeable.
+        near: Names that are one edit away.
+        alike: Nodes with the same label that are in the kitchen or can be made.
     """
 
     object: Node
@@ -128,7 +128,7 @@ class Root(Value, frozen=True):
 
     @classmethod
     def of(cls, problem: Problem, root: RootCause) -> "Root":
-        """Return the value of a root, without similar names."""
+        """Return a cause as a value for a result; ``near`` and ``alike`` are still empty."""
         network = problem.network
         makers = problem.makers[root.object] if root.cycle is None else ()
         producers = network.producers[root.object] if root.cycle is None else ()
@@ -150,7 +150,7 @@ class Root(Value, frozen=True):
         )
 
     def lines(self) -> Iterator[str]:
-        """Return lines on why the node is unreachable, and names that were perhaps meant."""
+        """Yield lines on why the node cannot be had, and similar names that were perhaps meant."""
         if self.cycle is not None:
             yield "can only be made from itself, in a cycle:"
             made = [*(step.object for step in self.cycle[1:]), self.cycle[0].object]
@@ -161,16 +161,16 @@ class Root(Value, frozen=True):
                 yield f"  and {counted(len(made) - _MAX_SHOWN.steps, 'more step')}"
             return
         if self.handed_on_by:
-            yield f"not in the kitchen, and what gives it needs it too: {_units(self.handed_on_by)}"
+            yield f"not in the kitchen, and what gives it needs it too: {_units_text(self.handed_on_by)}"
         else:
             yield "not in the kitchen, and no unit makes it"
         if self.taken_as_given_by:
-            yield f"taken as given, and so not made, by {_units(self.taken_as_given_by)}"
+            yield f"taken as given, and so not made, by {_units_text(self.taken_as_given_by)}"
         if stopped := [unit for unit in self.stops if unit not in self.handed_on_by]:
-            yield f"stops {_units(stopped)}"
+            yield f"stops {_units_text(stopped)}"
         yield from (f"a typing error? {name}" for name in self.near)
         if self.alike and not self.near:
-            shown = (f"{node} {_from(node.in_kitchen)}" for node in self.alike)
+            shown = (f"{node} {_origin_text(node.in_kitchen)}" for node in self.alike)
             yield f"most like it are {' and '.join(shown)}"
 
 
@@ -192,7 +192,7 @@ class DeadEnd(Value, frozen=True):
     """An object node that a goal needs and that cannot be had.
 
     Attributes:
-        makers: The units that would make it; first those that lack the fewest things.
+        makers: The units that would make it; those that lack the fewest nodes come first.
     """
 
     object: Node
@@ -203,15 +203,15 @@ class Explanation(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name
     """Why some goals cannot be made, or that all can.
 
     Attributes:
-        tree_exists: Whether there is a tree, rules left aside.
+        tree_exists: Whether there is a tree if rules are ignored.
         unreachable_goals: The goals that cannot be made.
-        roots: The causes; first those on the easiest way.
-        dead_ends: Every object node that is needed for an unreachable goal, in any way, and cannot be had.
-        clash: Where all goals can be made and there are rules: whether these leave a tree, and which clash.
-        fix: A few things to add to the kitchen so that the goals can be made, rules left aside; null where
-            all can be made, and where a limit came first. A shorter list may exist.
-        stand_ins: The cheapest stand-ins, by the usual table, with which the goals can be made, rules left
-            aside; not there where none are enough or they are allowed already.
+        roots: The causes; those on the easiest path to the goals come first.
+        dead_ends: Every object node that cannot be had and that some path to an unreachable goal needs.
+        clash: If all goals can be made and there are rules: whether these leave a tree, and which clash.
+        fix: A few nodes to add to the kitchen so that the goals can be made without rules. Null if all can be
+            made, or if a limit came first. A shorter list may exist.
+        stand_ins: The cheapest stand-ins of the usual table with which the goals can be made without rules.
+            Left out if none are enough, or if stand-ins are allowed already.
 
     Example:
         >>> explanation = foon_asp.why_not(foon_asp.load().problem("apple pie"))
@@ -231,13 +231,16 @@ class Explanation(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if there is a tree, also under the rules."""
+        """``DONE`` if there is a tree that keeps to the rules, ``NEGATIVE`` if not, else ``LIMIT``."""
         if not self.tree_exists:
             return Ending.NEGATIVE
         return Ending.DONE if self.clash is None else self.clash.ending
 
     def show(self) -> Iterator[Block]:
-        """Return the dead ends as a tree, each expanded once, and their roots; or the rules that clash."""
+        """Return the dead ends as an indented tree, and the causes; or the rules that clash.
+
+        If there is a tree and there are no rules, one line says so.
+        """
         yield from self.goal_lines()
         if self.clash is not None:
             yield from self.clash.lines(self.conditions)
@@ -246,11 +249,11 @@ class Explanation(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name
             yield f"there is a task tree ({self.conditions}); foon-asp solve finds the best"
             return
         shown = [root for root in self.roots if root.on_the_easiest_way]
-        yield f"no task tree exists ({self.conditions}): {_causes(shown)}"
+        yield f"no task tree exists ({self.conditions}): {_causes_text(shown)}"
         numbers: dict[Node, int] = {}
         for number, root in enumerate(self.roots, 1):
             numbers |= dict.fromkeys((root.object, *root.cycle_objects), number)
-        yield from ("", *_tree(self, numbers), "", "in the way:")
+        yield from ("", *_dead_end_lines(self, numbers), "", "in the way:")
         for root in shown[: _MAX_SHOWN.roots]:
             yield f"  ({numbers[root.object]}) {root.object}"
             yield from (f"      {line}" for line in root.lines())
@@ -265,7 +268,7 @@ class Explanation(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name
                 yield f"    for {stand_in.stands_in_for}"
 
     def _fix_line(self) -> str:
-        """Return what to add to the kitchen."""
+        """Return one line on which nodes to add to the kitchen, or on how to find them."""
         if self.fix is None:
             return "foon-asp shopping-list with the same options says what to add to the kitchen"
         named = [str(node) for node in self.fix[: _MAX_SHOWN.fix_items]]
@@ -330,7 +333,7 @@ def why_not(
         (2, 1)
     """
     settings, prices = settings_of(options), constraint_weights(weights) if weights else {}
-    problem, deadline = whole(problem), settings.begun
+    problem, deadline = over_whole_network(problem), settings.begun
     network = problem.network
     with deadline.watched("looking for the reason", late=True):
         analysis = dead_ends(problem)
@@ -355,7 +358,7 @@ def why_not(
         if analysis.goals:
             roots = tuple(_with_near_names(problem, analysis, roots))
             fix = nodes_of(network, Shop(problem).short_list(analysis))
-            stand_ins = _stand_ins(problem, settings)
+            stand_ins = _cheapest_stand_ins(problem, settings)
     return Explanation(
         **head_of(problem),
         tree_exists=not analysis.goals,
@@ -368,8 +371,12 @@ def why_not(
     )
 
 
-def _stand_ins(problem: Problem, settings: "Settings") -> tuple[StandIn, ...] | UnsetType:
-    """Return the cheapest stand-ins with which there is a tree, if any are enough."""
+def _cheapest_stand_ins(problem: Problem, settings: "Settings") -> tuple[StandIn, ...] | UnsetType:
+    """Return the cheapest stand-ins of the usual table with which there is a tree without rules.
+
+    ``UNSET`` if none are enough, and where they cannot be used: below level 3, for items that are used up,
+    and in a problem that has stand-ins already.
+    """
     level, has_motion = problem.network.level, STAND_IN in problem.network.different_motions
     if level < 3 or problem.items is not None or has_motion:
         return UNSET
@@ -382,14 +389,16 @@ def _stand_ins(problem: Problem, settings: "Settings") -> tuple[StandIn, ...] | 
 
 
 def _with_near_names(problem: Problem, analysis: DeadEnds, roots: Iterable[Root]) -> Iterator[Root]:
-    """Yield the roots; a missing node gets names one edit away, and nodes of the same label."""
-    network, kitchen, data = problem.network, problem.kitchen, problem.origin
-    had = {network.objects[o]: o for o, is_available in enumerate(analysis.available) if is_available}
-    items = data.data.kitchen_items if isinstance(data, Dataset) else ()
+    """Yield the causes; missing nodes with names one edit away and nodes with the same label."""
+    network, kitchen, origin = problem.network, problem.kitchen, problem.origin
+    ids_available = {
+        network.objects[o]: o for o, is_available in enumerate(analysis.available) if is_available
+    }
+    items = origin.data.kitchen_items if isinstance(origin, Dataset) else ()
     patterns = [(pattern_at_level(item.pattern, network.level), str(item.source)) for item in items]
     names: list[tuple[ObjectNode | NodePattern, str | None, bool]] = [
         *((pattern, source, True) for pattern, source in patterns if not network.find(pattern)),
-        *((node, None, o in kitchen) for node, o in had.items()),
+        *((node, None, o in kitchen) for node, o in ids_available.items()),
     ]
     for root, value in zip(analysis.roots, roots, strict=True):
         if root.cause is not Cause.MISSING:
@@ -403,38 +412,38 @@ def _with_near_names(problem: Problem, analysis: DeadEnds, roots: Iterable[Root]
         )
         nodes_near = {near_name.name for near_name in near_names if near_name.kitchen_entry is None}
         alike = tuple(
-            node_as(AlikeNode, network, had[other], in_kitchen=had[other] in kitchen)
-            for other in nearest(node, had, _MAX_SHOWN.alike)
+            node_as(AlikeNode, network, ids_available[other], in_kitchen=ids_available[other] in kitchen)
+            for other in nearest(node, ids_available, _MAX_SHOWN.alike)
             if str(other) not in nodes_near
         )
         yield replace(value, near=near_names, alike=alike)
 
 
-def _tree(explanation: Explanation, numbers: Mapping[Node, int]) -> Iterator[str]:
-    """Return the dead ends as lines of a tree.
+def _dead_end_lines(explanation: Explanation, numbers: Mapping[Node, int]) -> Iterator[str]:
+    """Yield the dead ends as lines of a tree, indented, from the unreachable goals on.
 
-    Below a node are its first achiever and the inputs that this unit lacks. A node is expanded once. Roots
-    are not expanded, and have their ``numbers``. Of the other dead ends, those nearest to the goals are
-    expanded.
+    Below a node are its first achiever and the inputs that this unit lacks. Causes have their ``numbers``, by
+    node, and are not expanded. Up to 12 other nodes are expanded, each once, the nearest to the goals first.
     """
     makers = {end.object: end.makers for end in explanation.dead_ends}
-    opened: set[Node] = set()
+    expanded: set[Node] = set()
     frontier = list(explanation.unreachable_goals)
     for node in frontier:
-        if node not in opened and node not in numbers and len(opened) < _MAX_SHOWN.dead_ends:
-            opened.add(node)
+        if node not in expanded and node not in numbers and len(expanded) < _MAX_SHOWN.dead_ends:
+            expanded.add(node)
             frontier += makers[node][0].lacks
-    shown: set[Value] = set()
+    shown_values: set[Value] = set()
 
     def lines(node: Node, margin: str) -> Iterator[str]:
-        if node in numbers or node in shown or node not in opened:
-            unopened = "(see above)" if node in shown else "..."
-            yield f"{margin}{node}  {f'({numbers[node]})' if node in numbers else unopened}"
+        """Yield the lines of a node and of the nodes below it, behind spaces."""
+        if node in numbers or node in shown_values or node not in expanded:
+            reference = "(see above)" if node in shown_values else "..."
+            yield f"{margin}{node}  {f'({numbers[node]})' if node in numbers else reference}"
             return
         first, *others = makers[node]
-        is_shown = first in shown
+        is_shown = first in shown_values
         yield from (f"{margin}{node}", f"{margin}  {first}{'  (see above)' if is_shown else ''}")
-        shown.update((node, first))
+        shown_values.update((node, first))
         for lack in () if is_shown else first.lacks:
             yield from lines(lack, f"{margin}    ")
         yield from (f"{margin}  or {other}" for other in others[: _MAX_SHOWN.other_units])
@@ -445,8 +454,8 @@ def _tree(explanation: Explanation, numbers: Mapping[Node, int]) -> Iterator[str
         yield from lines(goal, "")
 
 
-def _causes(roots: Sequence[Root]) -> str:
-    """Count roots by their cause."""
+def _causes_text(roots: Sequence[Root]) -> str:
+    """Return in words how many nodes are missing, and how many cycles feed only themselves."""
     cycles = sum(root.cycle is not None for root in roots)
     missing = len(roots) - cycles
     counts = []
@@ -458,12 +467,14 @@ def _causes(roots: Sequence[Root]) -> str:
     return " and ".join(counts)
 
 
-def _units(units: Sequence[Mention]) -> str:
-    places = ", ".join(f"{unit.motion} [{unit.source[0]}]" for unit in units[: _MAX_SHOWN.units])
-    return places + (
+def _units_text(units: Sequence[Mention]) -> str:
+    """Return the motions of the first units with their places, and how many units follow."""
+    mentioned = ", ".join(f"{unit.motion} [{unit.source[0]}]" for unit in units[: _MAX_SHOWN.units])
+    return mentioned + (
         f" and {counted(len(units) - _MAX_SHOWN.units, 'more unit')}" if len(units) > _MAX_SHOWN.units else ""
     )
 
 
-def _from(in_kitchen: bool) -> str:
+def _origin_text(in_kitchen: bool) -> str:
+    """Return in parentheses whether a node is in the kitchen or can be made."""
     return "(in the kitchen)" if in_kitchen else "(can be made)"

@@ -1,4 +1,4 @@
-"""Findings of linting for people, as annotations that GitHub shows beside a change, and as SARIF."""
+"""Findings of linting as text, as annotations that GitHub shows beside a change, and as SARIF."""
 
 import urllib.parse
 from collections import Counter
@@ -18,7 +18,7 @@ _SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 
 
 def finding_lines(findings: Sequence[Finding], max_in_full: int = 3, max_lines: int = 12) -> Iterator[Block]:
-    """Yield sorted findings with their lines.
+    """Yield the lines of findings, which are sorted by file and line.
 
     For each kind of finding in a file, the first ``max_in_full`` are shown. The others are counted, with at
     most ``max_lines`` of their line numbers.
@@ -26,21 +26,24 @@ def finding_lines(findings: Sequence[Finding], max_in_full: int = 3, max_lines: 
     kinds: dict[tuple[str, str], list[Finding]] = {}
     for finding in findings:
         kinds.setdefault((finding.file, finding.code), []).append(finding)
-    shown = Counter[tuple[str, str]]()
+    shown_counts = Counter[tuple[str, str]]()
     for finding in findings:
         kind = finding.file, finding.code
-        shown[kind] += 1
-        if shown[kind] <= max_in_full:
+        shown_counts[kind] += 1
+        if shown_counts[kind] <= max_in_full:
             yield from str(finding).split("\n")
-        if shown[kind] == max_in_full and (others := kinds[kind][max_in_full:]):
+        if shown_counts[kind] == max_in_full and (others := kinds[kind][max_in_full:]):
             numbers = list(dict.fromkeys(str(other.line) for other in others))
             lines = ", ".join(numbers[:max_lines]) + (", ..." if len(numbers) > max_lines else "")
-            on = "on line" if len(numbers) == 1 else "on lines"
-            yield f"    ... and {len(others)} more of this kind in this file, {on} {lines} [{finding.code}]"
+            lines = f"line {lines}" if len(numbers) == 1 else f"lines {lines}"
+            yield f"    ... and {len(others)} more of this kind in this file, on {lines} [{finding.code}]"
 
 
-def summary(findings: Sequence[Finding], files: int, mended: int) -> str:
-    """Return in one line the numbers of files, of findings, and of fixes that --fix made or would make."""
+def summary_line(findings: Sequence[Finding], files: int, mended: int) -> str:
+    """Return one line with the numbers of files, of findings by severity, and of fixes.
+
+    ``mended`` is how many fixes were made; if there are none, the line says how many ``--fix`` would make.
+    """
     counts = Counter(finding.severity for finding in findings)
     parts = [counted(counts[severity], str(severity)) for severity in Severity if counts[severity]]
     text = f"{counted(files, 'file')}: {', '.join(parts) or 'nothing found'}"
@@ -55,8 +58,11 @@ def summary(findings: Sequence[Finding], files: int, mended: int) -> str:
     return text
 
 
-def statistics(findings: Sequence[Finding]) -> Table:
-    """Return a table of the codes, the most frequent first, with their numbers of findings."""
+def code_table(findings: Sequence[Finding]) -> Table:
+    """Return a table with a row for each code, the most frequent first.
+
+    A row has the number of findings, severity, code, number of fixes, and meaning.
+    """
     rows = []
     for code, count in Counter(finding.code for finding in findings).most_common():
         alike = [finding for finding in findings if finding.code == code]
@@ -67,32 +73,34 @@ def statistics(findings: Sequence[Finding]) -> Table:
     return Table(headings, rows, left_aligned=frozenset({1, 2, 3, 4}), headed=bool(rows))
 
 
-def annotations(findings: Sequence[Finding]) -> str:
+def github_annotations(findings: Sequence[Finding]) -> str:
     """Return a workflow command for each finding: ``::warning file=...,line=...,col=...,title=...::...``.
 
     The characters that would end a command or a property are escaped as GitHub's own toolkit does.
     """
     lines = []
     for finding in findings:
-        file, title = _property(finding.file), _property(finding.code)
+        file, title = _escape_property(finding.file), _escape_property(finding.code)
         location = f"file={file},line={finding.line},col={finding.column},title={title}"
-        lines.append(f"::{_COMMANDS[finding.severity]} {location}::{_data(finding.message)}\n")
+        lines.append(f"::{_COMMANDS[finding.severity]} {location}::{_escape_message(finding.message)}\n")
     return "".join(lines)
 
 
-def _data(text: str) -> str:
+def _escape_message(text: str) -> str:
+    """Return a text as a message of a workflow command, with control characters escaped."""
     written = text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
     return UNSAFE.sub(lambda match: escaped(match[0]), written)
 
 
-def _property(text: str) -> str:
-    return _data(text).replace(":", "%3A").replace(",", "%2C")
+def _escape_property(text: str) -> str:
+    """Return a text as a property of a workflow command, with colons and commas escaped, too."""
+    return _escape_message(text).replace(":", "%3A").replace(",", "%2C")
 
 
-def sarif(findings: Sequence[Finding], version: str) -> Json:
-    """Return SARIF 2.1.0: one run with every finding, and with the rules of the findings.
+def sarif_log(findings: Sequence[Finding], version: str) -> Json:
+    """Return findings as plain values in the format SARIF 2.1.0, with the rules that they are about.
 
-    Code hosts and editors show findings beside the files. Columns count code points.
+    Code hosts and editors read it, and show findings beside the files. Columns count code points.
     """
     codes = [code for code in CATALOG if any(finding.code == code for finding in findings)]
     rules = [
@@ -110,7 +118,10 @@ def sarif(findings: Sequence[Finding], version: str) -> Json:
 
 
 def _sarif_result(finding: Finding, rule: int) -> Json:
-    """Return a finding as a result of SARIF; ``rule`` is the index of its rule."""
+    """Return a finding as a result of SARIF, with its fix if that is safe.
+
+    ``rule`` is the index of its rule, from 0.
+    """
     region: Json = {"startLine": max(1, finding.line), "startColumn": max(1, finding.column)}
     if finding.text:
         region["snippet"] = {"text": finding.text}
@@ -125,8 +136,8 @@ def _sarif_result(finding: Finding, rule: int) -> Json:
         "locations": [{"physicalLocation": location}],
     }
     if finding.mendable and finding.text:
-        whole = {"startLine": finding.line, "startColumn": 1, "endColumn": len(finding.text) + 1}
-        replacement = {"deletedRegion": whole, "insertedContent": {"text": finding.fix}}
+        line_region = {"startLine": finding.line, "startColumn": 1, "endColumn": len(finding.text) + 1}
+        replacement = {"deletedRegion": line_region, "insertedContent": {"text": finding.fix}}
         change = {"artifactLocation": location["artifactLocation"], "replacements": [replacement]}
         result["fixes"] = [{"artifactChanges": [change]}]
     return result

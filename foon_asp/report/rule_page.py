@@ -1,4 +1,4 @@
-"""The page of a lint rule: its meaning, its example, and the findings there."""
+"""The page of a lint rule: its meaning, its example, and the findings in the example."""
 
 from collections.abc import Iterator
 
@@ -8,7 +8,7 @@ from foon_asp.results.table import Block
 
 
 def rule_page(rule: Rule, example: Example) -> Iterator[Block]:
-    """Yield the meaning of a rule, its example with tabs drawn as ``→``, and its findings there."""
+    """Yield the meaning of a rule, its example with tabs drawn as ``→``, and the findings in the example."""
     yield f"{rule.code}: {rule.severity}: {rule.meaning}"
     for paragraph in rule.explanation.split("\n\n"):
         yield from ("", paragraph.replace("\n", " "))

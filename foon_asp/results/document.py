@@ -8,8 +8,8 @@ from msgspec import UNSET, Struct
 from foon_asp.network import counted
 from foon_asp.problem import ContainerRule, Objective, conditions
 from foon_asp.results.plain_values import plain
-from foon_asp.results.table import Block, rendered
-from foon_asp.results.table_columns import csv_text, flat_row, frame, markdown_text
+from foon_asp.results.table import Block, blocks_text
+from foon_asp.results.table_columns import csv_text, data_frame, flat_row, markdown_text
 from foon_asp.results.values import Node
 from foon_asp.text.json_value import Json, json_text, read_json
 
@@ -17,7 +17,11 @@ T = TypeVar("T")
 
 
 class Unserialized(Generic[T]):
-    """Descriptor of a property that is not in the JSON; :meth:`Document.knowing` sets it."""
+    """Descriptor of a property of a document that is not in its JSON.
+
+    :meth:`Document.knowing` sets the property. Before that, it has the ``default`` or, without one, raises
+    :class:`AttributeError`.
+    """
 
     def __init__(self, *default: T) -> None:
         self._default = default
@@ -34,24 +38,24 @@ class Unserialized(Generic[T]):
 class Document(Struct, frozen=True, kw_only=True, dict=True, tag_field="schema"):
     """A value whose fields are its JSON, in their order.
 
-    A class names the field that lists its rows as ``ROWS``; without one, and where it is ``None``, the
-    document itself is one row.
+    The class attribute ``ROWS`` is the name of the field whose items are the rows of tables. If it is empty,
+    or the field is ``None``, the document itself is the only row.
     """
 
     ROWS: ClassVar[str] = ""
 
     def knowing(self, **attributes: object) -> Self:
-        """Set properties that are not in the JSON (:class:`Unserialized`), and return the document itself."""
+        """Set properties (:class:`Unserialized`) of this document in place, and return the document."""
         self.__dict__.update(attributes)
         return self
 
     def show(self) -> Iterator[Block]:
-        """Return the document for people, as lines and tables."""
+        """Return lines and tables of text for people; each class of documents defines them."""
         raise NotImplementedError
 
     def text(self) -> str:
         """Return the document in words, as the command line prints it."""
-        return rendered(self.show())
+        return blocks_text(self.show())
 
     def json_dict(self) -> Json:
         """Return the document as plain values, in the order in which JSON has them."""
@@ -67,7 +71,7 @@ class Document(Struct, frozen=True, kw_only=True, dict=True, tag_field="schema")
         return read_json(self.json_text())
 
     def table_rows(self) -> Iterator[Json]:
-        """Return a row for each listed item, or one row for a document without a list.
+        """Yield a row for each item of the field ``ROWS``, or one row for a document without it.
 
         A nested field has a name with a dot (``costs.units``). Numbers are decimals; the exact number, if it
         differs, is in a second column (``costs.success_exact``).
@@ -81,10 +85,10 @@ class Document(Struct, frozen=True, kw_only=True, dict=True, tag_field="schema")
         Raises:
             UserError: if pandas is not installed.
         """
-        return frame(self.table_rows())
+        return data_frame(self.table_rows())
 
     def csv(self) -> str:
-        """Return the rows as CSV under headings, for a spreadsheet."""
+        """Return the rows as CSV, with a line of headings, for a spreadsheet."""
         return csv_text(self.table_rows())
 
     def markdown(self) -> str:
@@ -93,7 +97,7 @@ class Document(Struct, frozen=True, kw_only=True, dict=True, tag_field="schema")
 
 
 class AboutGoals(Document, frozen=True, kw_only=True):
-    """A document about goals, which begins with the question.
+    """A document about goals; its first fields are the question.
 
     Attributes:
         goals: What is to be made.
@@ -115,12 +119,15 @@ class AboutGoals(Document, frozen=True, kw_only=True):
 
     @property
     def conditions(self) -> str:
-        """The assumptions of every claim in a few words, such as ``strict containers``."""
+        """The assumptions of every claim in a few words: ``strict containers, items used up``."""
         text = conditions(self.containers, self.level, self.starting_kitchen is not None)
         return text if self.items == "lasting" else f"{text}, items used up"
 
     def goal_lines(self, shown: int = 5) -> Iterator[str]:
-        """Yield a line for each goal; below level 3 also the level-3 nodes that the goal stands for."""
+        """Yield a line for each goal, with the copies wanted if these are not one.
+
+        Below level 3, up to ``shown`` of the level-3 nodes follow that a goal stands for.
+        """
         for goal in self.goals:
             yield f"goal: {goal}" if goal.wanted is UNSET else f"goal: {goal.wanted} x {goal}"
             if isinstance(goal.stands_for, tuple):

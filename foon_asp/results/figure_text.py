@@ -1,4 +1,4 @@
-"""Figures in words: what trees cost, bounds, and success rates in a few digits."""
+"""Figures as text: the costs of trees, bounds, and success rates in a few digits."""
 
 from collections.abc import Iterable, Sequence
 from decimal import Context, Decimal, Inexact
@@ -10,7 +10,7 @@ from foon_asp.results.plain_values import nearest_float
 
 
 def figure_text(objective: Objective, figure: int | Fraction) -> str:
-    """Return a value by an objective as text: exact in up to 15 digits, else four digits after ``≈``."""
+    """Return a value by an objective as text: exact if 15 digits are enough, else ``≈`` and four digits."""
     if multiplies(objective):
         return success_text(Fraction(figure))
     if objective.row.whole:
@@ -29,20 +29,23 @@ def bound_text(objective: Objective, bound: int | Fraction) -> str:
 
 
 def costs_text(costs: Costs, objectives: Iterable[Objective] = ()) -> str:
-    """Return the costs of a tree in a few words, including the measures by ``objectives``."""
+    """Return the costs of a tree by units, inputs, success if known, and ``objectives``.
+
+    The text is like ``2 units, 6 inputs, success 0.644``.
+    """
     text = f"{counted(costs.units, 'unit')}, {counted(costs.inputs, 'input')}"
-    shown = {Objective.UNITS, Objective.INPUTS}
-    others = [Objective.SUCCESS] if costs.success is not None else []
-    for objective in dict.fromkeys((*others, *objectives)):
-        if objective not in shown:
+    listed = {Objective.UNITS, Objective.INPUTS}
+    usual = [Objective.SUCCESS] if costs.success is not None else []
+    for objective in dict.fromkeys((*usual, *objectives)):
+        if objective not in listed:
             text += f", {objective} {figure_text(objective, costs.measure(objective))}"
     return text
 
 
 def success_text(success: Fraction) -> str:
-    """Return a success rate to four significant digits, with ``≈`` where that is rounded.
+    """Return a success rate in four significant digits, behind ``≈`` if it is rounded.
 
-    A rate that is rounded to 1 is shown by its distance from 1.
+    A rate that would be rounded to 1 is shown by its distance from 1: ``≈ 1 - 0.0001``.
     """
     shown = _four_digits(success)
     if success < 1 and Fraction(shown) == 1:
@@ -51,6 +54,7 @@ def success_text(success: Fraction) -> str:
 
 
 def _four_digits(value: Fraction) -> str:
+    """Return a number rounded to four significant digits, also beyond the range of floats."""
     approx = nearest_float(value)
     if approx is None or (value and not approx):  # there are numbers below the least float, and above all
         return f"{Decimal(value.numerator) / Decimal(value.denominator):.4g}"
@@ -58,16 +62,17 @@ def _four_digits(value: Fraction) -> str:
 
 
 def success_texts(values: Sequence[Fraction]) -> list[str]:
-    """Write successes with enough significant digits that different ones look different, from 4 to 40.
+    """Return success rates as texts, in so many digits that different rates have different texts.
 
-    ``≈`` stands before what is rounded.
+    All have the same number of significant digits, from 4 to 40. ``≈`` stands before a rounded rate.
     """
     digits = 4
-    while digits < 40 and len({_rounded(v, digits) for v in values}) < len(set(values)):
+    while digits < 40 and len({_round_to_digits(v, digits) for v in values}) < len(set(values)):
         digits += 1
-    shown = {value: _rounded(value, digits) for value in values}
+    shown = {value: _round_to_digits(value, digits) for value in values}
     return [f"{shown[v]:g}" if Fraction(shown[v]) == v else f"≈ {shown[v]:g}" for v in values]
 
 
-def _rounded(value: Fraction, digits: int) -> Decimal:
+def _round_to_digits(value: Fraction, digits: int) -> Decimal:
+    """Return a number rounded to some significant digits."""
     return Context(prec=digits).divide(Decimal(value.numerator), Decimal(value.denominator))

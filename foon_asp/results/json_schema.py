@@ -51,13 +51,13 @@ _OWN: dict[Any, tuple[str, Json]] = {
 
 
 def schema_of(document: type[Struct]) -> Json:
-    """Return the JSON Schema of a document, draft 2020-12, complete in itself."""
+    """Return the JSON Schema (draft 2020-12) of a class of documents; it refers to no other schema."""
     (top,), definitions = msgspec.json.schema_components(
-        [document], schema_hook=_hook, ref_template=_REFERENCE
+        [document], schema_hook=_schema_of_type, ref_template=_REFERENCE
     )
-    bases = {kind.__name__: inspect.getmro(kind) for kind in _structs(document)}
+    bases = {kind.__name__: inspect.getmro(kind) for kind in _structs_in(document)}
     for name, definition in definitions.items():
-        _describe(definition, bases.get(name, ()))
+        _describe_struct(definition, bases.get(name, ()))
     for name, definition in reversed(_OWN.values()):  # each may refer to one before it
         if _REFERENCE.format(name=name) in repr(definitions):
             definitions[name] = definition
@@ -65,12 +65,12 @@ def schema_of(document: type[Struct]) -> Json:
     title = root["description"].rstrip(".")
     schema = {"$schema": _DRAFT, **root, "$defs": dict(sorted(definitions.items())), "title": title}
     _put_null_last(schema)
-    _name_keys(schema)
+    _constrain_keys(schema)
     return schema
 
 
 def schema_of_rows(kind: str, row: type[Struct]) -> Json:
-    """Return the schema of a line of a file of rows: the header with the question, or a row."""
+    """Return the JSON Schema of a line in a file of rows: the first line with the question, or a row."""
     row_schema = schema_of(row)
     name = {"schema": {"const": schema_name(kind)}}
     first = {
@@ -91,24 +91,24 @@ def schema_of_rows(kind: str, row: type[Struct]) -> Json:
     return {"$schema": _DRAFT, "title": title, "oneOf": [first, line], "$defs": row_schema["$defs"]}
 
 
-def _name_keys(schema: Any) -> None:
-    """Constrain the keys of open objects, which are objectives or phases, to a pattern."""
+def _constrain_keys(schema: Any) -> None:
+    """Add, in place, a pattern for the free keys of objects, which are names of objectives or phases."""
     for inner in schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else ():
-        _name_keys(inner)
+        _constrain_keys(inner)
     if isinstance(schema, dict) and isinstance(schema.get("additionalProperties"), dict):
         schema["propertyNames"] = {"pattern": _KEY}
 
 
 def _put_null_last(schema: Any) -> None:
-    """Sort the alternatives of each field, null last: versions of msgspec list them in different orders."""
+    """Sort the alternatives of each field in place, null last, since their order depends on msgspec."""
     for inner in schema.values() if isinstance(schema, dict) else schema if isinstance(schema, list) else ():
         _put_null_last(inner)
     if isinstance(schema, dict) and "anyOf" in schema:
         schema["anyOf"].sort(key=lambda choice: (choice == {"type": "null"}, json_line(choice)))
 
 
-def _hook(kind: type) -> Json:
-    """Return the schema of a type that is not a struct, for msgspec."""
+def _schema_of_type(kind: type) -> Json:
+    """Return the schema of a type that msgspec does not know: a number, costs, an objective or a path."""
     if kind in _OWN:
         return {"$ref": _REFERENCE.format(name=_OWN[kind][0])}
     if issubclass(kind, Objective | PurePath):
@@ -116,8 +116,8 @@ def _hook(kind: type) -> Json:
     raise NotImplementedError(kind)
 
 
-def _structs(document: type[Struct]) -> set[type[Struct]]:
-    """Return the structs that a document consists of, recursively."""
+def _structs_in(document: type[Struct]) -> set[type[Struct]]:
+    """Return the struct classes in the fields of a document, at any depth, with its own class."""
     kinds, waiting = set[type[Struct]](), [msgspec.inspect.type_info(document)]
     for info in waiting:  # grows during the loop
         if isinstance(info, msgspec.inspect.StructType) and info.cls not in kinds:
@@ -129,10 +129,10 @@ def _structs(document: type[Struct]) -> set[type[Struct]]:
     return kinds
 
 
-def _describe(schema: Json, bases: Sequence[type]) -> None:
-    """Add the descriptions of fields from docstrings, and forbid other keys.
+def _describe_struct(schema: Json, bases: Sequence[type]) -> None:
+    """Add descriptions from docstrings to the schema of a struct, in place; forbid other keys.
 
-    ``bases`` are the struct's class and its base classes.
+    ``bases`` are the struct's class and its base classes, whose docstrings describe inherited fields.
     """
     docstring = schema.pop("description", "")
     schema["description"] = docstring.partition("\n")[0]
@@ -145,7 +145,7 @@ def _describe(schema: Json, bases: Sequence[type]) -> None:
 
 
 def _require_written(schema: Json) -> None:
-    """Require the keys that are always written; fields that may be unset are optional."""
+    """Require, in place, the keys that are always written; fields that may be unset stay optional."""
     fields = schema["properties"]
     written = {name for name in fields if fields[name].pop("default", _UNSET) is not _UNSET}
     required = {*written, *schema.get("required", ())}
@@ -155,6 +155,10 @@ def _require_written(schema: Json) -> None:
 
 
 def _describe_fields(schema: Json, docstring: str, keys: Mapping[str, str]) -> None:
+    """Add the descriptions in the ``Attributes`` of a docstring to fields without one, in place.
+
+    ``keys`` are the keys in JSON by the name of the field.
+    """
     for name, text in _ATTRIBUTE.findall(inspect.cleandoc(docstring)):
         key = keys.get(name, name)
         if key in schema["properties"]:

@@ -1,4 +1,4 @@
-"""Values as plain ones, for JSON: dictionaries, lists, texts and numbers."""
+"""Plain values, as JSON can hold them: dictionaries, lists, texts and numbers."""
 
 from collections.abc import Mapping
 from decimal import Decimal
@@ -19,11 +19,11 @@ def plain(value: object) -> Any:
 
     A fraction is ``{"exact": "27/1250", "approx": 0.0216}``; ``approx`` is ``None`` above all floats.
     """
-    return msgspec.to_builtins(value, enc_hook=_plain)
+    return msgspec.to_builtins(value, enc_hook=_encode)
 
 
-def _plain(value: object) -> object:
-    """Return a number, costs or a path as a value that JSON can hold."""
+def _encode(value: object) -> object:
+    """Return a fraction, costs, an objective or a path as a value that JSON can hold."""
     if isinstance(value, Fraction):
         return {"exact": fraction_text(value), "approx": nearest_float(value)}
     if isinstance(value, Costs):
@@ -34,15 +34,18 @@ def _plain(value: object) -> object:
 
 
 def costs_plain(costs: Costs) -> Json:
-    """Return the costs of a tree as plain values, by objective (``None`` if unknown), and its ingredients."""
+    """Return the costs of a tree as plain values by the name of the objective, and its ingredients.
+
+    An unknown cost is ``None``.
+    """
     values: Json = plain(costs_by_name(costs))
     return values
 
 
 def costs_by_name(costs: Costs) -> dict[str, int | Fraction | None]:
-    """Return the costs of a tree by the name of the objective, as exact numbers; ``None`` if unknown.
+    """Return the costs of a tree by the name of the objective, as exact numbers, and its ingredients.
 
-    Costs without stand-ins have no dissimilarity.
+    An unknown cost is ``None``. ``dissimilarity`` is left out in costs without stand-ins.
     """
     usual = (objective for objective in Objective if objective.row.needs is not OptionalData.STAND_INS)
     measures = {**dict.fromkeys(usual), **costs.measures}
@@ -52,7 +55,10 @@ def costs_by_name(costs: Costs) -> dict[str, int | Fraction | None]:
 def exact_measures(
     measures: Mapping[Objective, int | Fraction | None],
 ) -> dict[str, int | Fraction | None]:
-    """Return measures by objective name: integers, or fractions if the objective is not integral."""
+    """Return measures by the name of the objective: integers, or fractions if it is not integral.
+
+    ``None`` stays.
+    """
     return {
         str(objective): None
         if measure is None
@@ -64,16 +70,16 @@ def exact_measures(
 
 
 def read_plain(kind: type[T], value: Json) -> T:
-    """Return the value of a kind from its plain form, the inverse of :func:`plain`.
+    """Return the value of class ``kind`` from its plain form; this is the inverse of :func:`plain`.
 
-    Keys of dictionaries stay texts. For a value of another form, raises :class:`msgspec.ValidationError`,
-    which is a :class:`ValueError`, or :class:`KeyError`, :class:`TypeError`, :class:`AttributeError` or
+    Keys of dictionaries stay texts. For a wrong form, raises :class:`msgspec.ValidationError` (a
+    :class:`ValueError`), :class:`KeyError`, :class:`TypeError`, :class:`AttributeError` or
     :class:`ArithmeticError`.
     """
-    return msgspec.convert(value, kind, dec_hook=_exact)
+    return msgspec.convert(value, kind, dec_hook=_decode)
 
 
-def _exact(kind: type, value: Any) -> Objective | Fraction | int:
+def _decode(kind: type, value: Any) -> Objective | Fraction | int:
     """Return an objective, fraction or integer from its plain form."""
     if isinstance(value, Objective) or type(value) is int:
         return value
@@ -83,7 +89,7 @@ def _exact(kind: type, value: Any) -> Objective | Fraction | int:
 
 
 def fraction_text(value: Fraction) -> str:
-    """Return an exact number as a text, without a limit on its digits."""
+    """Return an exact number as text, ``27/1250`` or ``3``, with all its digits."""
     # through Decimal: products of long rates have more digits than Python turns into text at once
     parts = [str(Decimal(n)) for n in (value.numerator, value.denominator)]
     return "/".join(parts) if value.denominator != 1 else parts[0]

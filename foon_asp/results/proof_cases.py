@@ -1,4 +1,4 @@
-"""A certificate for people: the cases of its branching proof, and the landmark actions of each cut."""
+"""The proof of a certificate as cases: the leaves of its branching, each with its cuts."""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -14,10 +14,10 @@ from foon_asp.text.json_value import Json
 
 
 class Choice(Value, frozen=True):
-    """A unit, an item of the kitchen or a step of the rules.
+    """A unit, an item of the kitchen or a step of the rules, which a proof branches on or excludes.
 
     Attributes:
-        taken: Whether every tree of a case has it, or none.
+        taken: Whether every tree of a case has it (true) or none has it (false).
     """
 
     kind: str
@@ -26,7 +26,7 @@ class Choice(Value, frozen=True):
 
 
 class WeighedCut(Value, frozen=True):
-    """A cut with its weight by the first objective; null for a cut without landmark actions.
+    """A cut, and its weight by the first objective; the weight is null without landmark actions.
 
     Attributes:
         members: The landmark actions: units that make a node of the cut and need none.
@@ -41,12 +41,12 @@ class ProofCase(Value, frozen=True):
     """A leaf of the branching proof.
 
     Attributes:
-        given: The branching decisions: choices taken or excluded in every tree of this case.
-        dear: Choices with a reduced cost above the cutoff: every tree of this case has at least one, and
-            costs too much. Later cases exclude them.
-        ends: The key of the argument that closes the case.
+        given: The branching decisions: the choices that every tree of this case has, or that none has.
+        dear: Choices whose reduced cost is above the cutoff: a tree with one of them costs too much. The
+            case is about trees with at least one; later cases exclude them.
+        ends: The key of the argument that closes the case: hopeless, broken or weights.
         paid: The cost of the choices that are taken.
-        cuts: The cuts that carry weight, or the cut without landmark actions.
+        cuts: The cuts with a weight, or the cut without landmark actions.
     """
 
     given: tuple[Choice, ...]
@@ -57,13 +57,13 @@ class ProofCase(Value, frozen=True):
 
 
 class ProofCases(Value, frozen=True):
-    """A certificate, its cases, and the units and object nodes that these are about.
+    """A certificate, the cases of its proof, and the units and object nodes in them.
 
-    Weights and costs are those by the first objective, and approximate: for products of rates, negative
-    logarithms. Nodes that rules of the claim add are left out.
+    Weights and costs are by the first objective, and approximate; for success, they are negative logarithms.
+    Nodes that rules of the claim add are left out.
 
     Attributes:
-        cost: Of the tree, or the bound.
+        cost: The cost of the tree, or the bound; null without either.
     """
 
     certificate: Json
@@ -74,7 +74,7 @@ class ProofCases(Value, frozen=True):
 
     @classmethod
     def of(cls, problem: Problem, content: Json) -> Self:
-        """Return the cases of the certificate of a problem.
+        """Return the cases of the proof in a certificate about a problem.
 
         Parameters:
             problem: The problem.
@@ -94,7 +94,7 @@ class ProofCases(Value, frozen=True):
             above_cutoff = tuple(
                 Choice(*kind_and_id) for choice in subproof.get("dear", ()) for kind_and_id in choice.items()
             )
-            cases.append(_case(problem, content, subproof, decisions, above_cutoff))
+            cases.append(_proof_case(problem, content, subproof, decisions, above_cutoff))
             if "others" in subproof:
                 excluded = (Choice(choice.kind, choice.id, False) for choice in above_cutoff)
                 waiting.append((subproof["others"], (*decisions, *excluded)))
@@ -104,21 +104,24 @@ class ProofCases(Value, frozen=True):
             {"unit": units, "item": nodes}.get(choice.kind, set()).add(choice.id)
         return cls(
             content,
-            _cost(content),
+            _claimed_cost(content),
             tuple(cases),
             tuple(mention_of(network, unit) for unit in sorted(units) if unit < len(network)),
             nodes_of(network, sorted(o for o in nodes if o < len(network.objects))),
         )
 
 
-def _case(
+def _proof_case(
     problem: Problem,
     content: Json,
     subproof: Json,
     decisions: tuple[Choice, ...],
     above_cutoff: tuple[Choice, ...],
 ) -> ProofCase:
-    """Return a leaf of a proof as a case, under the decisions that lead to it."""
+    """Return a leaf of the proof as a case.
+
+    ``content`` is the certificate, ``subproof`` the leaf, and ``decisions`` are those that lead to it.
+    """
     excluded = {choice.id for choice in decisions if choice.kind == "unit" and not choice.taken}
     weights = (
         subproof["weights"]
@@ -128,28 +131,31 @@ def _case(
     cuts = []
     for number, weight in weights:
         nodes = tuple(o for o in content["cuts"][number] if o < len(problem.network.objects))
-        members = sorted(_members(problem, nodes) - excluded)
-        cuts.append(WeighedCut(nodes, None if weight is None else _approximate(weight[0]), tuple(members)))
+        members = sorted(_landmark_actions(problem, nodes) - excluded)
+        cuts.append(WeighedCut(nodes, None if weight is None else _weight(weight[0]), tuple(members)))
     ends = next(key for key in ("hopeless", "broken", "weights") if key in subproof)
-    return ProofCase(decisions, above_cutoff, ends, _paid(problem, content, decisions), tuple(cuts))
+    return ProofCase(decisions, above_cutoff, ends, _cost_of_taken(problem, content, decisions), tuple(cuts))
 
 
-def _members(problem: Problem, cut: Iterable[int]) -> set[int]:
-    """Return the landmark actions of a cut: the units that make a node of the cut and need none."""
+def _landmark_actions(problem: Problem, cut: Iterable[int]) -> set[int]:
+    """Return the landmark actions of a cut of node ids: the units that make a node of it and need none."""
     inside = frozenset(cut)
     makers = (unit for o in inside - problem.kitchen for unit in problem.makers[o])
     return {unit for unit in makers if inside.isdisjoint(problem.needs[unit])}
 
 
-def _cost(content: Json) -> float | None:
-    """Return the cost or the bound of a certificate by its first objective, in the unit of the weights."""
+def _claimed_cost(content: Json) -> float | None:
+    """Return the cost or the bound in a certificate by its first objective, in the unit of the weights.
+
+    ``None`` if no tree exists.
+    """
     if content["claim"] == "optimal":
-        return _measured(content["objective"][0], content["costs"][0])
-    return None if content["bound"] is None else _approximate(content["bound"][0])
+        return _additive_cost(content["objective"][0], content["costs"][0])
+    return None if content["bound"] is None else _weight(content["bound"][0])
 
 
-def _paid(problem: Problem, content: Json, decisions: Iterable[Choice]) -> float:
-    """Return the cost of the units and items that a case takes, by the first objective."""
+def _cost_of_taken(problem: Problem, content: Json, decisions: Iterable[Choice]) -> float:
+    """Return the summed cost, by the first objective, of the units and items that are taken by decisions."""
     if not content["objective"]:
         return 0.0
     name = content["objective"][0]
@@ -157,18 +163,24 @@ def _paid(problem: Problem, content: Json, decisions: Iterable[Choice]) -> float
     total = float(sum(choice.kind == "item" for choice in chosen))
     for choice in chosen:
         if choice.kind == "unit" and name != "kitchen":
-            total += _measured(name, problem.costs([choice.id]).measures[name])
+            total += _additive_cost(name, problem.costs([choice.id]).measures[name])
     return total
 
 
-def _measured(name: str, cost: Any) -> float:
-    """Return a cost by an objective; of a product, its negative logarithm."""
+def _additive_cost(name: str, cost: Any) -> float:
+    """Return a cost by the name of its objective as a float; for success, its negative logarithm."""
     figure = float(Fraction(cost))
     multiplied = name in Objective and multiplies(Objective(name))
     return -math.log(figure) if multiplied else figure
 
 
-def _approximate(component: str | Mapping[str, str] | Any) -> float:
+def _weight(component: str | Mapping[str, str] | Any) -> float:
+    """Return a weight in a certificate as a float: an exact number, or exponents by rate.
+
+    Exponents stand for a sum of negative logarithms of rates.
+    """
     if isinstance(component, Mapping):
-        return math.fsum(-math.log(Fraction(r)) * float(Fraction(e)) for r, e in component.items())
+        return math.fsum(
+            -math.log(Fraction(rate)) * float(Fraction(exponent)) for rate, exponent in component.items()
+        )
     return float(Fraction(component))

@@ -13,6 +13,6 @@ def schema_kinds() -> tuple[str, ...]:
 
 
 def schema(kind: str) -> Json:
-    """Return the schema of a kind, complete in itself."""
+    """Return the JSON Schema of a kind of documents, read from its file."""
     values: Json = read_json((SCHEMAS / f"{kind}.json").read_text(encoding="utf-8"))
     return values

@@ -21,10 +21,11 @@ class Cell(NamedTuple):
 class Table(NamedTuple):
     """Rows under headings; columns of figures are aligned to the right.
 
-    A row that is a single text is a line of its own, over the rows that follow it.
-    ``left_aligned`` are the indices of columns aligned to the left; the last of them is folded if it is too
-    long. ``indent`` is the number of spaces before the table. ``headed`` says whether a wide terminal
-    shows headings; a narrow one shows a block for each row, a line ``heading: cell`` for each cell.
+    A row that is a single text is a line of its own, a title of the rows that follow.
+    ``left_aligned``: the indices, from 0, of columns aligned to the left.
+    ``indent``: the number of spaces before each line.
+    ``headed``: whether a wide terminal shows the headings. A narrow one shows each row as a block with a
+    line ``heading: cell`` for each cell.
     """
 
     headings: Sequence[str]
@@ -38,42 +39,42 @@ Block = str | Table
 """A block of text for people: a line, or a table."""
 
 
-def rendered(parts: Iterable[Block], width: int | None = None, coloured: bool = False) -> str:
-    """Return lines and tables as text.
+def blocks_text(parts: Iterable[Block], width: int | None = None, coloured: bool = False) -> str:
+    """Return lines and tables as one text.
 
     Parameters:
         parts: The lines and tables, from top to bottom; a line end within a line is escaped.
-        width: The columns of the terminal; lines that are longer are folded between words, and tables are
-            stacked below 75. Without it, lines are as long as they are.
-        coloured: Whether cells are coloured.
+        width: The columns of the terminal. Longer lines are folded between words; below 75, each row of a
+            table is a block of lines. ``None`` leaves lines as long as they are.
+        coloured: Whether cells with a style, and headings, are coloured by terminal codes.
     """
     lines: list[str] = []
     for block in parts:
         if isinstance(block, Table):
             lines += (
-                _stacked(block, width)
+                _stacked_lines(block, width)
                 if width is not None and width < 75
-                else _aligned(block, width, coloured)
+                else _aligned_lines(block, width, coloured)
             )
         else:
             line = block.replace("\n", "\\u000a")  # a name may hold a line end
-            lines += _folded(escaped_lines(line) if coloured else line, width)
+            lines += _fold(escaped_lines(line) if coloured else line, width)
     return "".join(f"{line.rstrip()}\n" for line in lines)
 
 
-def _aligned(table: Table, width: int | None, coloured: bool) -> Iterator[str]:
+def _aligned_lines(table: Table, width: int | None, coloured: bool) -> Iterator[str]:
     """Yield the lines of a table with aligned columns."""
     rows = [*([table.headings] if table.headed else []), *table.rows]
     columns = zip(*(row for row in rows if not isinstance(row, str)), strict=True)
-    widths = [max(len(_text(cell)) for cell in column) for column in columns]
+    widths = [max(len(_cell_text(cell)) for cell in column) for column in columns]
     inset = " " * table.indent
     for number, row in enumerate(rows):
         if isinstance(row, str):
-            yield _coloured(inset + escaped(row), row, coloured, heading=bool(row))
+            yield _colour(inset + escaped(row), row, coloured, heading=bool(row))
             continue
         cells = []
         for index, (cell, column_width) in enumerate(zip(row, widths, strict=True)):
-            text = _text(cell)
+            text = _cell_text(cell)
             last = index == len(row) - 1
             shown = (
                 text
@@ -82,35 +83,40 @@ def _aligned(table: Table, width: int | None, coloured: bool) -> Iterator[str]:
                 if index in table.left_aligned
                 else text.rjust(column_width)
             )
-            cells.append(_coloured(shown, cell, coloured, heading=table.headed and not number))
-        yield from _folded(inset + "  ".join(cells), None if coloured else width)
+            cells.append(_colour(shown, cell, coloured, heading=table.headed and not number))
+        yield from _fold(inset + "  ".join(cells), None if coloured else width)
 
 
-def _stacked(table: Table, width: int) -> Iterator[str]:
-    """Yield the lines of a table as a block for each row, for narrow terminals."""
+def _stacked_lines(table: Table, width: int) -> Iterator[str]:
+    """Yield, for narrow terminals, a block of lines for each row of a table, with an empty line between."""
     for index, row in enumerate(filter(None, table.rows)):
         if index:
             yield ""
         if isinstance(row, str):
-            yield from _folded(escaped(row), width)
+            yield from _fold(escaped(row), width)
             continue
         for heading, cell in zip(table.headings, row, strict=True):
-            if text := _text(cell).strip():
+            if text := _cell_text(cell).strip():
                 name = f"{heading.strip()}: " if heading.strip() else ""
-                yield from _folded(f"{name}{text}", width)
+                yield from _fold(f"{name}{text}", width)
 
 
-def _text(cell: str | Cell) -> str:
+def _cell_text(cell: str | Cell) -> str:
+    """Return the text of a cell, with control characters escaped."""
     return escaped(cell.text if isinstance(cell, Cell) else cell)
 
 
-def _coloured(text: str, cell: str | Cell, coloured: bool, heading: bool) -> str:
+def _colour(text: str, cell: str | Cell, coloured: bool, heading: bool) -> str:
+    """Return a text with terminal codes for the style of its cell, or of a heading, if ``coloured``."""
     style = "strong" if heading else cell.style if isinstance(cell, Cell) else ""
     return f"\x1b[{_COLOURS[style]}m{text}\x1b[0m" if coloured and style else text
 
 
-def _folded(line: str, width: int | None) -> list[str]:
-    """Return a line wrapped between words to a width, at least 20; continuation lines are indented."""
+def _fold(line: str, width: int | None) -> list[str]:
+    """Return a line folded between words to a width of at least 20; further lines are indented.
+
+    ``None`` for the width leaves the line whole.
+    """
     if width is None or len(line) <= width:
         return [line]
     begins = _BEGINS.match(line)

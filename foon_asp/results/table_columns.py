@@ -15,19 +15,23 @@ _WRITTEN_NUMBER = re.compile(r"[+-]?[0-9]+(?:[./][0-9]+)?(?:e[+-]?[0-9]+)?", re.
 
 
 def flat_row(row: Json) -> Json:
-    """Return a row without nested values; a nested value has a name with a dot, ``costs.units``.
+    """Return a row without nested values, and without its schema.
 
-    Exact numbers are decimals, with the exact number in another column whose name ends in ``_exact``; nodes
-    and places are in one-line notation; lists of structured values are left out.
+    The key of a nested value has a dot: ``costs.units``. An exact number becomes a decimal, and another key
+    ending in ``_exact`` has the exact number. Nodes and places are in one-line notation. Lists of structured
+    values are left out.
     """
     return {
-        name: value for name, inner in row.items() if name != "schema" for name, value in _flat(name, inner)
+        name: value
+        for name, inner in row.items()
+        if name != "schema"
+        for name, value in _flat_items(name, inner)
     }
 
 
-def _flat(name: str, value: Any) -> Iterator[tuple[str, Any]]:
-    """Yield the name and value of each leaf of a nested value."""
-    word = _word(value)
+def _flat_items(name: str, value: Any) -> Iterator[tuple[str, Any]]:
+    """Yield the flat key and the value of each leaf of a nested value; ``name`` is its own key."""
+    word = _one_line_value(value)
     if word is not value:
         yield name, word
     elif isinstance(value, dict) and value.keys() == {"exact", "approx"}:
@@ -35,15 +39,18 @@ def _flat(name: str, value: Any) -> Iterator[tuple[str, Any]]:
         yield name + _EXACT, value["exact"]
     elif isinstance(value, dict):
         for key, inner in value.items():
-            yield from _flat(f"{name}.{key}", inner)
+            yield from _flat_items(f"{name}.{key}", inner)
     elif not isinstance(value, list | tuple):
         yield name, value
-    elif not any(isinstance(_word(member), dict | list | tuple) for member in value):
-        yield name, [_word(member) for member in value]
+    elif not any(isinstance(_one_line_value(member), dict | list | tuple) for member in value):
+        yield name, [_one_line_value(member) for member in value]
 
 
-def _word(value: Any) -> Any:
-    """Return a node, its change, a place or a constant in one-line notation; other values unchanged."""
+def _one_line_value(value: Any) -> Any:
+    """Return a node, the change of a node, a place or a constant in one-line notation.
+
+    Other values are returned unchanged.
+    """
     if isinstance(value, dict):
         if "node" in value and "label" in value:
             return value["node"]
@@ -58,12 +65,13 @@ def _word(value: Any) -> Any:
     return value
 
 
-def table(
+def table_cells(
     rows: Iterable[Json], columns: Sequence[str] | None = None
 ) -> tuple[Sequence[str], list[list[Any]]]:
-    """Return flat rows as columns by name and a list for each row, ``None`` where a row has no value.
+    """Return the names of the columns of flat rows, and a list of cells for each row.
 
-    In a column that also has fractions, the exact value of a whole number is the number itself.
+    ``columns`` are the names to use; by default, all keys in the rows. A cell is ``None`` if the row has no
+    value. In a column of exact numbers, the cell of a whole number is the number as text.
     """
     rows = list(rows)
     if columns is None:
@@ -74,28 +82,29 @@ def table(
 
 
 def _cell(row: Json, name: str) -> Any:
+    """Return the value of a row in a column; for an exact column, also of a whole number."""
     if name not in row and name.endswith(_EXACT):
-        whole = row.get(name.removesuffix(_EXACT))
-        return None if whole is None else str(whole)
+        whole_number = row.get(name.removesuffix(_EXACT))
+        return None if whole_number is None else str(whole_number)
     return row.get(name)
 
 
 def csv_text(rows: Iterable[Json], names: Sequence[str] | None = None) -> str:
-    """Return flat rows as CSV, with a line of headings, and true and false as pandas reads them.
+    """Return flat rows as CSV with a line of headings; ``true`` and ``false`` are as pandas reads them.
 
-    ``names`` are the columns; without them, the columns are all names in the rows.
+    ``names`` are the columns; by default, all keys in the rows.
     """
-    columns, cells = table(rows, names)
+    columns, cells = table_cells(rows, names)
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
     writer.writerows(
-        [columns, *([safe_cell(_text(cell, words=("false", "true"))) for cell in row] for row in cells)]
+        [columns, *([safe_cell(_cell_text(cell, words=("false", "true"))) for cell in row] for row in cells)]
     )
     return file.getvalue()
 
 
 def safe_cell(text: str) -> str:
-    """Return the text of a cell, behind an apostrophe if a spreadsheet would take it for a formula."""
+    """Return the escaped text of a cell, behind an apostrophe if spreadsheets take it for a formula."""
     text = escaped(text)  # of what begins a formula, tabs and line ends
     return f"'{text}" if text[:1] in {"=", "+", "-", "@"} and not _WRITTEN_NUMBER.fullmatch(text) else text
 
@@ -105,9 +114,10 @@ def markdown_text(rows: Iterable[Json]) -> str:
 
     The table has no empty columns and no exact numbers; other numbers have six digits.
     """
-    columns, cells = table(rows)
+    columns, cells = table_cells(rows)
     lists = [
-        [name, *map(_rounded, column)] for name, column in zip(columns, zip(*cells, strict=True), strict=True)
+        [name, *map(_rounded_cell_text, column)]
+        for name, column in zip(columns, zip(*cells, strict=True), strict=True)
     ]
     shown = [column for column in lists if not column[0].endswith(_EXACT) and any(column[1:])]
     if not shown:
@@ -117,31 +127,35 @@ def markdown_text(rows: Iterable[Json]) -> str:
 
 
 def markdown_row(cells: Iterable[str]) -> str:
-    """Return a line of a table in Markdown."""
+    """Return a row of cells as a line of a table in Markdown; bars in cells are escaped."""
     shown = (escaped(cell).replace("|", "\\|") for cell in cells)
     return f"| {' | '.join(shown)} |\n"
 
 
-def _rounded(value: Any) -> str:
+def _rounded_cell_text(value: Any) -> str:
+    """Return a cell as text, with floats in six digits."""
     if isinstance(value, float):
         return str(int(value)) if value.is_integer() else f"{value:.6g}"
-    return _text(value)
+    return _cell_text(value)
 
 
-def _text(value: Any, words: tuple[str, str] = ("no", "yes")) -> str:
-    """Return a cell as text; ``words`` are the words for false and true."""
+def _cell_text(value: Any, words: tuple[str, str] = ("no", "yes")) -> str:
+    """Return a cell as text; items of a list are joined by ``+``.
+
+    ``words`` are the words for false and true. ``None`` becomes an empty text.
+    """
     if isinstance(value, list):
-        return " + ".join(map(_text, value))
+        return " + ".join(map(_cell_text, value))
     if isinstance(value, bool):
         return words[value]
     return "" if value is None else str(value)
 
 
-def frame(rows: Iterable[Json]) -> Any:
-    """Return flat rows as a data frame of pandas; raises :class:`UserError` where that is not installed."""
+def data_frame(rows: Iterable[Json]) -> Any:
+    """Return flat rows as a data frame of pandas; raises :class:`UserError` if pandas is not installed."""
     try:
         import pandas  # noqa: PLC0415 (an extra)
     except ImportError:
         raise UserError("a data frame needs pandas: pip install 'foon-asp[notebook]'") from None
-    columns, cells = table(rows)
+    columns, cells = table_cells(rows)
     return pandas.DataFrame(cells, columns=columns)

@@ -8,11 +8,11 @@ from foon_asp.results.values import NumberedStep, Value
 
 
 class Tool(Value, frozen=True):
-    """One tool or vessel.
+    """One copy of a tool or vessel.
 
     Attributes:
         tool: A label, or a vessel with what is in it.
-        number: Which of them, from 1.
+        number: The number of the copy, from 1.
 
     Example:
         >>> str(foon_asp.Tool("knife", 2))
@@ -30,11 +30,12 @@ class TimedStep(NumberedStep, frozen=True):
     """A step with its times in seconds, who does it, and with which tools.
 
     Attributes:
-        product: The label of what it makes, of the first of several; null where it makes nothing.
-        agent: From 1; null where nobody has to stand by.
-        tools: Those that it alone uses at the time, in the order of the unit's objects.
-        after: The steps that have to be done before, as it takes what they make, or uses up what they need.
-        amount: How many copies of the product it makes, where items are used up and that is not one.
+        product: The label of the first node that it makes; null where it makes nothing.
+        agent: The number of the agent that does it, from 1; null where nobody has to stand by.
+        tools: The tools that it uses alone at the time, in the order of the unit's objects.
+        after: The numbers of the steps that have to be done before: it takes what they make, or uses up what
+            they need.
+        amount: Where items are used up: how many copies of the product it makes, if that is not one.
 
     Example:
         >>> problem = foon_asp.load().problem("ice")
@@ -53,6 +54,6 @@ class TimedStep(NumberedStep, frozen=True):
 
     @property
     def name(self) -> str:
-        """The motion, and what it is done to."""
+        """The motion and the product: ``crush (ice)``."""
         product = self.product if self.amount is UNSET else f"{self.amount} x {self.product}"
         return f"{self.motion} ({product})" if product else self.motion

@@ -25,8 +25,8 @@ class Place(Value, frozen=True):
     """Where a copy of a unit was read.
 
     Attributes:
-        line: From 1; 0 for what was read from no line.
-        videos: The addresses that the annotator worked from.
+        line: The number of the line, from 1; 0 if it was not read from a line.
+        videos: The addresses of the annotated videos.
     """
 
     file: str
@@ -38,14 +38,14 @@ class Place(Value, frozen=True):
 
 
 class Relation(Value, frozen=True):
-    """How an object stands to another one: ``in`` a ``bowl``."""
+    """The relation of an object to another one: ``in`` a ``bowl``."""
 
     word: str
     object: str
 
 
 class Contents(Value, frozen=True):
-    """The ingredients in an object, behind the word that they are read with."""
+    """The ingredients in an object, and the word before them: ``contains``."""
 
     word: str
     ingredients: tuple[str, ...]
@@ -75,11 +75,13 @@ class Node(Value, frozen=True):
 
 
 class Origin(Value, frozen=True):
-    """The origin of an input: exactly one field is set. Only a list that does not execute has the last two.
+    """The origin of an input; exactly one field is set.
+
+    The last two occur only in a tree that does not execute.
 
     Attributes:
         kitchen: It is in the kitchen.
-        bought: It is in the kitchen, once the shopping list is.
+        bought: It is in the kitchen once the shopping list is bought.
         step: The first step that makes it, from 1.
         implied: It is taken as given by the container rule ``implied``.
         later_step: The first step that makes it, which is too late.
@@ -102,7 +104,7 @@ class Origin(Value, frozen=True):
 
 
 class Copy(Node, frozen=True, kw_only=True):
-    """One copy of an object node, and where it comes from."""
+    """One copy of an object node, and its origin."""
 
     origin: Origin = field(name="from")
 
@@ -130,7 +132,7 @@ class Output(Node, frozen=True, kw_only=True):
     """An output of a step.
 
     Attributes:
-        made: False for what the unit takes as given, so that it does not make it.
+        made: Whether the unit makes it; false for an output that it takes as given.
         amount: Where items are used up, and amounts are known: how many copies one execution makes.
     """
 
@@ -143,7 +145,7 @@ class Mention(Value, frozen=True):
 
     Attributes:
         id: The id in the whole network, the number in ``use(U)``; null where the network does not have it.
-        source: A place for every copy.
+        source: The place of each copy of the unit.
     """
 
     id: int | None
@@ -173,7 +175,7 @@ class Unit(Value, frozen=True):
 
     Attributes:
         id: The id in the whole network, the number in ``use(U)``; null where the network does not have it.
-        source: A place for every copy.
+        source: The place of each copy of the unit.
         stands_for: Below level 3: the level-3 units that it stands for.
     """
 
@@ -188,20 +190,20 @@ class Unit(Value, frozen=True):
         return f"{self.motion}: {' + '.join(map(str, self.inputs))} → {' + '.join(map(str, self.outputs))}"
 
     def lines(self) -> Iterator[str]:
-        """Return the lines of the unit for people: motion and place, inputs, outputs."""
+        """Yield three lines of text: motion and place, inputs, outputs."""
         yield f"  {self.motion}    [{self.source[0]}]"
         yield f"    {' + '.join(map(str, self.inputs))}"
         yield f"  → {' + '.join(map(str, self.outputs))}"
 
 
 class UnitDifference(Value, frozen=True):
-    """One thing in which two units differ, however often it stands in them.
+    """One difference between two units, named once however often it occurs.
 
     Attributes:
         kind: motion, label, state, relation, ingredient, or for a whole object node input or output.
-        a: What the first has; null where only the second has something.
-        b: What the second has; null where only the first has something.
-        of: The label of the object that it is said of; null for what is no part of one.
+        a: The word of the first unit; null if only the second has one.
+        b: The word of the second unit; null if only the first has one.
+        of: The label of the object that it belongs to; null for a motion or a whole node.
     """
 
     kind: str
@@ -222,10 +224,10 @@ class Step(Value, frozen=True):
     Attributes:
         step: The number of the step, from 1.
         id: The id in the whole network, the number in ``use(U)``.
-        source: A place for every copy.
+        source: The place of each copy of the unit.
         stands_for: Below level 3: the level-3 units that it stands for.
-        by: Who does it, where a person helps: ``robot`` or ``person``.
-        times: Where amounts are counted: how often it is done, one execution after the other.
+        by: ``robot`` or ``person``, where a person helps.
+        times: Where amounts are counted: how often it is executed, one time after the other.
     """
 
     step: int
@@ -239,9 +241,9 @@ class Step(Value, frozen=True):
     times: int | UnsetType = UNSET
 
     def lines(self, details: int = 5) -> Iterator[str]:
-        """Return the lines of the step for people: motion and place, inputs with their origin, outputs.
+        """Yield lines of text: motion and place, inputs with their origins, and outputs.
 
-        ``details`` is how many of the units that it stands for are listed.
+        Below level 3, up to ``details`` of the level-3 units follow that the step stands for.
         """
         who = "    by the person" if self.by == "person" else ""
         times = "" if self.times is UNSET or self.times == 1 else f"{self.times} times "
@@ -262,7 +264,7 @@ class Step(Value, frozen=True):
 
 
 def amount_text(amount: int | UnsetType) -> str:
-    """Return an amount before its node: ``2 x ``, and nothing for one."""
+    """Return an amount as a prefix of a node: ``2 x ``; empty for 1 and without an amount."""
     return "" if amount is UNSET or amount == 1 else f"{amount} x "
 
 
@@ -270,10 +272,10 @@ class Lack(Value, frozen=True):
     """A missing copy of an object node.
 
     Attributes:
-        position: The step that lacks it, from 1; null for a goal, in the end.
-        used_up_by: The steps that use up the copies there are, from 1.
-        amount: How many copies are needed, where that is not one.
-        unit: The unit of the step, of a plan that is replayed.
+        position: The number of the step that lacks it, from 1; null for a goal in the end.
+        used_up_by: The numbers of the steps that used up the copies, from 1.
+        amount: How many copies are needed, if that is not one.
+        unit: The unit of the step, if the plan was replayed; null for a goal.
     """
 
     position: int | None
@@ -287,7 +289,7 @@ class ListedConstraint(Value, frozen=True):
     """A user rule without a head (``:- ...``).
 
     Attributes:
-        number: The number of the rule among all of them, from 1.
+        number: The number of the rule among all such rules, from 1.
         constants: The constants in it that were set, as NAME=VALUE.
     """
 
@@ -298,7 +300,7 @@ class ListedConstraint(Value, frozen=True):
     constants: tuple[str, ...]
 
     def lines(self, remark: str = "") -> Iterator[str]:
-        """Return the place of the rule, a remark, and the constants; and below that its text."""
+        """Yield a line with the place of the rule, a remark and the constants, and a line with its text."""
         settings = "".join(f"    -c {setting}" for setting in self.constants)
         yield f"  {Source(self.file, self.line)}{remark}{settings}"
         yield f"      {self.text}"
@@ -310,8 +312,8 @@ class UsedUpRun(Value, frozen=True):
     The steps of an answer are done in the order listed, the steps of another tree in some order.
 
     Attributes:
-        runs: null if it is open whether any order runs, and below level 3.
-        shortage: The missing copy, if the steps do not run.
+        runs: Whether they run; null if that was not decided, and below level 3.
+        shortage: The missing copy, if the steps do not run; else null.
     """
 
     runs: bool | None
@@ -338,18 +340,18 @@ class CostedTree(Value, frozen=True):
 
 
 def steps_not_in(steps: Sequence[Step], others: Iterable[Step]) -> list[Step]:
-    """Return the steps whose units are not in ``others``, counting repeats (multiset difference)."""
+    """Return the steps whose unit ids are not in ``others``; repeats count (a multiset difference)."""
     missing = Counter(step.id for step in steps) - Counter(step.id for step in others)
-    rows = []
+    difference = []
     for step in steps:
         if missing[step.id]:
             missing[step.id] -= 1
-            rows.append(step)
-    return rows
+            difference.append(step)
+    return difference
 
 
 def step_lines(steps: Iterable[Step | Unit], sign: str = " ") -> Iterator[str]:
-    """Return a line for each step, behind a sign: the id of its unit, the motion and the place."""
+    """Yield a line for each step: a sign such as ``+``, the id of its unit, the motion and the place."""
     for step in steps:
         yield f"  {sign} {step.id}  {step.motion}    [{step.source[0]}]"
 
@@ -357,18 +359,21 @@ def step_lines(steps: Iterable[Step | Unit], sign: str = " ") -> Iterator[str]:
 def changed_motions(
     gone: Iterable[Step | FunctionalUnit], new: Iterable[Step | FunctionalUnit], named: int = 6
 ) -> str:
-    """Return the motions of removed and added steps, as ``- heat  + pour (2)``, at most ``named`` of each."""
+    """Return the motions of removed and added steps: ``- heat  + pour (2)``.
+
+    Up to ``named`` motions of each are listed. The text is empty without changes.
+    """
     texts = []
     for sign, steps in (("-", gone), ("+", new)):
         counts = Counter(step.motion for step in steps)
         motions = [motion if count == 1 else f"{motion} ({count})" for motion, count in counts.items()]
         if len(motions) > named:
-            others = sum([*counts.values()][named - 1 :])
-            motions = [f"{', '.join(motions[: named - 1])} and {others} more"]
+            more_count = sum([*counts.values()][named - 1 :])
+            motions = [f"{', '.join(motions[: named - 1])} and {more_count} more"]
         if motions:
             texts.append(f"{sign} {', '.join(motions)}")
     return "  ".join(texts)
 
 
 Measures = Mapping[Objective, Figure | None]
-"""What some objectives measure; ``None`` where nothing is known."""
+"""The measures of a tree by objective; ``None`` if unknown."""

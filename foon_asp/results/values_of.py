@@ -1,4 +1,4 @@
-"""Values made of the ids of a network, once, where an answer leaves the solver."""
+"""Conversion of ids in a network into values for results."""
 
 import functools
 from collections import deque
@@ -43,7 +43,7 @@ _KITCHEN, _BOUGHT, _IMPLIED, _MISSING = (
 
 
 class Head(TypedDict):
-    """The fields of the question, with which every document about goals begins."""
+    """The fields of the question, which come first in every document about goals."""
 
     goals: tuple[Node, ...]
     containers: ContainerRule
@@ -54,7 +54,7 @@ class Head(TypedDict):
 
 
 def head_of(problem: Problem, objectives: Iterable[Objective] = ()) -> Head:
-    """Return the question of a document about goals: its goals, conditions and objectives."""
+    """Return the first fields of a document about goals: the goals, the conditions and the objectives."""
     network = problem.network
     return {
         "goals": goals_of(network, problem.goals, problem.items.wanted if problem.items else {}),
@@ -69,9 +69,9 @@ def head_of(problem: Problem, objectives: Iterable[Objective] = ()) -> Head:
 def goals_of(
     network: Network, goals: Iterable[int], wanted: Mapping[ObjectNode, int] = MappingProxyType({})
 ) -> tuple[Node, ...]:
-    """Return goals as nodes, with the amounts that ``wanted`` has.
+    """Return goals, by id, as nodes with the copies that are ``wanted`` of them.
 
-    Below level 3, each goal has the level-3 nodes that it stands for, and no amount.
+    Below level 3, each goal has the level-3 nodes that it stands for, and no number of copies.
     """
     detailed = network.detailed
     if detailed is None:
@@ -84,24 +84,24 @@ def goals_of(
 
 
 def nodes_of(network: Network, ids: Iterable[int]) -> tuple[Node, ...]:
-    """Return the object nodes that have some ids."""
+    """Return object nodes, by id, as values."""
     return tuple(node_of(network, o) for o in ids)
 
 
 def node_of(network: Network, o: int) -> Node:
-    """Return the object node that has an id."""
+    """Return an object node, by id, as a value."""
     return node_as(Node, network, o)
 
 
 def node_as(kind: type[N], network: Network, o: int, **fields: Any) -> N:
-    """Return the object node of an id as a ``kind`` of node, with the additional fields of this kind."""
-    return kind(network.object_number(o), *_parts(network.objects[o]), **fields)
+    """Return an object node, by id, as a value of class ``kind``, with additional fields of the class."""
+    return kind(network.object_number(o), *_node_fields(network.objects[o]), **fields)
 
 
 def named_node(network: Network, node: ObjectNode) -> Node:
     """Return an object node as a value, whether or not the network has it."""
     o = network.object_id(node)
-    return Node(None if o is None else network.object_number(o), *_parts(node))
+    return Node(None if o is None else network.object_number(o), *_node_fields(node))
 
 
 def place_of(source: Source) -> Place:
@@ -110,30 +110,30 @@ def place_of(source: Source) -> Place:
 
 
 def mention_of(network: Network, unit: int) -> Mention:
-    """Return the id, the motion and the places of a unit."""
-    return Mention(network.unit_number(unit), network.motions[unit], _places(network, unit))
+    """Return the id in the whole network, the motion and the places of a unit, by id, as a value."""
+    return Mention(network.unit_number(unit), network.motions[unit], _places_of(network, unit))
 
 
 def unit_of(network: Network, unit: int) -> Unit:
-    """Return the unit that has an id; below level 3 with the level-3 units that it stands for."""
+    """Return a unit, by id, as a value; below level 3 with the level-3 units that it stands for."""
     return unit_as(Unit, network, unit)
 
 
 def unit_as(kind: type[U], network: Network, unit: int, **fields: Any) -> U:
-    """Return the unit of an id as a ``kind`` of unit, with the additional fields of this kind."""
+    """Return a unit, by id, as a value of class ``kind``, with additional fields of the class."""
     return kind(
         network.unit_number(unit),
         network.motions[unit],
         nodes_of(network, network.inputs[unit]),
         nodes_of(network, network.outputs[unit]),
-        _places(network, unit),
-        _details(network, unit),
+        _places_of(network, unit),
+        _level_3_units(network, unit),
         **fields,
     )
 
 
 def listed_unit(network: Network, unit: FunctionalUnit, source: Source) -> Unit:
-    """Return a listed unit as a value with its place; the network need not have the unit."""
+    """Return a unit that a file lists as a value with its place; the network need not have the unit."""
     number = network.unit_id(unit)
     inputs, outputs = (
         tuple(named_node(network, node) for node in nodes) for nodes in (unit.inputs, unit.outputs)
@@ -148,7 +148,7 @@ def listed_unit(network: Network, unit: FunctionalUnit, source: Source) -> Unit:
 
 
 def differences_of(pair: NearUnits) -> tuple[UnitDifference, ...]:
-    """Return the differences of a pair of similar units."""
+    """Return the differences of a pair of similar units as values."""
     return tuple(
         UnitDifference(kind, word_a or None, word_b or None, of or None)
         for kind, word_a, word_b, of in pair.differences
@@ -161,14 +161,15 @@ def steps_of(
     bought: Mapping[int, int] = MappingProxyType({}),
     helped: Collection[int] | None = None,
 ) -> tuple[Step, ...]:
-    """Return units as the steps of a tree or plan: where each input comes from, and which outputs are made.
+    """Return units, by id, as steps: each input has its origin, and each output says whether it is made.
 
-    ``bought`` has the number of copies that were bought of kitchen items, by id. ``helped`` are the units
-    that a person does; ``None`` without a person. If the listed order does not execute, an input may come
-    from a later step, or be missing.
+    ``bought`` has the number of bought copies by id of the kitchen item. ``helped`` are the units that a
+    person does; ``None`` if no person helps. If the listed order does not execute, the origin of an input may
+    be a later step, or the input may be missing. Where amounts are counted, equal units that follow each
+    other are one step.
     """
     network, steps = problem.network, []
-    for number, (unit, times, origins) in enumerate(_origins(problem, units, bought), 1):
+    for number, (unit, times, origins) in enumerate(_steps_with_origins(problem, units, bought), 1):
         uses = None if problem.items is None else problem.flows[unit].uses
         input_amounts, output_amounts = (
             problem.amounts.get(network.unit(unit), UnitAmounts()) if problem.counts_amounts else (None, None)
@@ -180,29 +181,39 @@ def steps_of(
                 o,
                 origin=origin,
                 stays=UNSET if uses is None else o not in uses,
-                amount=_amount(input_amounts, network, o),
+                amount=_amount_of(input_amounts, network, o),
             )
             for o, origin in zip(network.inputs[unit], origins, strict=True)
         )
         gives = frozenset(problem.gives[unit])
         outputs = tuple(
-            node_as(Output, network, o, made=o in gives, amount=_amount(output_amounts, network, o))
+            node_as(Output, network, o, made=o in gives, amount=_amount_of(output_amounts, network, o))
             for o in network.outputs[unit]
         )
         by = UNSET if helped is None else "person" if unit in helped else "robot"
         named = network.unit_number(unit), network.motions[unit]
         steps.append(
-            Step(number, *named, inputs, outputs, _places(network, unit), _details(network, unit), by, times)
+            Step(
+                number,
+                *named,
+                inputs,
+                outputs,
+                _places_of(network, unit),
+                _level_3_units(network, unit),
+                by,
+                times,
+            )
         )
     return tuple(steps)
 
 
-def _amount(amounts: Mapping[ObjectNode, int] | None, network: Network, o: int) -> int | UnsetType:
+def _amount_of(amounts: Mapping[ObjectNode, int] | None, network: Network, o: int) -> int | UnsetType:
+    """Return the amount of a node, by id, or 1 if none is stated; ``UNSET`` where amounts do not count."""
     return UNSET if amounts is None else amounts.get(network.objects[o], 1)
 
 
 def costed_tree(problem: Problem, units: Collection[int], costs: Costs) -> CostedTree:
-    """Return a tree with its costs, from unit ids in an order that executes."""
+    """Return a tree as a value with its costs; ``units`` are ids in an order that executes."""
     return CostedTree(costs, used_up_of(problem, problem.tree(units)), steps_of(problem, units))
 
 
@@ -219,7 +230,7 @@ def used_up_of(problem: Problem, tree: Iterable[FunctionalUnit] | None) -> UsedU
 
 
 def lack_of(network: Network, shortage: Shortage) -> Lack:
-    """Return the copy that is missing."""
+    """Return a missing copy as a value; steps are numbered from 1."""
     position = None if shortage.step is None else shortage.step + 1
     consumers = tuple(step + 1 for step in shortage.consumers)
     amount = UNSET if shortage.amount == 1 else shortage.amount
@@ -227,20 +238,22 @@ def lack_of(network: Network, shortage: Shortage) -> Lack:
 
 
 def copy_of(network: Network, copy: Replayed) -> Copy:
-    """Return a copy of an object node, and where it comes from."""
+    """Return a copy of an object node as a value with its origin: the kitchen or a step."""
     origin = _KITCHEN if copy.made is None else Origin(step=copy.made + 1)
     o = network.object_id(copy.node)
-    return Copy(None if o is None else network.object_number(o), *_parts(copy.node), origin=origin)
+    return Copy(None if o is None else network.object_number(o), *_node_fields(copy.node), origin=origin)
 
 
 def copies_of(network: Network, counts: Mapping[ObjectNode, int]) -> tuple[Copies, ...]:
-    """Return how many copies of some object nodes there are."""
+    """Return object nodes as values, each with its number of copies."""
     return tuple(Copies(named_node(network, node), number) for node, number in counts.items())
 
 
 @functools.lru_cache(maxsize=10_000)  # units that are near each other share most of their nodes
-def _parts(node: ObjectNode) -> tuple[str, str, tuple[str, ...], tuple[Relation, ...], tuple[Contents, ...]]:
-    """Return the parts of an object node as values."""
+def _node_fields(
+    node: ObjectNode,
+) -> tuple[str, str, tuple[str, ...], tuple[Relation, ...], tuple[Contents, ...]]:
+    """Return the fields of an object node after its id: notation, label, states, relations, contents."""
     relations = tuple(Relation(*relation) for relation in sorted(node.relations))
     contents = tuple(
         Contents(contents_of.word, tuple(contents_of.ingredients)) for contents_of in node.contents
@@ -248,23 +261,28 @@ def _parts(node: ObjectNode) -> tuple[str, str, tuple[str, ...], tuple[Relation,
     return str(node), node.label, tuple(sorted(node.states)), relations, contents
 
 
-def _places(network: Network, unit: int) -> tuple[Place, ...]:
+def _places_of(network: Network, unit: int) -> tuple[Place, ...]:
+    """Return the places of all copies of a unit."""
     return tuple(map(place_of, network.sources[unit]))
 
 
-def _details(network: Network, unit: int) -> tuple[Unit, ...] | UnsetType:
+def _level_3_units(network: Network, unit: int) -> tuple[Unit, ...] | UnsetType:
+    """Return the level-3 units that a unit stands for; ``UNSET`` at level 3."""
     detailed = network.detailed
     if detailed is None:
         return UNSET
     return tuple(unit_of(detailed, detail) for detail in network.stands_for[unit])
 
 
-def _origins(
+def _steps_with_origins(
     problem: Problem, units: Collection[int], bought: Mapping[int, int]
 ) -> Iterator[tuple[int, int | UnsetType, Sequence[Origin]]]:
-    """Yield each unit, in the order listed, with its executions and the origin of each of its inputs."""
+    """Yield the unit id, the number of executions and the origins of the inputs of each step.
+
+    The number is ``UNSET`` unless amounts are counted.
+    """
     if problem.items is not None:
-        yield from _origins_of_copies(problem, units, bought)
+        yield from _steps_with_copies(problem, units, bought)
         return
     makers: dict[int, list[int]] = {}
     for step, unit in enumerate(units, 1):
@@ -275,11 +293,14 @@ def _origins(
         yield (
             unit,
             UNSET,
-            [_origin(problem, o, step, makers, o in needs, bought) for o in problem.network.inputs[unit]],
+            [
+                _input_origin(problem, o, step, makers, o in needs, bought)
+                for o in problem.network.inputs[unit]
+            ],
         )
 
 
-def _origin(
+def _input_origin(
     problem: Problem,
     o: int,
     step: int,
@@ -287,7 +308,11 @@ def _origin(
     needed: bool,
     bought: Mapping[int, int],
 ) -> Origin:
-    """Return the origin of an input of a step."""
+    """Return the origin of the input ``o`` of a step, where items last.
+
+    ``makers`` has the numbers of the steps that make each node. ``needed`` is false for an input that the
+    container rule takes as given.
+    """
     if o in problem.kitchen:
         return _BOUGHT if o in bought else _KITCHEN
     makes = makers.get(o, ())
@@ -299,12 +324,13 @@ def _origin(
     return _MISSING if later is None else Origin(later_step=later)
 
 
-def _origins_of_copies(
+def _steps_with_copies(
     problem: Problem, plan: Collection[int], bought: Mapping[int, int]
 ) -> Iterator[tuple[int, int | UnsetType, Sequence[Origin]]]:
-    """Yield the origins of the inputs of a plan in which items are used up: each input is the oldest copy.
+    """Yield the steps as :func:`_steps_with_origins` does, where items are used up.
 
-    Where amounts are counted, equal units that follow each other are one step.
+    Each step takes the oldest copies of its inputs. Where amounts are counted, equal units that follow each
+    other are one step.
     """
     copies = {
         o: deque([(_KITCHEN, (problem.stock_of(o) or 0) - bought.get(o, 0)), (_BOUGHT, bought.get(o, 0))])
@@ -321,14 +347,17 @@ def _origins_of_copies(
             elif o not in asks:
                 origins.append(_IMPLIED)
             else:
-                origins.append(_oldest_origin(copies.get(o, deque()), uses.get(o, 0) * times))
+                origins.append(_take_oldest(copies.get(o, deque()), uses.get(o, 0) * times))
         for o, amount in adds.items():
             copies.setdefault(o, deque()).append((Origin(step=step), amount * times))
         yield unit, times if problem.counts_amounts else UNSET, origins
 
 
-def _oldest_origin(copies: deque[tuple[Origin, int]], amount: int) -> Origin:
-    """Take the oldest copies; return the origin of the first."""
+def _take_oldest(copies: deque[tuple[Origin, int]], amount: int) -> Origin:
+    """Remove ``amount`` of the oldest copies from the queue, and return the origin of the first of them.
+
+    ``copies`` has origins with numbers of copies. An empty queue has the origin ``missing``.
+    """
     while copies and not copies[0][1]:
         copies.popleft()
     first = copies[0][0] if copies else _MISSING

@@ -1,15 +1,16 @@
 """Breadth-first retrieval: the first achiever of each object, objects from a queue."""
 
 from foon_asp.problem import Problem
-from foon_asp.searches.retrieval import Retrieval, backward
+from foon_asp.searches.retrieval import Retrieval, retrieve_backward
 from foon_asp.searches.search_interface import SearchSettings
-from foon_asp.searches.ties import least
+from foon_asp.searches.ties import least_chooser
 
 
 def breadth_first(problem: Problem, settings: SearchSettings) -> Retrieval:
     """Retrieve a tree breadth-first.
 
-    The first achiever in file order is chosen for each object, even if it can never execute. So the tree has
-    only the guarantees of :func:`~foon_asp.searches.retrieval.backward`.
+    For each object, the first achiever in file order is chosen, or the last if the settings say so. It is
+    chosen even if it can never execute. So the tree has only the guarantees of
+    :func:`~foon_asp.searches.retrieval.retrieve_backward`.
     """
-    return backward(problem, least(settings.ties))
+    return retrieve_backward(problem, least_chooser(settings.ties))

@@ -1,13 +1,15 @@
 """Greedy best-first retrieval by the number of inputs (the published heuristic 2)."""
 
 from foon_asp.problem import Problem
-from foon_asp.searches.retrieval import Count, Retrieval, backward
+from foon_asp.searches.retrieval import Count, Retrieval, retrieve_backward
 from foon_asp.searches.search_interface import SearchSettings
-from foon_asp.searches.ties import least
+from foon_asp.searches.ties import least_chooser
 
 
 def greedy_inputs(problem: Problem, settings: SearchSettings) -> Retrieval:
-    """Retrieve a tree with the achiever of the fewest inputs for each object.
+    """Retrieve a tree that has, for each object, the achiever with the fewest inputs.
+
+    Ingredients of inputs count, too, unless the settings say otherwise.
 
     The choice is locally optimal only: the number of inputs of the tree may be far from the optimum, and the
     tree may not execute.
@@ -15,9 +17,10 @@ def greedy_inputs(problem: Problem, settings: SearchSettings) -> Retrieval:
     network = problem.network
 
     def size(unit: int) -> int:
+        """Return the number of inputs of a unit, and of their ingredients if these count."""
         inputs = network.inputs[unit]
         if settings.count is Count.NODES:
             return len(inputs)
         return len(inputs) + sum(len(network.objects[o].ingredients) for o in inputs)
 
-    return backward(problem, least(settings.ties, size))
+    return retrieve_backward(problem, least_chooser(settings.ties, size))

@@ -10,13 +10,15 @@ from foon_asp.searches.search_interface import SearchSettings
 def iterative_deepening(problem: Problem, settings: SearchSettings) -> Retrieval:
     """Return an executable tree of least depth, or prove that none exists.
 
-    A kitchen item has depth 0, a unit one more than its deepest precondition, an object the depth of its
-    achiever; the depth of a tree is the depth of its deepest goal. For each depth limit, the achievers of an
-    object are tried in file order, until all preconditions of an achiever are solved within the limit less
-    one. Results are memoized, so that a limit takes at most one pass over the relevant units. If one more
-    level solves no new object, the search ends: no further level solves any.
+    A kitchen item has depth 0, an object the depth of its achiever, and a unit the depth of its deepest
+    precondition plus 1. The depth of a tree is that of its deepest goal.
 
-    At a limit of the ``settings`` the ending is ``unknown``. With ``published``, breadth-first retrieval is
+    The depth limit grows from 0. Within a limit, the achievers of an object are tried in file order, until
+    all preconditions of one are solved within the limit minus 1. Results are kept, so that each limit takes
+    at most one pass over the relevant units. If a limit solves no new object, no later one does, and the
+    search ends.
+
+    At a limit of the ``settings``, the ending is ``unknown``. With ``published``, breadth-first retrieval is
     run, as the published programs do under this name.
     """
     if settings.published:
@@ -37,11 +39,12 @@ def iterative_deepening(problem: Problem, settings: SearchSettings) -> Retrieval
 
 
 class _DepthLimited:
-    """The depth-limited search, and its memo of results over all limits.
+    """The depth-limited search, which keeps its results over all limits.
 
-    ``failed[o]`` is the greatest limit within which object ``o`` cannot be made. ``solved[o]`` is the least
-    limit within which ``o`` can be made, with its achiever. The preconditions of the achiever are solved
-    within smaller limits, so that the achievers have no cycle.
+    ``failed``: by object, the greatest limit within which it is known that the object cannot be made.
+    ``solved``: by object, the limit within which it was made, and its achiever. The preconditions of the
+    achiever are solved within smaller limits, so that the achievers have no cycle.
+    ``objects``: the objects that the goals can need.
     """
 
     def __init__(self, problem: Problem, deadline: Deadline) -> None:
@@ -53,9 +56,9 @@ class _DepthLimited:
         self.objects = sorted(relevant)
 
     def solve(self, goal: int, limit: int) -> bool:
-        """Return whether an object can be made within a limit; without recursion, so that any depth works.
+        """Return whether an object can be made within a limit; record it in ``solved`` and ``failed``.
 
-        Raises ``TimeoutError`` at the deadline.
+        A stack replaces recursion, so that any depth works. Raises ``TimeoutError`` at the deadline.
         """
         answer = self._memoized(goal, limit)
         if answer is not None:
@@ -90,12 +93,15 @@ class _DepthLimited:
         return goal in self.solved and self.solved[goal][0] <= limit
 
     def solves_more(self, limit: int) -> bool:
-        """Return whether a relevant object can be made within this limit and not within the limit before."""
+        """Return whether some relevant object can be made within this limit, and not within smaller ones."""
         earlier = {o for o in self.objects if o in self.solved and self.solved[o][0] < limit}
         return any(o not in earlier and self.solve(o, limit) for o in self.objects)
 
     def tree(self) -> tuple[int, ...]:
-        """Return the achievers of the goals and of their preconditions, in an executable order."""
+        """Return the tree: the recorded achievers of the goals and, recursively, of their preconditions.
+
+        All goals have to be solved. The unit ids are in an order that executes.
+        """
         levels: dict[int, int] = {}
         open_goals = list(self.problem.goals)
         while open_goals:
@@ -109,7 +115,7 @@ class _DepthLimited:
         return tuple(sorted(levels, key=lambda unit: (levels[unit], unit)))
 
     def _memoized(self, o: int, limit: int) -> bool | None:
-        """Return whether an object can be made within a limit, or ``None`` where that is not known yet."""
+        """Return whether an object can be made within a limit, as far as recorded; ``None`` if not known."""
         if o in self.problem.kitchen:
             return True
         if limit <= 0 or self.failed.get(o, -1) >= limit:

@@ -1,4 +1,4 @@
-"""Searches that other packages offer; each is run in a process of its own, and its result is validated."""
+"""Searches that other packages offer; each runs in a process of its own, and its result is validated."""
 
 import functools
 from typing import Any
@@ -12,15 +12,15 @@ from foon_asp.searches.search_interface import Search, SearchSettings
 
 
 def offered_search(offer: Offer) -> Search:
-    """Return the search that a package offers."""
+    """Return the search that a package offers; it is not imported, and runs in a process of its own."""
     promise = f"what {offer.package} says of it; foon-asp has checked only its tree"
     return Search(offer.name, promise, functools.partial(_retrieve, offer), offer.package)
 
 
 def _retrieve(offer: Offer, problem: Problem, settings: SearchSettings) -> Retrieval:
-    """Run an offered search; at a limit its ending is ``unknown``.
+    """Return the validated result of an offered search; at a limit, its ending is ``unknown``.
 
-    Raises :class:`UserError` where the search raises, or returns no valid retrieval.
+    Raises :class:`UserError` if the search raises an exception, or returns no valid retrieval.
     """
     deadline = Deadline(settings.time_limit, settings.memory_limit)
     try:
@@ -29,11 +29,15 @@ def _retrieve(offer: Offer, problem: Problem, settings: SearchSettings) -> Retri
         return Retrieval(Ending.UNKNOWN)
     if isinstance(reply, Raised):
         raise offer.raised_error(reply)
-    return _validated(offer, problem, reply)
+    return _validate(offer, problem, reply)
 
 
-def _validated(offer: Offer, problem: Problem, reply: Any) -> Retrieval:
-    """Return the retrieval in a reply; raises :class:`UserError` where it is not a valid one."""
+def _validate(offer: Offer, problem: Problem, reply: Any) -> Retrieval:
+    """Return the retrieval that a search replied with; raises :class:`UserError` if it is not valid.
+
+    Units have to be ids, and come only with the ending ``tree``. An object it is stuck at has to be one that
+    no unit makes and that is not in the kitchen.
+    """
     fault = offer.fault(f"gave {reply!r}, expected a Retrieval")
     try:
         ending, units, stuck_at = reply

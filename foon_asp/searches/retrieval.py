@@ -11,9 +11,10 @@ from foon_asp.searches.ties import Choose
 class Ending(StrEnum):
     """How a search ended.
 
-    ``tree``: with the units of a tree, which may or may not execute. ``stuck``: at an object that is not in
-    the kitchen and that no unit makes. ``none``: with the proof that no tree executes. ``unknown``: at a
-    limit.
+    ``tree``: with the units of a tree, which may or may not execute.
+    ``stuck``: at an object that is not in the kitchen and that no unit makes.
+    ``none``: with the proof that no tree executes.
+    ``unknown``: at a limit.
     """
 
     TREE = "tree"
@@ -23,7 +24,11 @@ class Ending(StrEnum):
 
 
 class Retrieval(NamedTuple):
-    """The result of a search: the ids of ``units`` in the order listed, and the object it is ``stuck_at``."""
+    """The result of a search.
+
+    ``units``: the ids of the units of the tree, in the order listed; empty without a tree.
+    ``stuck_at``: the id of the object that cannot be had; ``None`` unless the ending is ``stuck``.
+    """
 
     ending: Ending
     units: tuple[int, ...] = ()
@@ -31,22 +36,24 @@ class Retrieval(NamedTuple):
 
 
 class Count(StrEnum):
-    """The inputs that are counted: input object nodes and their ingredients, or the nodes alone."""
+    """What is counted as inputs: input object nodes and their ingredients, or the nodes alone."""
 
     INGREDIENTS = "ingredients"
     NODES = "nodes"
 
 
-def backward(problem: Problem, choose: Choose, stack: bool = False) -> Retrieval:
+def retrieve_backward(problem: Problem, choose: Choose, stack: bool = False) -> Retrieval:
     """Retrieve a tree backward from the goals, without backtracking, as the published programs do.
 
     Open objects, at first the goals, are in a queue, or with ``stack`` in a stack. An object that was
-    processed before or is in the kitchen is skipped. For any other object, one achiever is chosen and, unless
-    the tree already has it, appended to the tree; its preconditions become open. At the end the list is
-    reversed. No choice is revised, so that the tree may be larger than necessary and may not execute: the
-    only guarantee is that every precondition is in the kitchen or an output of a unit of the tree. Outputs
-    are those annotated, as published: a container that a unit may skip under the rule ``implied`` counts as
-    made here, but not when the tree is executed.
+    processed before or is in the kitchen is skipped. For any other object, ``choose`` returns one achiever.
+    Unless the tree already has it, it is appended to the tree, and its preconditions become open. In the end,
+    the list is reversed. An object without achievers ends the search as ``stuck``.
+
+    No choice is revised, so that the tree may be larger than necessary and may not execute. The only
+    guarantee is that every precondition is in the kitchen or an output of a unit of the tree. Outputs are
+    those annotated, as published: a container that a unit may skip under the rule ``implied`` counts as made
+    here, but not when the tree is executed.
 
     Source: D. Paulius et al., "Functional Object-Oriented Network for Manipulation Learning", IROS 2016
     (retrieval of task trees), and the published programs that followed (docs/dev/sources.md).

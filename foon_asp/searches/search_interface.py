@@ -12,10 +12,12 @@ from foon_asp.searches.ties import Ties
 class SearchSettings:
     """The settings of searches; each search uses some of them.
 
-    ``ties`` breaks ties in all searches, ``count`` is used by ``greedy-inputs``. ``published`` makes ``ids``
-    the published iterative deepening, which always chooses the first unit and so is breadth-first retrieval.
-    ``depth_limit`` is in units (``ids``), ``time_limit`` in seconds, ``memory_limit`` in bytes; ``None`` is
-    no limit.
+    ``ties``: how all searches but ``ids`` break ties.
+    ``count``: what ``greedy-inputs`` counts.
+    ``published``: whether ``ids`` is the published iterative deepening, which always chooses the first unit
+    and so is breadth-first retrieval.
+    ``depth_limit``: the greatest depth for ``ids``, in units; ``None`` is no limit.
+    ``time_limit``, ``memory_limit``: in seconds and bytes; ``None`` is no limit.
     """
 
     ties: Ties = Ties.FIRST
@@ -30,7 +32,7 @@ class Retrieve(Protocol):
     """The function of a search, built-in or of another package (docs/entry-points.md)."""
 
     def __call__(self, problem: Problem, settings: SearchSettings, /) -> Retrieval:
-        """Search for a tree that makes the goals of a problem.
+        """Return a tree that makes the goals of a problem, or how the search ended without one.
 
         The tree may be wrong: the caller simulates it, and computes its costs.
         """

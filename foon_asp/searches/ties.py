@@ -5,7 +5,7 @@ from enum import StrEnum
 from fractions import Fraction
 
 Choose = Callable[[Sequence[int]], int]
-"""Chooses one of the achievers of an object, which are in file order; at least one exists."""
+"""A function that returns one of the achievers of an object; they are in file order, and not empty."""
 
 
 class Ties(StrEnum):
@@ -15,6 +15,9 @@ class Ties(StrEnum):
     LAST = "last"
 
 
-def least(ties: Ties, size: Callable[[int], int | Fraction] = lambda _: 0) -> Choose:
-    """Return a function that chooses the unit of the least ``size``; ties are broken by file order."""
+def least_chooser(ties: Ties, size: Callable[[int], int | Fraction] = lambda _: 0) -> Choose:
+    """Return a function that chooses the achiever of the least ``size``.
+
+    Of several such, it chooses the first or the last in file order. Without ``size``, all are equal.
+    """
     return lambda candidates: min(candidates if ties is Ties.FIRST else reversed(candidates), key=size)

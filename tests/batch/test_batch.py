@@ -148,7 +148,7 @@ class Misbehaving:
     def __init__(self) -> None:
         self._data = read_data(find_data(bundled_kitchen()))
 
-    def named(self, word: str, containers: ContainerRule, kitchen: str | None) -> Sequence[str]:
+    def goals_of_word(self, word: str, containers: ContainerRule, kitchen: str | None) -> Sequence[str]:
         return ()
 
     def items(self, asked: BatchQuestion) -> str:
@@ -336,7 +336,7 @@ class Deadly:
     def __call__(self) -> "Deadly":
         return self
 
-    def named(self, *_: object) -> Sequence[str]:
+    def goals_of_word(self, *_: object) -> Sequence[str]:
         return ()
 
     def items(self, _: BatchQuestion) -> str:

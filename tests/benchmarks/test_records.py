@@ -12,7 +12,7 @@ import records
 from fields.egraph import EGraph, ENode
 
 from foon_asp.deadline import Deadline
-from foon_asp.questions.relax import solved
+from foon_asp.questions.relax import solve_relaxation
 
 
 def graph(seed: int, rewarded: bool) -> EGraph:
@@ -62,7 +62,7 @@ def test_a_node_without_a_cost_costs_one_and_roots_are_what_no_node_uses(tmp_pat
     assert of.roots == ("0", "3")
     task, offset = of.task()
     assert offset == 0
-    assert solved(task, Deadline(60)).cost == Fraction("5.5")
+    assert solve_relaxation(task, Deadline(60)).cost == Fraction("5.5")
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -71,7 +71,7 @@ def test_the_best_tree_is_the_cheapest_extraction(seed: int, rewarded: bool) -> 
     of = graph(seed, rewarded)
     best = min(extractions(of), default=None)
     task, offset = of.task()
-    found = solved(task, Deadline(60))
+    found = solve_relaxation(task, Deadline(60))
     assert found.proved
     assert (None if found.cost is None else found.cost - offset) == best
     greedy = of.greedy()

@@ -19,7 +19,7 @@ from foon_asp.problem import Objective
 from foon_asp.proof.simulation import Verdict
 from foon_asp.questions.comparison_tables import summary_tables
 from foon_asp.results.plain_values import plain
-from foon_asp.results.table import rendered
+from foon_asp.results.table import blocks_text
 from foon_asp.results.values import Node
 from foon_asp.searches import Ending
 from tests.cli.test_command_line import KITCHEN, NETWORK, RATES
@@ -61,7 +61,7 @@ def test_a_summary_counts_and_measures_what_executes() -> None:
     )  # of 1, 1.5 and 3
     assert summary.distances[S] == units  # the optimum over the product: 2/2, 3/2, 9/3
     assert Objective.INPUTS not in summary.distances
-    said, _, headings, counts, *_ = rendered(summary_tables([summary], proved=False)).splitlines()
+    said, _, headings, counts, *_ = blocks_text(summary_tables([summary], proved=False)).splitlines()
     assert said == "6 goals; NOT every optimum is proved"
     assert headings.split("  ")[-2:] == ["(cycle)", "† smaller"]
     shares = "5 (83.3%) 3 (60.0%) 2 (40.0%) 1 (20.0%) 2 (40.0%) 0 (0.0%) 1 (20.0%) 1 (20.0%)"

@@ -204,7 +204,7 @@ def test_a_limit_while_all_is_read_gives_the_tree_in_hand(
     def stopped(*asked: object) -> None:
         raise LimitError(Deadline(0))
 
-    monkeypatch.setattr("foon_asp.questions.answer.asked_with", stopped)
+    monkeypatch.setattr("foon_asp.questions.answer.problem_for_rules", stopped)
     dataset, order = two_ways(tmp_path), (Objective.UNITS,)
     how = Settings((RuleText(':- not 1 <= #count { U : use(U), motion(U,"cook 3") }.'),))
     problem = dataset.problem(dataset.goals(["stew"]), "strict")

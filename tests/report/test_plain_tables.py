@@ -9,7 +9,7 @@ import pytest
 import foon_asp
 from foon_asp.questions.constraint_list import list_constraints
 from foon_asp.questions.result import Result
-from foon_asp.results.table import rendered
+from foon_asp.results.table import blocks_text
 from foon_asp.results.table_columns import csv_text, flat_row, markdown_text
 from tests.conftest import Cli
 from tests.questions.recipes import posed
@@ -81,7 +81,7 @@ def test_goals_that_nobody_named_have_rows_in_one_table(cli: Cli, tmp_path: Path
 
 def shown(result: Result, columns: int) -> list[str]:
     """Return what a terminal shows."""
-    return rendered(result.show(), columns).splitlines()
+    return blocks_text(result.show(), columns).splitlines()
 
 
 def test_a_narrow_terminal_shows_a_block_for_each_row() -> None:
@@ -99,8 +99,8 @@ def test_a_narrow_terminal_shows_a_block_for_each_row() -> None:
     changes = "units that go (-) and come (+): - fill, heat  + fill, switch"
     assert front[-5:] == ["point: 3", "units: 11", "success: ≈ 0.6293", changes, "  on, pour"]
     beyond = "beyond: +15.3 %: - twist, pound, pour  + twist, crush"
-    assert beyond in rendered(foon_asp.sensitivity(ice).show(), 60).splitlines()
-    assert "the person takes: + 27 crush" in rendered(foon_asp.assist(ice).show(), 60).splitlines()
+    assert beyond in blocks_text(foon_asp.sensitivity(ice).show(), 60).splitlines()
+    assert "the person takes: + 27 crush" in blocks_text(foon_asp.assist(ice).show(), 60).splitlines()
     # where there is room, a table
     assert shown(foon_asp.pareto(problem), 75)[-5:] == foon_asp.pareto(problem).text().splitlines()[-5:]
     assert any(
@@ -111,19 +111,19 @@ def test_a_narrow_terminal_shows_a_block_for_each_row() -> None:
 
 def test_tables_of_commands_are_as_narrow_as_the_terminal() -> None:
     parts = [*foon_asp.stats(foon_asp.load()).show(), *list_constraints().show()]
-    assert max(map(len, rendered(parts, 60).splitlines())) <= 60
+    assert max(map(len, blocks_text(parts, 60).splitlines())) <= 60
 
 
 def test_lists_are_folded_to_the_terminal() -> None:
     foon = foon_asp.load()
     for result in (foon_asp.solve(foon.problem("ice", "tea")), foon_asp.search(foon.problem("ice"), "bfs")):
         text = result.text()
-        lines = rendered(text.split("\n"), 40).splitlines()
+        lines = blocks_text(text.split("\n"), 40).splitlines()
         assert len(lines) > len(text.splitlines())
         assert [line for line in lines if len(line) > 40 and " " in line.strip()] == []  # a path may be long
         assert " ".join("\n".join(lines).split()) == " ".join(text.split())
     step = " 10  simmer    [data/FOON.txt:20] x"
-    assert rendered([step], 30) == " 10  simmer\n       [data/FOON.txt:20] x\n"
+    assert blocks_text([step], 30) == " 10  simmer\n       [data/FOON.txt:20] x\n"
 
 
 def test_what_stands_over_and_under_a_table_is_not_folded_to_it() -> None:

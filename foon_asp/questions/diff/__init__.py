@@ -21,7 +21,7 @@ from foon_asp.questions.diff.trees import TreeDifference as TreeDifference
 from foon_asp.questions.diff.trees import compare_trees
 from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.posing import Command
-from foon_asp.questions.posing_plan import listed_tree, own_networks, settle_data
+from foon_asp.questions.posing_plan import data_for_trees, listed_tree, own_networks
 from foon_asp.questions.question import TABLES, Kind, Option, Role, question
 from foon_asp.questions.result import ENDINGS, NoTreeError
 from foon_asp.questions.tree import Tree, read_answer
@@ -52,7 +52,7 @@ def _pose_files(
     """
     chosen = containers if command.given("containers") else None
     with command.reading():
-        return (*_read_pair((a, b), goals_named, chosen, partial(settle_data, command)), command.level)
+        return (*_read_pair((a, b), goals_named, chosen, partial(data_for_trees, command)), command.level)
 
 
 def _read_pair(
