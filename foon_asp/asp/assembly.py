@@ -93,16 +93,16 @@ def assemble(
         from foon_asp.rules import stating  # noqa: PLC0415
 
         if endless:
-            from foon_asp.encoding.worker_process import prepare  # noqa: PLC0415
+            from foon_asp.encoding.worker_process import start_in_advance  # noqa: PLC0415
 
-            prepare()  # while files are parsed
+            start_in_advance()  # while files are parsed
 
         parsed = [encoding.read_encoding(file) for file in base if endless]
         question_encodings = [encoding.read_encoding(file) for file in questions]
-        files = stating.loaded(added)
+        files = stating.load_constraints(added)
         extra = [encoding.read_encoding(files[constraint]) for constraint in added]
         faults = map(str, encoding.check_encodings(extra, parsed, question_encodings))
-        for message in (*faults, *encoding.unset_constants(extra, settings.constants)):
+        for message in (*faults, *encoding.unset_constant_warnings(extra, settings.constants)):
             warn(message)
         constants = encoding.constant_arguments(settings.constants, [*parsed, *extra])
         theirs = [*extra, *(read for file, read in zip(base, parsed, strict=False) if not is_own(file))]
@@ -116,9 +116,9 @@ def assemble(
     _warn_of_names(problem, settings, extra, constants[1::2], warn)
     arguments = (*constants, *_clingo_options(settings.clingo_options))
     if settings.clingo_options:  # checked now, since clingo may not run
-        from foon_asp.encoding.clingo_run import check  # noqa: PLC0415
+        from foon_asp.encoding.clingo_run import check_options  # noqa: PLC0415
 
-        check(arguments)
+        check_options(arguments)
     return Program(
         (*base, *(files[constraint] for constraint in kept), *questions, *_checks(theirs)),
         exact_success(),
@@ -158,7 +158,7 @@ def ready_made(problem: Problem, settings: Settings, warn: Callable[[str], None]
 
     network = problem.network  # reading a part of a store takes longer than searching it
     large = len(network) > SEARCH.units_without_clingo and not network.object_numbers
-    if (large and rules.shrinking) or not rules.fit(problem):
+    if (large and rules.shrinking) or not rules.has_same_meaning(problem):
         return None
     for message in unknown_parameters(settings.constraints, settings.constants, FactValues(problem)):
         warn(message)
@@ -188,7 +188,7 @@ def _warn_of_names(
         return
     from foon_asp.encoding.encoding import read_encoding  # noqa: PLC0415 (which takes clingo along)
     from foon_asp.rules.fact_values import FactValues  # noqa: PLC0415 (only of use with constraints)
-    from foon_asp.rules.unmatched import unmatched  # noqa: PLC0415
+    from foon_asp.rules.unmatched import unmatched_warnings  # noqa: PLC0415
 
     values = FactValues(problem)
     theirs = [encoding for encoding in added if not _is_ours(encoding)]
@@ -199,10 +199,10 @@ def _warn_of_names(
         relaxed = settings.relaxed.constraints if settings.relaxed is not None else ()
         for message in unknown_parameters((*settings.constraints, *relaxed), settings.constants, values):
             warn(message)
-    for diagnostic in unmatched(theirs, ours, constants, values):
+    for diagnostic in unmatched_warnings(theirs, ours, constants, values):
         warn(str(diagnostic))
     for origin, text in measures:
-        for diagnostic in unmatched([read_encoding(Stated(origin, text))], [], (), values):
+        for diagnostic in unmatched_warnings([read_encoding(Stated(origin, text))], [], (), values):
             warn(str(diagnostic))
 
 
@@ -234,7 +234,7 @@ def _reads(encodings: "Sequence[Encoding]") -> frozenset[tuple[str, str]]:
     predicates: set[tuple[str, str]] = set()
     for encoding in encodings:
         if not _is_ours(encoding) and not _OF_SOME_QUESTIONS.isdisjoint(encoding.used):
-            predicates.update(encoding.first_names(_OF_SOME_QUESTIONS))
+            predicates.update(encoding.first_argument_names(_OF_SOME_QUESTIONS))
     return frozenset(predicates)
 
 

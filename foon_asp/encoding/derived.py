@@ -5,7 +5,7 @@ from typing import NamedTuple
 from clingo import Control
 from clingo.symbol import Symbol, SymbolType
 
-from foon_asp.encoding.messages import NO_LIMIT, listener, refusing
+from foon_asp.encoding.messages import NO_LIMIT, listener, refuse_messages
 from foon_asp.encoding.number_checks import Exact
 
 
@@ -25,7 +25,7 @@ def derive(text: str, name: str, arity: int) -> list[tuple[Value, ...]]:
     Raises :class:`ProgramError` for statements or instances that clingo refuses or drops.
     """
     messages: list[str] = []
-    with refusing(messages):
+    with refuse_messages(messages):
         control = Control(logger=listener(messages), message_limit=NO_LIMIT)
         control.add("base", [], text)
         control.ground([("base", [])], Exact())

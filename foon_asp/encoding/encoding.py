@@ -10,7 +10,7 @@ from pathlib import Path
 from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator, Location, Transformer
 from clingo.symbol import SymbolType
 
-from foon_asp.encoding.encoding_file import check_text, excerpt, included_files, string_constant
+from foon_asp.encoding.encoding_file import check_text, included_files, source_line, string_constant
 from foon_asp.encoding.exact import LARGEST
 from foon_asp.encoding.fact_writer import FACT_PREDICATES, quote
 from foon_asp.encoding.messages import listener
@@ -98,7 +98,7 @@ class Encoding:
     text: str = ""
     statements: list[AST] = field(default_factory=list)
 
-    def first_names(self, signatures: Collection[Signature]) -> Iterator[tuple[str, str]]:
+    def first_argument_names(self, signatures: Collection[Signature]) -> Iterator[tuple[str, str]]:
         """Return atoms over signatures: the predicate, and the first argument, empty where it is no name."""
         symbols = (
             node.symbol for statement in self.statements for node in nodes(statement) if _is_atom(node)
@@ -114,7 +114,7 @@ class Encoding:
         """The ``#const`` statements."""
         return [statement for statement in self.statements if statement.ast_type == ASTType.Definition]
 
-    def deriving(self, constant: str) -> set[Signature]:
+    def predicates_with_argument(self, constant: str) -> set[Signature]:
         """Return the predicates that rules derive with a given constant as argument."""
         heads = (rule.head for rule in self.statements if rule.ast_type == ASTType.Rule)
         atoms = (
@@ -124,7 +124,7 @@ class Encoding:
 
     def remark(self, severity: Severity, code: str, message: str, source: Source) -> Diagnostic:
         """Return a diagnostic about a place in these rules, with its line."""
-        return located(severity, code, message, source, [self.rules])
+        return located_diagnostic(severity, code, message, source, [self.rules])
 
 
 def _is_atom(node: AST) -> bool:
@@ -157,7 +157,7 @@ def read_encoding(rules: Loaded) -> Encoding:
     try:
         parse(rules, statement, listener(messages))
     except RuntimeError as error:
-        raise fault(messages, str(error), [rules]) from None
+        raise program_fault(messages, str(error), [rules]) from None
     if isinstance(rules, Stated):
         if not kinds - {ASTType.Program, ASTType.Comment}:
             raise UserError(f"{rules.place}: found {rules.text!r}, expected a rule such as {_EXAMPLE}")
@@ -201,12 +201,12 @@ class _Collector(Transformer):
             self.visit(statement)
 
     def visit_Rule(self, rule: AST) -> AST:  # noqa: N802 (the name clingo looks for)
-        self._head(rule.head)
+        self._visit_head(rule.head)
         self.visit_sequence(rule.body)
         return rule
 
     def visit_External(self, external: AST) -> AST:  # noqa: N802
-        self._head(external.atom)
+        self._visit_head(external.atom)
         self.visit_sequence(external.body)
         return external
 
@@ -219,16 +219,16 @@ class _Collector(Transformer):
         return literal
 
     def visit_SymbolicAtom(self, atom: AST) -> AST:  # noqa: N802
-        self._atom(atom.symbol, "")
+        self._record_atom(atom.symbol, "")
         return atom
 
-    def _atom(self, symbol: AST, sign: str) -> None:
+    def _record_atom(self, symbol: AST, sign: str) -> None:
         """Record the signature of an atom as defined or used, with its first place."""
         if symbol.ast_type == ASTType.UnaryOperation:  # classical negation: -p(X)
-            self._atom(symbol.argument, "" if sign else "-")
+            self._record_atom(symbol.argument, "" if sign else "-")
         elif symbol.ast_type == ASTType.Pool:  # p(1;2)
             for one in symbol.arguments:
-                self._atom(one, sign)
+                self._record_atom(one, sign)
         else:
             signature = sign + symbol.name, len(symbol.arguments)
             noted = self.encoding.defined if self._in_head else self.encoding.used
@@ -250,20 +250,20 @@ class _Collector(Transformer):
         return atom
 
     def visit_BodyAggregate(self, aggregate: AST) -> AST:  # noqa: N802
-        self._note_assignment(aggregate)
+        self._record_assignment(aggregate)
         return aggregate.update(**self.visit_children(aggregate))
 
     def visit_Aggregate(self, aggregate: AST) -> AST:  # noqa: N802
         if not self._in_head:
-            self._note_assignment(aggregate)
+            self._record_assignment(aggregate)
         return aggregate.update(**self.visit_children(aggregate))
 
-    def _note_assignment(self, aggregate: AST) -> None:
+    def _record_assignment(self, aggregate: AST) -> None:
         guard = aggregate.left_guard
         if guard is not None and guard.comparison == ComparisonOperator.Equal:
             self.encoding.assigns |= guard.term.ast_type != ASTType.SymbolicTerm
 
-    def _head(self, head: AST) -> None:
+    def _visit_head(self, head: AST) -> None:
         self._in_head = True
         self.visit(head)
         self._in_head = False
@@ -288,38 +288,38 @@ def check_encodings(
     defined = set(PUBLIC)
     for encoding in (*added, *base, *others):
         defined |= encoding.defined.keys() | encoding.declared.keys()
-    user_files = [encoding for encoding in added if not _is_ours(encoding.rules)]
-    replaced = [encoding for encoding in base if not _is_ours(encoding.rules)]
+    user_files = [encoding for encoding in added if not _is_built_in(encoding.rules)]
+    replaced = [encoding for encoding in base if not _is_built_in(encoding.rules)]
     for encoding in user_files:
-        errors += _statements(encoding, tuple(_REFUSED))
-        errors += _definitions(encoding, PUBLIC.union(*(file.defined for file in base)))
-        errors += _reserved_names(encoding)
+        errors += _statement_errors(encoding, tuple(_REFUSED))
+        errors += _definition_errors(encoding, PUBLIC.union(*(file.defined for file in base)))
+        errors += _reserved_name_errors(encoding)
     for encoding in replaced:
-        errors += _statements(encoding, _LOST)
-        errors += _replaced_definitions(encoding)
-    settable = {name for encoding in added if _is_ours(encoding.rules) for name in encoding.constants}
+        errors += _statement_errors(encoding, _LOST)
+        errors += _replaced_definition_errors(encoding)
+    settable = {name for encoding in added if _is_built_in(encoding.rules) for name in encoding.constants}
     for encoding in (*user_files, *replaced):
         names = set(settable)
         if encoding in user_files:
             for file in replaced:
                 names |= file.names.keys() | {name for name, _ in (*file.defined, *file.used)}
-        errors += _constants(encoding, names)
+        errors += _constant_errors(encoding, names)
     if errors:
         raise InputError(errors)
     warnings = [
-        encoding.remark(Severity.WARNING, "undefined-atom", undefined(signature, defined), source)
+        encoding.remark(Severity.WARNING, "undefined-atom", undefined_message(signature, defined), source)
         for encoding in added
         for signature, source in encoding.used.items()
         if signature not in defined
     ]
     constants = {name for encoding in (*added, *base, *others) for name in encoding.constants}
     for encoding in user_files:
-        for term, message in no_numbers(encoding.statements, constants):
+        for term, message in non_numeric_terms(encoding.statements, constants):
             warnings.append(encoding.remark(Severity.WARNING, "no-number", message, _source(term.location)))
     return warnings
 
 
-def no_numbers(statements: Iterable[AST], constants: Collection[str]) -> Iterator[tuple[AST, str]]:
+def non_numeric_terms(statements: Iterable[AST], constants: Collection[str]) -> Iterator[tuple[AST, str]]:
     """Yield the terms that compare above every number because they are no numbers, each with a message.
 
     They are names that no ``#const`` sets, and texts as guards of a count or sum.
@@ -346,12 +346,12 @@ def no_numbers(statements: Iterable[AST], constants: Collection[str]) -> Iterato
 
 
 @cache
-def _is_ours(rules: Loaded) -> bool:
+def _is_built_in(rules: Loaded) -> bool:
     path = rules.file if isinstance(rules, Stated) else rules
     return path is not None and path.resolve().is_relative_to(encodings_folder().resolve())
 
 
-def _statements(encoding: Encoding, refused: Sequence[ASTType]) -> list[Diagnostic]:
+def _statement_errors(encoding: Encoding, refused: Sequence[ASTType]) -> list[Diagnostic]:
     """Return an error for each statement of a refused kind."""
     return [
         encoding.remark(Severity.ERROR, _CODES.get(kind, "statement"), f"found {_REFUSED[kind]}", source)
@@ -360,7 +360,7 @@ def _statements(encoding: Encoding, refused: Sequence[ASTType]) -> list[Diagnost
     ]
 
 
-def _definitions(encoding: Encoding, owned: frozenset[Signature]) -> list[Diagnostic]:
+def _definition_errors(encoding: Encoding, owned: frozenset[Signature]) -> list[Diagnostic]:
     """Return errors for rules for predicates that a constraint may not define."""
     return [
         encoding.remark(
@@ -375,7 +375,7 @@ def _definitions(encoding: Encoding, owned: frozenset[Signature]) -> list[Diagno
     ]
 
 
-def _reserved_names(encoding: Encoding) -> list[Diagnostic]:
+def _reserved_name_errors(encoding: Encoding) -> list[Diagnostic]:
     """Return errors for reserved names in bodies, ``#defined`` and terms of a constraint."""
     atoms = [
         (f"{name}/{arity}", source)
@@ -395,7 +395,7 @@ def _reserved_names(encoding: Encoding) -> list[Diagnostic]:
     ]
 
 
-def _replaced_definitions(encoding: Encoding) -> list[Diagnostic]:
+def _replaced_definition_errors(encoding: Encoding) -> list[Diagnostic]:
     """Return errors for rules for reserved predicates that the replaced original does not define."""
     name = encoding.rules.name if isinstance(encoding.rules, Path) else ""
     ours = [
@@ -415,7 +415,7 @@ def _replaced_definitions(encoding: Encoding) -> list[Diagnostic]:
     ]
 
 
-def _constants(encoding: Encoding, names: set[str]) -> list[Diagnostic]:
+def _constant_errors(encoding: Encoding, names: set[str]) -> list[Diagnostic]:
     """Return errors for constants that would replace a name in the facts or in another file."""
     return [
         encoding.remark(
@@ -434,7 +434,7 @@ def _is_reserved(name: str) -> bool:
     return name.lstrip("-").startswith(_PREFIX)
 
 
-def undefined(signature: Signature, defined: set[Signature]) -> str:
+def undefined_message(signature: Signature, defined: set[Signature]) -> str:
     """Return the message that a predicate is undefined, with the similar one that may be meant."""
     name, arity = signature
     message = f"no rule or fact defines {name}/{arity}, so it never holds"
@@ -486,14 +486,14 @@ def constant_value(name: str, default: str, value: str) -> str:
     """
     if default.startswith('"'):
         return quote(string_constant(value))
-    if _is_number(default) and not _fits(value):
+    if _is_number(default) and not _is_int32(value):
         raise UserError(f"found {value!r} for the constant {name!r}, expected a whole number of 32 bits")
-    if not _is_number(default) and not (_fits(value) or _IDENTIFIER.fullmatch(value)):
+    if not _is_number(default) and not (_is_int32(value) or _IDENTIFIER.fullmatch(value)):
         raise UserError(f"found {value!r} for the constant {name!r}, expected a whole number or a word")
-    return str(int(value)) if _fits(value) else value  # clingo reads no 007
+    return str(int(value)) if _is_int32(value) else value  # clingo reads no 007
 
 
-def unset_constants(added: Sequence[Encoding], constants: Sequence[str]) -> list[str]:
+def unset_constant_warnings(added: Sequence[Encoding], constants: Sequence[str]) -> list[str]:
     """Return warnings for constants that are not set and have no effect with their default: "", #sup or #inf.
 
     There is no warning where a rule derives a fact with the constant as argument, and another encoding
@@ -508,7 +508,7 @@ def unset_constants(added: Sequence[Encoding], constants: Sequence[str]) -> list
             if (
                 value not in {'""', "#sup", "#inf"}
                 or name in settings_given
-                or encoding.deriving(name) & others
+                or encoding.predicates_with_argument(name) & others
             ):
                 continue
             if isinstance(rules, Stated) and rules.file is not None:
@@ -532,11 +532,13 @@ def _is_number(value: str) -> bool:
     return value in {"#sup", "#inf"} or value.lstrip("-").isdigit()
 
 
-def _fits(value: str) -> bool:
+def _is_int32(value: str) -> bool:
     return bool(re.fullmatch(r"-?\d{1,10}", value, re.ASCII)) and abs(int(value)) <= LARGEST
 
 
-def fault(messages: Sequence[str], otherwise: str, files: Sequence[Loaded] = ()) -> InputError | UserError:
+def program_fault(
+    messages: Sequence[str], otherwise: str, files: Sequence[Loaded] = ()
+) -> InputError | UserError:
     """Return clingo's messages about a program as one error with places and source lines.
 
     ``files`` are the files and texts of the program. A source line of a text is found only there.
@@ -557,9 +559,9 @@ def fault(messages: Sequence[str], otherwise: str, files: Sequence[Loaded] = ())
             elif first["kind"] == "error":
                 text = " ".join([first["text"], *details])
             else:
-                text = _left_out(first["text"].rstrip(":"), " ".join(details))
+                text = _dropped_message(first["text"].rstrip(":"), " ".join(details))
             source = Source(match["file"], int(match["line"]), int(match["column"]))
-            errors.setdefault(source, located(Severity.ERROR, "clingo", text, source, files))
+            errors.setdefault(source, located_diagnostic(Severity.ERROR, "clingo", text, source, files))
     if errors:
         return InputError(list(errors.values()))
     if "Integer overflow" in otherwise:
@@ -570,7 +572,7 @@ def fault(messages: Sequence[str], otherwise: str, files: Sequence[Loaded] = ())
     return UserError("".join(messages).strip() or otherwise)
 
 
-def _left_out(message: str, term: str) -> str:
+def _dropped_message(message: str, term: str) -> str:
     """Return the message that clingo would drop an instance of a rule or element."""
     no_value = f"a term has no value here: {term.removeprefix('(').removesuffix(')')}"
     if message == "tuple ignored" and _NEGATIVE.match(term):
@@ -589,7 +591,7 @@ def _left_out(message: str, term: str) -> str:
     )
 
 
-def located(
+def located_diagnostic(
     severity: Severity, code: str, message: str, source: Source, files: Sequence[Loaded] = ()
 ) -> Diagnostic:
     """Return a diagnostic with its source line, found in the files and texts or in the source's own file."""
@@ -603,4 +605,4 @@ def located(
                 source = source._replace(file=str(rules.file))
                 message = f"{message} (in {rules.written})"
             return Diagnostic(severity, code, message, source, lines[source.line - 1].rstrip("\r"))
-    return Diagnostic(severity, code, message, source, excerpt(source))
+    return Diagnostic(severity, code, message, source, source_line(source))

@@ -54,7 +54,7 @@ def included_files(path: Path) -> list[Path]:
     return list(files.values())
 
 
-def excerpt(source: Source) -> str:
+def source_line(source: Source) -> str:
     """Return the line of an encoding at a place; files of other kinds are never quoted."""
     path = Path(source.file)
     if path.suffix != _SUFFIX or not path.is_file():
@@ -140,7 +140,7 @@ def _check_content(text: str, origin: str, file: Path | None, errors: list[Diagn
                 error("include", "found #include, expected rules: only a file includes others", token.start)
             elif named is not None and named.kind == "string":
                 target = _ESCAPED.sub(lambda match: "\n" if match[1] == "n" else match[1], named.text[1:-1])
-                problem = _refused(file, target)
+                problem = _include_refusal(file, target)
                 if problem:
                     error("include", f"found #include of {named.text}, {problem}", token.start)
                 else:
@@ -152,7 +152,7 @@ def _check_content(text: str, origin: str, file: Path | None, errors: list[Diagn
     return included
 
 
-def _refused(file: Path, target: str) -> str:
+def _include_refusal(file: Path, target: str) -> str:
     """Return the reason why a file may not include ``target``; empty if it may."""
     folder = file.parent.resolve()
     path = file.parent / target

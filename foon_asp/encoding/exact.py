@@ -12,7 +12,7 @@ class _BeyondError(Exception):
     """A result that clingo cannot represent."""
 
 
-def _divided(a: int, b: int) -> int:
+def _divide(a: int, b: int) -> int:
     """Return a quotient as clingo does, rounded towards 0."""
     return abs(a) // abs(b) * (1 if (a < 0) == (b < 0) else -1)
 
@@ -29,8 +29,8 @@ _BINARY: Final[dict[str, Callable[[int, int], int]]] = {
     "+": lambda a, b: a + b,
     "-": lambda a, b: a - b,
     "*": lambda a, b: a * b,
-    "/": _divided,
-    "\\": lambda a, b: a - b * _divided(a, b),
+    "/": _divide,
+    "\\": lambda a, b: a - b * _divide(a, b),
     "**": _power,
     "&": lambda a, b: a & b,
     "?": lambda a, b: a | b,

@@ -84,20 +84,20 @@ def write_facts(
     :class:`UserError` where user rules read prices and a price is no whole number of hundredths.
     """
     name = problem.network.object_number
-    nodes = described(problem, units)
-    prices = None if looked_at is None else hundredths(problem, units, looked_at)
+    nodes = described_nodes(problem, units)
+    prices = None if looked_at is None else prices_in_hundredths(problem, units, looked_at)
     kitchen = problem.kitchen_seen
     lines = []
     for unit in units:
         atoms = _unit_atoms(problem, unit, scales, prices)
-        lines.append(". ".join([_unit_atom(problem, unit), *map(_written, atoms)]) + ".")
+        lines.append(". ".join([_unit_atom(problem, unit), *map(_atom_text, atoms)]) + ".")
     for o in nodes:
         atoms = _object_atoms(problem, o)
         if o in kitchen:
             atoms.append(("kitchen", f"{name(o)}"))
             copies = problem.stock_of(o)
-            atoms += [] if copies is None else [("stock", f"{name(o)},{_check(copies)}")]
-        lines.append(". ".join([_object_atom(problem, o), *map(_written, atoms)]) + ".")
+            atoms += [] if copies is None else [("stock", f"{name(o)},{_check_int32(copies)}")]
+        lines.append(". ".join([_object_atom(problem, o), *map(_atom_text, atoms)]) + ".")
     return "\n".join([*lines, *_other_lines(problem, nodes)]) + "\n"
 
 
@@ -112,26 +112,26 @@ def write_facts_read(
     seen = problem.as_seen or problem
     name = problem.network.object_number
     names = {predicate for predicate, _ in read}
-    nodes = described(problem, units)
+    nodes = described_nodes(problem, units)
     kitchen = problem.kitchen_seen
     lines: list[str] = []
-    prices = hundredths(problem, units, read) if _OF_RULES & {*read} else None
+    prices = prices_in_hundredths(problem, units, read) if _OF_RULES & {*read} else None
     of_objects = {name for name in OBJECT_FACTS if (name, FACT_PREDICATES[name]) in read}
 
     def add(atoms: Iterable[_Atom]) -> None:
-        wanted = [_written(atom) for atom in atoms if (atom[0], FACT_PREDICATES[atom[0]]) in read]
+        wanted = [_atom_text(atom) for atom in atoms if (atom[0], FACT_PREDICATES[atom[0]]) in read]
         if wanted:
             lines.append(". ".join(wanted) + ".")
 
     for unit in units:
-        atoms = [("unit", f"{_check(problem.network.unit_number(unit))}")]
+        atoms = [("unit", f"{_check_int32(problem.network.unit_number(unit))}")]
         atoms += _unit_atoms(problem, unit, scales, prices, names)
         if "rate" in names and problem.rates is not None and not (scales and scales.rates):
             number = problem.network.unit_number(unit)
             atoms.append(("rate", f"{number},{millionths(seen.rate(unit))}"))
         add(atoms)
     for o in nodes if of_objects or not names.isdisjoint(("object", "kitchen")) else ():
-        atoms = [("object", f"{_check(name(o))}")]
+        atoms = [("object", f"{_check_int32(name(o))}")]
         atoms += [
             (predicate, f"{name(o)},{arguments}")
             for predicate, arguments in object_facts(problem.network.objects[o], of_objects)
@@ -170,11 +170,11 @@ def write_worlds(
             (name, f"{number},{arguments}")
             for name, arguments in object_facts(network.objects[o], predicates)
         ]
-        return [*atoms, ("object", f"{_check(number)}")] if "object" in predicates else atoms
+        return [*atoms, ("object", f"{_check_int32(number)}")] if "object" in predicates else atoms
 
     for unit in units:
         number = network.unit_number(unit)
-        atoms = [("unit", f"{_check(number)}"), *_unit_atoms(problem, unit, None, prices)]
+        atoms = [("unit", f"{_check_int32(number)}"), *_unit_atoms(problem, unit, None, prices)]
         atoms = [atom for atom in atoms if atom[0] in predicates]
         if "rate" in predicates:
             atoms.append(("rate", f"{number},{millionths((problem.as_seen or problem).rate(unit))}"))
@@ -186,12 +186,12 @@ def write_worlds(
         )
 
 
-def _written(atom: _Atom) -> str:
+def _atom_text(atom: _Atom) -> str:
     return f"{atom[0]}({atom[1]})"
 
 
 def _unit_atom(problem: Problem, unit: int) -> str:
-    return f"unit({_check(problem.network.unit_number(unit))})"
+    return f"unit({_check_int32(problem.network.unit_number(unit))})"
 
 
 def _unit_atoms(
@@ -224,14 +224,14 @@ def _unit_atoms(
         atoms.append(("inputs", f"{u},{len(inputs)}"))
     if "ingredients" in read:
         ingredients = sum(len(network.objects[o].ingredients) for o in inputs)
-        atoms.append(("ingredients", f"{u},{_check(ingredients)}"))
+        atoms.append(("ingredients", f"{u},{_check_int32(ingredients)}"))
     if scales and scales.rates:
         weight = scales.rates.weights[problem.rate(unit)]
         seen = (problem.as_seen or problem).rate(unit)
-        atoms += [("rate", f"{u},{millionths(seen)}"), ("risk", f"{u},{_check(weight)}")]
+        atoms += [("rate", f"{u},{millionths(seen)}"), ("risk", f"{u},{_check_int32(weight)}")]
     if scales:
         weights = ((objective.row.term, scales.weight(objective, [unit])) for objective in scales.facts)
-        atoms += [("cost", f"{term},{u},{_check(weight)}") for term, weight in weights]
+        atoms += [("cost", f"{term},{u},{_check_int32(weight)}") for term, weight in weights]
     if prices is not None:
         sources = network.sources[unit]
         atoms += [("source", f"{u},{quote(text)}") for text in source_names(sources)]
@@ -241,7 +241,7 @@ def _unit_atoms(
     return atoms
 
 
-def hundredths(
+def prices_in_hundredths(
     problem: Problem, units: Iterable[int], looked_at: Collection[tuple[str, int]]
 ) -> dict[int, int]:
     """Return the price of each unit that has one, in hundredths.
@@ -278,7 +278,7 @@ def hundredths(
 
 
 def _object_atom(problem: Problem, o: int) -> str:
-    return f"object({_check(problem.network.object_number(o))})"
+    return f"object({_check_int32(problem.network.object_number(o))})"
 
 
 def _object_atoms(problem: Problem, o: int) -> list[_Atom]:
@@ -299,7 +299,7 @@ def object_facts(node: ObjectNode, predicates: Collection[str] = OBJECT_FACTS) -
     return atoms
 
 
-def described(problem: Problem, units: Iterable[int]) -> list[int]:
+def described_nodes(problem: Problem, units: Iterable[int]) -> list[int]:
     """Return the object nodes in the facts about some units, including the goals, in order."""
     network = problem.network
     touched = {
@@ -311,7 +311,7 @@ def described(problem: Problem, units: Iterable[int]) -> list[int]:
 def write_times(times: Mapping[int, tuple[int, int]]) -> str:
     """Return facts for the least and greatest number of executions of units, by number."""
     return "".join(
-        f"_least({unit},{least}). _most({unit},{_check(greatest)}).\n"
+        f"_least({unit},{least}). _most({unit},{_check_int32(greatest)}).\n"
         for unit, (least, greatest) in times.items()
     )
 
@@ -327,7 +327,7 @@ def write_objectives(objectives: Sequence[Objective]) -> str:
 def write_exponents(problem: Problem, scales: Scales) -> str:
     """Return facts of the :meth:`Scales.vector` of each unit, by the objective that is rounded."""
     return "".join(
-        f"_exponent({problem.network.unit_number(unit)},{factor},{_check(number)}).\n"
+        f"_exponent({problem.network.unit_number(unit)},{factor},{_check_int32(number)}).\n"
         for unit, vector in scales.unit_vectors().items()
         for factor, number in vector.items()
     )
@@ -335,7 +335,7 @@ def write_exponents(problem: Problem, scales: Scales) -> str:
 
 def write_product(number: int, exponents: Mapping[int, int]) -> str:
     """Return facts of a product of rates, by its exponents."""
-    return "".join(f"_product({number},{factor},{_check(e)}).\n" for factor, e in exponents.items())
+    return "".join(f"_product({number},{factor},{_check_int32(e)}).\n" for factor, e in exponents.items())
 
 
 def write_seen(numbers: Iterable[int]) -> str:
@@ -358,7 +358,7 @@ def write_wanted(number: int) -> str:
 
 def write_for_sale(prices: Mapping[int, int], second_choices: Iterable[int]) -> str:
     """Return facts of object nodes for sale: their integer prices, and which are bought only if necessary."""
-    facts = [f"_for_sale({o},{_check(price)}).\n" for o, price in prices.items()]
+    facts = [f"_for_sale({o},{_check_int32(price)}).\n" for o, price in prices.items()]
     return "".join([*facts, *(f"_second_choice({o}).\n" for o in second_choices)])
 
 
@@ -369,7 +369,7 @@ def write_list(number: int, items: Iterable[int]) -> str:
 
 def write_constraints(weights: Mapping[int, int], kept: Iterable[int]) -> str:
     """Return facts of the cost of dropping each constraint, by number, and of constraints kept."""
-    facts = [f"_constraint({number},{_check(weight)}).\n" for number, weight in weights.items()]
+    facts = [f"_constraint({number},{_check_int32(weight)}).\n" for number, weight in weights.items()]
     return "".join([*facts, *(f"_kept({number}).\n" for number in kept)])
 
 
@@ -384,7 +384,7 @@ def write_corrections(corrections: Iterable[Iterable[int]]) -> str:
 
 def write_soft(weights: Mapping[int, int]) -> str:
     """Return facts of the weight of each soft constraint, by number."""
-    return "".join(f"_soft({number},{_check(weight)}).\n" for number, weight in weights.items())
+    return "".join(f"_soft({number},{_check_int32(weight)}).\n" for number, weight in weights.items())
 
 
 def write_least_penalty(priority: int) -> str:
@@ -394,7 +394,7 @@ def write_least_penalty(priority: int) -> str:
 
 def write_greatest_penalty(penalty: int) -> str:
     """Return the fact that bounds the weights of broken constraints."""
-    return f"_greatest_penalty({_check(penalty)}).\n"
+    return f"_greatest_penalty({_check_int32(penalty)}).\n"
 
 
 def write_at_most(number: int, bounds: Mapping[Objective, int]) -> str:
@@ -405,7 +405,8 @@ def write_at_most(number: int, bounds: Mapping[Objective, int]) -> str:
     if any(map(multiplies, bounds)):
         raise ValueError("success is a product, and no sum that a bound could be put on")
     return "".join(
-        f"_at_most({number},{objective.row.term},{_check(bound)}).\n" for objective, bound in bounds.items()
+        f"_at_most({number},{objective.row.term},{_check_int32(bound)}).\n"
+        for objective, bound in bounds.items()
     )
 
 
@@ -426,21 +427,23 @@ def write_assisted(twins: Mapping[int, int], max_assisted: int) -> str:
     ``twins`` maps the number of a person's unit to that of the robot's unit. The facts also limit the
     person's units in a tree to ``max_assisted``.
     """
-    facts = [f"_takes_over({_check(ours)},{theirs}).\n" for ours, theirs in twins.items()]
-    return "".join([*facts, f"_at_most_assisted({_check(max_assisted)}).\n"])
+    facts = [f"_takes_over({_check_int32(ours)},{theirs}).\n" for ours, theirs in twins.items()]
+    return "".join([*facts, f"_at_most_assisted({_check_int32(max_assisted)}).\n"])
 
 
 def write_required(sets: Sequence[Iterable[int]]) -> str:
     """Return facts of sets of units, by number: a tree has to have a unit of each set."""
     return "".join(
-        "".join([f"_required({index}).\n", *(f"_one_of({index},{_check(number)}).\n" for number in numbers)])
+        "".join(
+            [f"_required({index}).\n", *(f"_one_of({index},{_check_int32(number)}).\n" for number in numbers)]
+        )
         for index, numbers in enumerate(sets)
     )
 
 
 def write_known(numbers: Iterable[int]) -> str:
     """Return facts of the units, by number, whose inputs have all their achievers in the facts."""
-    return "".join(f"_known({_check(number)}).\n" for number in numbers)
+    return "".join(f"_known({_check_int32(number)}).\n" for number in numbers)
 
 
 def write_tree(units: Collection[int]) -> str:
@@ -453,17 +456,17 @@ def write_avoided(number: int, units: Iterable[int]) -> str:
 
     ``number`` is a number for the tree; ``units`` are the numbers of its units.
     """
-    return "".join(f"_avoid({number},{_check(unit)}).\n" for unit in units)
+    return "".join(f"_avoid({number},{_check_int32(unit)}).\n" for unit in units)
 
 
 def write_unseen(units: Iterable[int]) -> str:
     """Return facts that require a tree with at least one of some units, by their numbers."""
-    return "".join(f"_unseen({_check(unit)}).\n" for unit in units)
+    return "".join(f"_unseen({_check_int32(unit)}).\n" for unit in units)
 
 
 def write_in_all(units: Iterable[int]) -> str:
     """Return facts that require a tree without at least one of some units, by their numbers."""
-    return "".join(f"_in_all({_check(unit)}).\n" for unit in units)
+    return "".join(f"_in_all({_check_int32(unit)}).\n" for unit in units)
 
 
 def write_beside(plans: Sequence[Mapping[int, int]]) -> str:
@@ -472,7 +475,7 @@ def write_beside(plans: Sequence[Mapping[int, int]]) -> str:
     ``plans`` are the known plans: the number of executions by unit number.
     """
     return "".join(
-        f"_avoid({number},{_check(unit)},{count}).\n"
+        f"_avoid({number},{_check_int32(unit)},{count}).\n"
         for number, plan in enumerate(plans)
         for unit, count in plan.items()
     )
@@ -492,12 +495,12 @@ def write_same_rates(classes: Sequence[Iterable[int]]) -> str:
 
 def write_most_alike(limits: Sequence[int]) -> str:
     """Return facts that bound the number of units of each success rate."""
-    return "".join(f"_most_alike({rate},{_check(number)}).\n" for rate, number in enumerate(limits))
+    return "".join(f"_most_alike({rate},{_check_int32(number)}).\n" for rate, number in enumerate(limits))
 
 
 def write_exactly_alike(numbers: Sequence[int]) -> str:
     """Return facts that fix the number of units of each success rate."""
-    return "".join(f"_exactly_alike({rate},{_check(number)}).\n" for rate, number in enumerate(numbers))
+    return "".join(f"_exactly_alike({rate},{_check_int32(number)}).\n" for rate, number in enumerate(numbers))
 
 
 def write_distances(trees: Sequence[Collection[Hashable]], chosen: int) -> str:
@@ -528,7 +531,7 @@ def write_tool_order(
         after: For each step, the steps that have to be done before.
         may_lack: Whether tools may be lacking.
     """
-    facts = [f"_tools({kind},{_check(count)}).\n" for kind, count in enumerate(tools)]
+    facts = [f"_tools({kind},{_check_int32(count)}).\n" for kind, count in enumerate(tools)]
     facts += [f"_may_lack({kind}).\n" for kind in range(len(tools)) if may_lack]
     for use, (kind, steps) in enumerate(uses):
         facts += [f"_tool_use({use},{kind}).\n", *(f"_in_use({use},{step}).\n" for step in steps)]
@@ -573,7 +576,7 @@ def millionths(rate: Fraction) -> int:
     return rate.numerator * 1_000_000 // rate.denominator
 
 
-def _check(number: int) -> int:
+def _check_int32(number: int) -> int:
     if abs(number) > INT32_MAX:
         raise UserError(f"the number {number} is too large for clingo, whose numbers have 32 bits")
     return number

@@ -11,8 +11,8 @@ from clingo import Control, MessageCode, Model, SolveHandle
 from clingo.symbol import Number, Symbol, SymbolType
 
 from foon_asp.deadline import Deadline
-from foon_asp.encoding.messages import NO_LIMIT, listener, refusing
-from foon_asp.encoding.number_checks import CHECKS_FILE, Exact, numbers_beyond
+from foon_asp.encoding.messages import NO_LIMIT, listener, refuse_messages
+from foon_asp.encoding.number_checks import CHECKS_FILE, Exact, overflow_messages
 from foon_asp.encoding.run import Ended, FoundAnswer, asks_for_statistics
 from foon_asp.encoding.stated import Stated
 from foon_asp.errors import UserError
@@ -33,7 +33,7 @@ class GroundProgram:
         """Load files and text into clingo, and ground them."""
         self._messages: list[str] = []
         self._statistics = asks_for_statistics(arguments)
-        with refusing(self._messages):
+        with refuse_messages(self._messages):
             logger = listener(self._messages)
             self._control = Control(list(arguments), logger=logger, message_limit=NO_LIMIT)
             checks = [file for file in files if isinstance(file, Stated) and file.place == CHECKS_FILE]
@@ -60,7 +60,7 @@ class GroundProgram:
         try:
             self._control.ground(parts, Exact())
         finally:
-            self._messages += numbers_beyond(self._control)
+            self._messages += overflow_messages(self._control)
 
     def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
         """Return the arguments of all atoms of each predicate, by name and arity; all arguments are numbers.
@@ -107,8 +107,8 @@ class GroundProgram:
 
         def model(model: Model) -> bool:
             try:
-                atoms = {name: _numbers(model, name, arity) for name, arity in predicates}
-                rows = {name: _rows(model, name, arity) for name, arity in predicates}
+                atoms = {name: _first_arguments(model, name, arity) for name, arity in predicates}
+                rows = {name: _rows_of_numbers(model, name, arity) for name, arity in predicates}
                 on_tree(FoundAnswer(_used(model), tuple(model.cost), atoms, rows))
             except Exception as error:
                 faults.append(error)
@@ -123,20 +123,22 @@ class GroundProgram:
         if faults:
             raise faults[0]
         exhausted = bool(ended.exhausted) or (opt_mode == "ignore" and ended.satisfiable is not None)
-        return Ended(exhausted, "\n".join(_lines(self._control.statistics)) if self._statistics else "")
+        return Ended(
+            exhausted, "\n".join(_statistics_lines(self._control.statistics)) if self._statistics else ""
+        )
 
     def close(self) -> None:
         """Release the program."""
 
 
-def _lines(statistics: Any, name: str = "") -> Iterator[str]:
+def _statistics_lines(statistics: Any, name: str = "") -> Iterator[str]:
     """Return clingo's statistics, a tree of numbers, as one line per number with its path."""
     if isinstance(statistics, dict):
         for key, child in statistics.items():
-            yield from _lines(child, f"{name}.{key}" if name else key)
+            yield from _statistics_lines(child, f"{name}.{key}" if name else key)
     elif isinstance(statistics, list):
         for number, child in enumerate(statistics):
-            yield from _lines(child, f"{name}.{number}")
+            yield from _statistics_lines(child, f"{name}.{number}")
     else:
         yield f"{name} = {statistics:g}"
 
@@ -165,7 +167,7 @@ def _used(model: Model) -> frozenset[int]:
     return frozenset(units)
 
 
-def _rows(model: Model, name: str, arity: int) -> frozenset[tuple[int, ...]]:
+def _rows_of_numbers(model: Model, name: str, arity: int) -> frozenset[tuple[int, ...]]:
     """Return the arguments of all atoms of a predicate in an answer, if these are numbers."""
     atoms = (symbol.arguments for symbol in model.symbols(atoms=True) if symbol.match(name, arity))
     return frozenset(
@@ -175,6 +177,6 @@ def _rows(model: Model, name: str, arity: int) -> frozenset[tuple[int, ...]]:
     )
 
 
-def _numbers(model: Model, name: str, arity: int) -> Counter[int]:
+def _first_arguments(model: Model, name: str, arity: int) -> Counter[int]:
     atoms = (symbol for symbol in model.symbols(atoms=True) if symbol.match(name, arity))
     return Counter(symbol.arguments[0].number for symbol in atoms)

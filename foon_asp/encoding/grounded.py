@@ -84,7 +84,7 @@ class Grounded:
                 on_bound(result.lower)
 
         try:
-            self._begin("searching", deadline)
+            self._begin_phase("searching", deadline)
             result.exhausted, result.statistics = self._program.search(opt_mode, predicates, tree, bound)
         except LimitError:  # the last answer remains
             pass
@@ -95,7 +95,7 @@ class Grounded:
         """Release the program; dropping the last reference does so, too."""
         self._program.close()
 
-    def _begin(self, doing: str, deadline: Deadline) -> None:
+    def _begin_phase(self, doing: str, deadline: Deadline) -> None:
         """Begin a phase, which has a name and a deadline."""
         deadline.doing = doing
         deadline.check()

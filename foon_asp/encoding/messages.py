@@ -32,7 +32,7 @@ def listener(messages: list[str], max_kept: int = 1000) -> Callable[[MessageCode
 
 
 @contextmanager
-def refusing(messages: list[str]) -> Iterator[None]:
+def refuse_messages(messages: list[str]) -> Iterator[None]:
     """Raise :class:`ProgramError` where clingo stops, or where ``messages`` is not empty after the block."""
     try:
         yield

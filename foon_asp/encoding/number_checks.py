@@ -35,7 +35,7 @@ def _exact(text: Symbol, *values: Symbol) -> Symbol:
     return Number(is_beyond(text.string, [value.number for value in values]))
 
 
-def numbers_beyond(control: Control) -> Iterator[str]:
+def overflow_messages(control: Control) -> Iterator[str]:
     """Return messages in clingo's format about each overflow in a ground program."""
     for atom in control.symbolic_atoms.by_signature(*BEYOND):
         file, line, column, term = atom.symbol.arguments

@@ -29,12 +29,12 @@ def question_encoding(name: str) -> Path:
 
     Raises :class:`UserError` where it was changed.
     """
-    return _unchanged(encodings_folder() / "questions" / name)
+    return _require_unchanged(encodings_folder() / "questions" / name)
 
 
 def exact_success() -> Path:
     """Return the encoding that compares products of rates; raises :class:`UserError` if it was changed."""
-    return _unchanged(encodings_folder() / "exact_success.lp")
+    return _require_unchanged(encodings_folder() / "exact_success.lp")
 
 
 def digest(file: Path) -> str:
@@ -48,7 +48,7 @@ def _digest(file: Path, *_state: int) -> str:
     return hashlib.sha256(file.read_bytes().replace(b"\r\n", b"\n")).hexdigest()
 
 
-def _unchanged(file: Path) -> Path:
+def _require_unchanged(file: Path) -> Path:
     """Return the path of a built-in encoding; raises :class:`UserError` if it was changed."""
     if not is_own(file):
         raise UserError(

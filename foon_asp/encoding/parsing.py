@@ -18,7 +18,7 @@ def parse(rules: Loaded, add: Callable[[AST], None], logger: Callable[[MessageCo
     place = rules.place
 
     def placed(statement: AST) -> None:
-        _set_place(statement, place)
+        _replace_file_name(statement, place)
         add(statement)
 
     def logged(code: MessageCode, message: str) -> None:
@@ -43,7 +43,7 @@ def nodes(piece: AST) -> Iterator[AST]:
                 yield from nodes(node)
 
 
-def _set_place(statement: AST, place: str) -> None:
+def _replace_file_name(statement: AST, place: str) -> None:
     """Replace the file name in the locations of a statement by a place."""
     for node in nodes(statement):
         if "location" in node.keys():  # noqa: SIM118 (it is no mapping)

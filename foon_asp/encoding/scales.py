@@ -134,7 +134,7 @@ class Scales:
             )
         return int(scale.scale * cost)
 
-    def doubt(self, units: Iterable[int]) -> int:
+    def count_rounded(self, units: Iterable[int]) -> int:
         """Return how many units have a weight that was rounded down; each adds an error below 1."""
         assert self.rounded is not None
         costs = (self._problem.figure(self.rounded, unit) for unit in units)

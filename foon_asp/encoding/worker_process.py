@@ -39,7 +39,7 @@ class WorkerProgram:
         """Take a worker process, and wait until it has grounded the files and the text."""
         self._worker = take(_KEY, _start)
         self._give_back = weakref.finalize(self, _forget, self._worker)
-        command = "ground", _folder(), list(files), text, list(arguments), products, _memory(deadline)
+        command = "ground", _folder(), list(files), text, list(arguments), products, _memory_left(deadline)
         self.deadline = deadline
         _ask(self._worker, deadline, *command)
 
@@ -72,13 +72,15 @@ def derive(text: str, name: str, arity: int, deadline: Deadline) -> list[tuple[V
     """Run :func:`foon_asp.encoding.derived.derive` in another process, which is killed at the limits."""
     worker = take(_KEY, _start)
     try:
-        rows: list[tuple[Value, ...]] = _ask(worker, deadline, "derive", text, name, arity, _memory(deadline))
+        rows: list[tuple[Value, ...]] = _ask(
+            worker, deadline, "derive", text, name, arity, _memory_left(deadline)
+        )
         return rows
     finally:
         _forget(worker)
 
 
-def _memory(deadline: Deadline) -> int | None:
+def _memory_left(deadline: Deadline) -> int | None:
     """Return the number of bytes that another process may use, ``None`` without a limit."""
     return None if deadline.memory is None else max(1, deadline.memory - deadline.memory_in_use())
 
@@ -91,7 +93,7 @@ def _folder() -> str | None:
         return None
 
 
-def prepare() -> None:
+def start_in_advance() -> None:
     """Start a process in advance, if none waits."""
     give_back(_KEY, take(_KEY, _start))
 
@@ -116,7 +118,7 @@ def _ask(worker: Worker, deadline: Deadline, *command: object, handlers: _Handle
     try:
         kind, value = worker.ask(packed(command), deadline, handlers)
     except DiedError as died:
-        raise _cause(died.code, worker.has_spoken, deadline) from None
+        raise _error_of_death(died.code, worker.has_spoken, deadline) from None
     if kind == "refused":
         raise ProgramError(*value)
     if kind == "fault":
@@ -126,7 +128,7 @@ def _ask(worker: Worker, deadline: Deadline, *command: object, handlers: _Handle
     return value
 
 
-def _cause(code: int, has_spoken: bool, deadline: Deadline) -> UserError | LimitError:
+def _error_of_death(code: int, has_spoken: bool, deadline: Deadline) -> UserError | LimitError:
     """Return the error for a process that died: memory ran out, or else the rules made it stop."""
     if code in _OF_MEMORY or (deadline.memory is not None and code == -signal.SIGSEGV):
         deadline.out_of_memory()

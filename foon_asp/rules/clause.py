@@ -30,7 +30,7 @@ _FLIPPED = {
     ComparisonOperator.LessEqual: ComparisonOperator.GreaterEqual,
     ComparisonOperator.GreaterEqual: ComparisonOperator.LessEqual,
 }
-_COMPARING = {
+_OPERATORS = {
     ComparisonOperator.GreaterThan: gt,
     ComparisonOperator.LessThan: lt,
     ComparisonOperator.LessEqual: le,
@@ -38,7 +38,7 @@ _COMPARING = {
     ComparisonOperator.NotEqual: ne,
     ComparisonOperator.Equal: eq,
 }
-_NUMBERS = {AggregateFunction.Count, AggregateFunction.Sum, AggregateFunction.SumPlus}
+_NUMBER_AGGREGATES = {AggregateFunction.Count, AggregateFunction.Sum, AggregateFunction.SumPlus}
 
 
 class Literal(NamedTuple):
@@ -69,7 +69,7 @@ class Test(NamedTuple):
 class Conditional(NamedTuple):
     """``literal : condition`` in a body: the literal has to hold wherever the condition does."""
 
-    literal: "Literal | Test | Strange"
+    literal: "Literal | Test | UnknownConjunct"
     condition: "tuple[Conjunct, ...]"
     text: str
 
@@ -99,13 +99,13 @@ class Aggregate(NamedTuple):
     text: str
 
 
-class Strange(NamedTuple):
+class UnknownConjunct(NamedTuple):
     """A conjunct of another kind, such as a theory atom."""
 
     text: str
 
 
-Conjunct = Literal | Test | Conditional | Aggregate | Strange
+Conjunct = Literal | Test | Conditional | Aggregate | UnknownConjunct
 
 
 class Clause(NamedTuple):
@@ -113,13 +113,13 @@ class Clause(NamedTuple):
 
     ``plain``: the rule is a constraint, or its head is one atom without negation or choice.
     ``head``: this atom; ``None`` for a constraint, and for a rule that is not plain.
-    ``others``: the head atoms of a rule that is not plain, each with its condition.
+    ``head_elements``: the head atoms of a rule that is not plain, each with its condition.
     ``number``: the number of the rule, the same for all clauses of a rule with pools.
     ``ast``: the syntax tree of the clause; its body has one node for each conjunct of ``body``.
     """
 
     head: Literal | None
-    others: tuple[tuple[Literal, tuple[Conjunct, ...]], ...]
+    head_elements: tuple[tuple[Literal, tuple[Conjunct, ...]], ...]
     plain: bool
     body: tuple[Conjunct, ...]
     source: Source
@@ -127,14 +127,14 @@ class Clause(NamedTuple):
     ast: AST
 
     @property
-    def constraint(self) -> bool:
+    def is_constraint(self) -> bool:
         """Whether the clause has no head."""
         return self.plain and self.head is None
 
     @property
     def heads(self) -> list[Literal]:
         """The atoms of its head."""
-        return [atom for atom in (self.head, *(atom for atom, _ in self.others)) if atom is not None]
+        return [atom for atom in (self.head, *(atom for atom, _ in self.head_elements)) if atom is not None]
 
 
 def clauses(rule: AST, number: int, constants: Constants) -> Iterator[Clause]:
@@ -164,7 +164,7 @@ def source_of(statement: AST) -> Source:
     return Source(begin.filename, begin.line, begin.column)
 
 
-def written(statement: AST, rules: Loaded | None = None) -> str:
+def statement_text(statement: AST, rules: Loaded | None = None) -> str:
     """Return a statement on one line, as it is written in its file or in the text of ``rules``."""
     begin, end = statement.location.begin, statement.location.end
     if isinstance(rules, Stated) and begin.filename == rules.place:
@@ -179,7 +179,7 @@ def written(statement: AST, rules: Loaded | None = None) -> str:
     return " ".join(b" ".join(lines).decode("utf-8", "replace").split())
 
 
-def _is_plain(term: AST) -> bool:
+def _has_no_operation(term: AST) -> bool:
     """Whether a term has no arithmetic, so that its text is its value."""
     return all(node.ast_type != ASTType.BinaryOperation for node in nodes(term))
 
@@ -219,7 +219,7 @@ def constant_values(definitions: Iterable[AST], settings: Sequence[str]) -> dict
     texts: dict[str, str | None] = {}
     for definition in definitions:
         name = definition.name
-        plain = definition.is_default and name not in texts and _is_plain(definition.value)
+        plain = definition.is_default and name not in texts and _has_no_operation(definition.value)
         texts[name] = str(definition.value) if plain else None
     for setting in settings:
         name, _, text = setting.partition("=")
@@ -288,11 +288,11 @@ class _Reader:
             return self._aggregate(node)
         return self.literal(node)
 
-    def literal(self, node: AST) -> Literal | Test | Strange:
-        """Return a literal over a predicate, a comparison or a constant; ``Strange`` for anything else."""
+    def literal(self, node: AST) -> Literal | Test | UnknownConjunct:
+        """Return a literal over a predicate, a comparison or a constant; ``UnknownConjunct`` for anything else."""
         text = str(node)
         if node.ast_type != ASTType.Literal:
-            return Strange(text)
+            return UnknownConjunct(text)
         atom, negations = node.atom, int(node.sign)
         if atom.ast_type == ASTType.SymbolicAtom:
             symbol, sign = atom.symbol, ""
@@ -306,7 +306,7 @@ class _Reader:
         elif atom.ast_type == ASTType.Comparison:
             holds = self._compare(atom)
             return Test(node, None if holds is None else holds != (negations == 1), text)
-        return Strange(text)
+        return UnknownConjunct(text)
 
     def _compare(self, comparison: AST) -> bool | None:
         """Return whether a comparison holds, ``None`` where a term has no known value."""
@@ -318,7 +318,7 @@ class _Reader:
         symbols = [symbol for symbol in values if symbol is not None]
         operators = [guard.comparison for guard in comparison.guards]
         return all(
-            compared(first, operator, second)
+            comparison_holds(first, operator, second)
             for first, operator, second in zip(symbols, operators, symbols[1:], strict=False)
         )
 
@@ -342,18 +342,18 @@ class _Reader:
             elements = tuple(
                 Element(tuple(element.terms), self.conjuncts(element.condition)) for element in atom.elements
             )
-        holds = [self._beyond(function, guard) for guard in guards]
+        holds = [self._holds_at_infinity(function, guard) for guard in guards]
         sure = False if False in holds else True if holds and all(holds) else None
         if sure is not None and node.sign == Sign.Negation:
             sure = not sure
         return Aggregate(function, elements, tuple(guards), int(node.sign), sure, str(node))
 
-    def _beyond(self, function: AggregateFunction, guard: Guard) -> bool | None:
+    def _holds_at_infinity(self, function: AggregateFunction, guard: Guard) -> bool | None:
         """Return whether a sum or count satisfies a guard ``#inf`` or ``#sup``, ``None`` for other guards."""
         bound = value(guard.term, self._constants)
-        if function not in _NUMBERS or bound not in (Infimum, Supremum):
+        if function not in _NUMBER_AGGREGATES or bound not in (Infimum, Supremum):
             return None
-        return compared(Number(0), guard.comparison, bound)
+        return comparison_holds(Number(0), guard.comparison, bound)
 
     def head_atoms(self, head: AST) -> Iterator[tuple[Literal, tuple[Conjunct, ...]]]:
         """Return the atoms of a head that is not plain, with their conditions."""
@@ -369,6 +369,6 @@ class _Reader:
                     yield atom._replace(negations=0), self.conjuncts(conditional.condition)
 
 
-def compared(first: Symbol, comparison: int, second: Symbol) -> bool:
+def comparison_holds(first: Symbol, comparison: int, second: Symbol) -> bool:
     """Return whether a comparison of two values holds, in clingo's order: numbers, then words, then texts."""
-    return bool(_COMPARING[ComparisonOperator(comparison)](first, second))
+    return bool(_OPERATORS[ComparisonOperator(comparison)](first, second))

@@ -33,10 +33,10 @@ class LibraryConstraint(NamedTuple):
 
 def library_constraints() -> list[LibraryConstraint]:
     """Read the ready-made constraints, in order of name."""
-    return [_read(file) for file in sorted((encodings_folder() / "constraints").glob("*.lp"))]
+    return [_read_constraint(file) for file in sorted((encodings_folder() / "constraints").glob("*.lp"))]
 
 
-def _read(file: Path) -> LibraryConstraint:
+def _read_constraint(file: Path) -> LibraryConstraint:
     """Read the comment at the start of a constraint's file: the title, the purpose and an example call."""
     lines = file.read_text(encoding="utf-8").split("\n")
     header = [line.removeprefix("%").strip() for line in lines[: lines.index("")]]

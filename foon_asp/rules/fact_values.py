@@ -84,7 +84,7 @@ _TEXTS: Final[Mapping[str, Callable[[_NetworkPart], Iterable[Names]]]] = {
 }
 
 
-def misplaced(columns: Columns, values: Mapping[int, Value]) -> int | None:
+def position_of_wrong_type(columns: Columns, values: Mapping[int, Value]) -> int | None:
     """Return the position of a value of the wrong type (a text for a number, or the other way round).
 
     ``None`` where there is no such position.
@@ -113,7 +113,7 @@ class FactValues:
 
         One fact must have all the texts. The number of a unit or node need only exist.
         """
-        if misplaced(columns, values) is not None:
+        if position_of_wrong_type(columns, values) is not None:
             return False
         network = self._problem.network
         for size, numbers, places in (
@@ -127,9 +127,9 @@ class FactValues:
         wanted = {
             number: values[position] for number, position in enumerate(columns.texts) if position in values
         }
-        if not wanted or self._has(name, wanted, network):
+        if not wanted or self._has_fact(name, wanted, network):
             return True
-        return bool(network.object_numbers) and self._may_have_beyond(name, wanted)
+        return bool(network.object_numbers) and self._may_have_fact_outside_memory(name, wanted)
 
     def nearest(self, name: str, columns: Columns, words: Mapping[int, str]) -> dict[int, str] | None:
         """Find the fact whose texts are spelled most like ``words``; return its texts, by argument position.
@@ -143,11 +143,13 @@ class FactValues:
             number: words[position] for number, position in enumerate(columns.texts) if position in words
         }
         networks = {
-            id(network): network for network in (self._problem.network, self._whole) if network is not None
+            id(network): network
+            for network in (self._problem.network, self._whole_network)
+            if network is not None
         }
         spelt: dict[str, Names] = {}
         for network in networks.values():
-            for row in self._rows(name, network):
+            for row in self._fact_texts(name, network):
                 spelt.setdefault("\n".join(row[number] for number in wanted), row)
         word = "\n".join(wanted.values())
         matches = [word] if word in spelt else near_labels(word, sorted(spelt), 1)
@@ -155,32 +157,33 @@ class FactValues:
             return None
         return {columns.texts[number]: spelt[matches[0]][number] for number in wanted}
 
-    def _rows(self, name: str, network: Network) -> Iterable[Names]:
+    def _fact_texts(self, name: str, network: Network) -> Iterable[Names]:
         limit = self.max_read if _is_read_one_by_one(network) else None
         sources, objects = islice(network.sources, limit), islice(network.objects, limit)
         return _TEXTS[name](_NetworkPart(network.different_motions, sources, objects, self._problem.utensils))
 
-    def _has(self, name: str, wanted: Mapping[int, Value], network: Network) -> bool:
+    def _has_fact(self, name: str, wanted: Mapping[int, Value], network: Network) -> bool:
         return any(
-            all(row[number] == value for number, value in wanted.items()) for row in self._rows(name, network)
+            all(row[number] == value for number, value in wanted.items())
+            for row in self._fact_texts(name, network)
         )
 
     @property
-    def _whole(self) -> Network | None:
+    def _whole_network(self) -> Network | None:
         """The whole network of a store, ``None`` where it is unknown."""
         origin = self._problem.origin
         return None if origin is None else origin.whole_network
 
-    def _may_have_beyond(self, name: str, wanted: Mapping[int, Value]) -> bool:
+    def _may_have_fact_outside_memory(self, name: str, wanted: Mapping[int, Value]) -> bool:
         """Whether the part of a store that is not in memory may have a fact with the ``wanted`` texts."""
-        whole = self._whole
-        if whole is None or self._has(name, wanted, whole):
+        whole = self._whole_network
+        if whole is None or self._has_fact(name, wanted, whole):
             return True
         is_cut = _is_read_one_by_one(whole) and max(len(whole), len(whole.objects)) > self.max_read
         return is_cut and name not in {"motion", "utensil"}
 
 
-def unknown_text(facts: Sequence[str], word: str, meant: str | None) -> str:
+def unknown_text_message(facts: Sequence[str], word: str, meant: str | None) -> str:
     """Return a message about a name that occurs in no fact, with the similar name that may be meant."""
     text = f"nothing in this network has the {' or '.join(facts)} {quote(word)}"
     return text if meant is None else f"{text}; did you mean {quote(meant)}?"

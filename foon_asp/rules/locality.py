@@ -15,7 +15,15 @@ from typing import NamedTuple
 from clingo.ast import AST, ASTType
 
 from foon_asp.network import Source
-from foon_asp.rules.clause import Aggregate, Clause, Conditional, Conjunct, Literal, Signature, Strange
+from foon_asp.rules.clause import (
+    Aggregate,
+    Clause,
+    Conditional,
+    Conjunct,
+    Literal,
+    Signature,
+    UnknownConjunct,
+)
 from foon_asp.rules.dependence import Dependence
 from foon_asp.rules.fact_subject import DECISIONS, SUBJECTS, Subject
 
@@ -40,11 +48,11 @@ class Locality:
         for clause in program:
             for head in clause.heads:
                 self._rules[head.signature].append(clause)
-        self._leads_to = self._find_leads()
+        self._leads_to = self._find_leads_to()
         # of auxiliary predicates: what their arguments have to be in the tree, and which are not local at all
         self._about: dict[Signature, dict[int, Subject]] = {signature: {} for signature in self._rules}
         self._nonlocal: dict[Signature, Nonlocality] = {}
-        self._find_abouts(program)
+        self._find_about_arguments(program)
 
     def nonlocality(self, clause: Clause) -> Nonlocality | None:
         """Return why a rule is not local, ``None`` where it is."""
@@ -53,14 +61,14 @@ class Locality:
                 "an atom with a minus rules out the one without, wherever that is", clause.source
             )
         tree_terms = self._tree_terms(clause.body)
-        lacking = self._lacking(clause.body, tree_terms, clause.source)
-        for atom, condition in clause.others:
-            lacking = lacking or self._lacking(
+        lacking = self._lacking_term(clause.body, tree_terms, clause.source)
+        for atom, condition in clause.head_elements:
+            lacking = lacking or self._lacking_term(
                 (atom, *condition), self._tree_terms(condition, tree_terms), clause.source
             )
         return lacking.nonlocality if lacking else None
 
-    def _find_leads(self) -> dict[Signature, dict[int, set[Subject]]]:
+    def _find_leads_to(self) -> dict[Signature, dict[int, set[Subject]]]:
         """Return the subjects of the arguments of auxiliary predicates that are always in the tree."""
         leads = {
             signature: {position: set(Subject) for position in range(signature[1])}
@@ -72,7 +80,7 @@ class Locality:
             changed = False
             for signature, clauses in self._rules.items():
                 for clause in clauses:
-                    for atom, condition in ((clause.head, ()), *clause.others):
+                    for atom, condition in ((clause.head, ()), *clause.head_elements):
                         if atom is None or atom.signature != signature:
                             continue
                         tree_terms = self._tree_terms(condition, self._tree_terms(clause.body))
@@ -82,13 +90,13 @@ class Locality:
                             leads[signature][position] = subjects
         return leads
 
-    def _find_abouts(self, program: Sequence[Clause]) -> None:
+    def _find_about_arguments(self, program: Sequence[Clause]) -> None:
         """Find the arguments of auxiliary predicates that must be in the tree; a rule is local only then."""
         changed = True
         while changed:
             changed = False
             for clause in program:
-                if clause.constraint:
+                if clause.is_constraint:
                     continue
                 heads = clause.heads
                 loops = any(head.signature in self._dependence.loops for head in heads)
@@ -103,9 +111,9 @@ class Locality:
                         changed |= self._mark_nonlocal(head.signature, nonlocality)
                 else:
                     assert clause.head is not None
-                    changed |= self._find_about(clause, clause.head)
+                    changed |= self._add_about_arguments(clause, clause.head)
 
-    def _find_about(self, clause: Clause, head: Literal) -> bool:
+    def _add_about_arguments(self, clause: Clause, head: Literal) -> bool:
         """Find head arguments that must be in the tree to make a rule local; return whether any is new."""
         changed = False
         while head.signature not in self._nonlocal:
@@ -114,7 +122,9 @@ class Locality:
             for position, subject in about.items():
                 if _has_one_value(head.arguments[position]):
                     tree_terms.setdefault(str(head.arguments[position]), set()).add(subject)
-            lacking = self._lacking(clause.body, self._tree_terms(clause.body, tree_terms), clause.source)
+            lacking = self._lacking_term(
+                clause.body, self._tree_terms(clause.body, tree_terms), clause.source
+            )
             if lacking is None:
                 return changed
             changed = True
@@ -168,20 +178,22 @@ class Locality:
             return []
         return list(facts.leads_to.items())
 
-    def _lacking(
+    def _lacking_term(
         self, conjuncts: Iterable[Conjunct], tree_terms: _TreeTerms, source: Source
-    ) -> "_Lacking | None":
+    ) -> "_LackingTerm | None":
         """Return the first term that has to be in the tree but may be outside; ``None`` if there is none."""
         for conjunct in conjuncts:
-            lacking = self._lacking_in(conjunct, tree_terms, source)
+            lacking = self._lacking_term_in_conjunct(conjunct, tree_terms, source)
             if lacking:
                 return lacking
         return None
 
-    def _lacking_in(self, conjunct: Conjunct, tree_terms: _TreeTerms, source: Source) -> "_Lacking | None":
+    def _lacking_term_in_conjunct(
+        self, conjunct: Conjunct, tree_terms: _TreeTerms, source: Source
+    ) -> "_LackingTerm | None":
         """Return the reason why a conjunct is not local, with its term; ``None`` for a local conjunct."""
         if isinstance(conjunct, Literal):
-            return self._lacking_of(conjunct, tree_terms, source)
+            return self._lacking_term_in_literal(conjunct, tree_terms, source)
         if isinstance(conjunct, Conditional):
             # it matters only where its condition holds and its literal does not
             against = conjunct.literal
@@ -190,42 +202,44 @@ class Locality:
                 met = self._tree_terms((against, *conjunct.condition), tree_terms)
             else:
                 met = self._tree_terms(conjunct.condition, tree_terms)
-            return self._lacking((conjunct.literal, *conjunct.condition), met, source)
+            return self._lacking_term((conjunct.literal, *conjunct.condition), met, source)
         if isinstance(conjunct, Aggregate):
             for element in conjunct.elements:
                 met = self._tree_terms(element.condition, tree_terms)
-                lacking = self._lacking(element.condition, met, source)
+                lacking = self._lacking_term(element.condition, met, source)
                 if lacking:
                     return lacking
-        if isinstance(conjunct, Strange):
-            return _Lacking(
+        if isinstance(conjunct, UnknownConjunct):
+            return _LackingTerm(
                 "", Subject.UNIT, Nonlocality(f"{conjunct.text} is nothing that is looked into", source)
             )
         return None
 
-    def _lacking_of(self, literal: Literal, tree_terms: _TreeTerms, source: Source) -> "_Lacking | None":
+    def _lacking_term_in_literal(
+        self, literal: Literal, tree_terms: _TreeTerms, source: Source
+    ) -> "_LackingTerm | None":
         """Return the reason why a literal is not local, with its term; ``None`` for a local literal."""
         signature = literal.signature
         if signature in self._nonlocal:
-            return _Lacking("", Subject.UNIT, self._nonlocal[signature])
+            return _LackingTerm("", Subject.UNIT, self._nonlocal[signature])
         if signature in self._about:
             about = self._about[signature]
         elif signature in _FACTS:
             about = _FACTS[signature].about
         else:
             doubt = self._dependence.doubt((literal,))
-            return _Lacking("", Subject.UNIT, Nonlocality(doubt.reason, source)) if doubt else None
+            return _LackingTerm("", Subject.UNIT, Nonlocality(doubt.reason, source)) if doubt else None
         for position, subject in about.items():
             term = literal.arguments[position]
             if subject not in tree_terms.get(str(term), ()):
-                reason = f"{_atom(literal)} is about {_ARTICLES[subject]} that the tree need not have"
-                return _Lacking(
+                reason = f"{_atom_text(literal)} is about {_ARTICLES[subject]} that the tree need not have"
+                return _LackingTerm(
                     str(term) if _has_one_value(term) else "", subject, Nonlocality(reason, source)
                 )
         return None
 
 
-class _Lacking(NamedTuple):
+class _LackingTerm(NamedTuple):
     """A term that has to be in the tree for a rule to be local, and the reason if it is not.
 
     ``term`` is empty if the rule is not local whatever terms are in the tree.
@@ -244,7 +258,7 @@ def _has_one_value(term: AST) -> bool:
     return term.ast_type == ASTType.SymbolicTerm or (term.ast_type == ASTType.Variable and term.name != "_")
 
 
-def _atom(literal: Literal) -> str:
+def _atom_text(literal: Literal) -> str:
     name, arity = literal.signature
     arguments = ",".join(map(str, literal.arguments))
     return f"{name}({arguments})" if arity else name

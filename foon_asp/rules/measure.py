@@ -108,7 +108,7 @@ class _Evaluation:
     def costs(self) -> Sequence[Cost]:
         """Return the cost of each unit, by id. Only one of several units with the same facts is evaluated."""
         units = range(len(self._problem.network))
-        alike = self._alike()
+        alike = self._fact_keys()
         if alike is None:
             cost_by_number = self.cost_by_number(units)
             return [cost_by_number.get(self._number(unit), 0) for unit in units]
@@ -119,7 +119,7 @@ class _Evaluation:
         by_key = {key: cost_by_number.get(self._number(unit), 0) for key, unit in first.items()}
         return list(map(by_key.__getitem__, alike))
 
-    def _alike(self) -> Sequence[Hashable] | None:
+    def _fact_keys(self) -> Sequence[Hashable] | None:
         """Return a key for each unit.
 
         Units with equal keys have the same facts, except for numbers of units and nodes. ``None`` if the
@@ -155,7 +155,7 @@ class _Evaluation:
             fact_rows = (tuple(object_facts(node, nodes)) for node in objects)
             kinds = [numbers.setdefault(facts, len(numbers)) for facts in fact_rows]
             chosen = [objects_of[name] for name in sorted(reads & objects_of.keys())]
-            columns.append(tuple(_shape(network, unit, chosen, kinds) for unit in range(len(network))))
+            columns.append(tuple(_nodes_key(network, unit, chosen, kinds) for unit in range(len(network))))
         columns = [column for column in columns if column]
         return list(zip(*columns, strict=True)) if columns else [()] * len(network)
 
@@ -163,16 +163,16 @@ class _Evaluation:
         """Return the cost of each unit that the rules give a cost, by unit number (not id)."""
         by_number = {self._number(unit): unit for unit in units}
         values: dict[int, Cost] = {}
-        for world, name, number, value in self._derived(by_number.values(), self._rules.statements):
+        for world, name, number, value in self._derive_costs(by_number.values(), self._rules.statements):
             if name != (self._measure.name,):
                 continue
             assert isinstance(world, int)
-            cost = _cost(value) if number == world else None
+            cost = _exact_cost(value) if number == world else None
             if cost is None or cost != values.setdefault(world, cost):
-                self._refuse(by_number[world])
+                self._refuse_cost(by_number[world])
         return values
 
-    def _derived(
+    def _derive_costs(
         self, units: Iterable[int], statements: Iterable["Statement"]
     ) -> Sequence[tuple["Value", ...]]:
         """Derive costs of units with clingo: rows of world, measure, unit number and cost.
@@ -180,7 +180,7 @@ class _Evaluation:
         Raises :class:`InputError` if clingo drops an instance of a rule.
         """
         from foon_asp.encoding import derived  # noqa: PLC0415
-        from foon_asp.encoding.encoding import fault  # noqa: PLC0415 (takes clingo along)
+        from foon_asp.encoding.encoding import program_fault  # noqa: PLC0415 (takes clingo along)
         from foon_asp.rules.measure_rules import COST, WORLD  # noqa: PLC0415
 
         statements = list(statements)
@@ -198,28 +198,28 @@ class _Evaluation:
 
             return derive(text, name, arity, self._deadline)
         except ProgramError as refused:
-            raise self._placed(fault(refused.messages, refused.otherwise), statements) from None
+            raise self._with_places(program_fault(refused.messages, refused.otherwise), statements) from None
 
-    def _placed(self, error: UserError, statements: Sequence["Statement"]) -> UserError:
+    def _with_places(self, error: UserError, statements: Sequence["Statement"]) -> UserError:
         """Return an error in the text for clingo with its place in the rules."""
         if not isinstance(error, InputError):
             return UserError(f"{self._measure.place}: {error}")
         return InputError(
             [
-                self._remark(
+                self._error_at(
                     diagnostic.code, diagnostic.message, statements[diagnostic.source.line - 1].source
                 )
                 for diagnostic in error.diagnostics
             ]
         )
 
-    def _remark(self, code: str, message: str, source: Source) -> Diagnostic:
-        from foon_asp.encoding.encoding import located  # noqa: PLC0415 (takes clingo along)
+    def _error_at(self, code: str, message: str, source: Source) -> Diagnostic:
+        from foon_asp.encoding.encoding import located_diagnostic  # noqa: PLC0415 (takes clingo along)
 
         stated = Stated(self._measure.place, self._measure.text)
-        return located(Severity.ERROR, code, message, source, [stated])
+        return located_diagnostic(Severity.ERROR, code, message, source, [stated])
 
-    def _refuse(self, unit: int) -> None:
+    def _refuse_cost(self, unit: int) -> None:
         """Raise :class:`InputError` with the rules by which a unit has an invalid cost or several costs."""
         from foon_asp.rules.measure_rules import BEYOND  # noqa: PLC0415 (takes clingo along)
 
@@ -229,10 +229,10 @@ class _Evaluation:
         statements = self._rules.statements
         for rule in (statement for statement in statements if statement.is_cost):
             alone = [statement for statement in statements if statement is rule or not statement.is_cost]
-            for _, name, subject, value in self._derived([unit], alone):
+            for _, name, subject, value in self._derive_costs([unit], alone):
                 if name == (self._measure.name,):
                     stated.setdefault((subject, value), rule.source)
-        large = {cost: source for cost, source in stated.items() if _text(cost[1]) == BEYOND}
+        large = {cost: source for cost, source in stated.items() if _value_text(cost[1]) == BEYOND}
         errors = []
         for (subject, value), source in (large or stated).items():
             if large:
@@ -241,16 +241,16 @@ class _Evaluation:
                     'a large cost is given in a table, as text: "5000000000"'
                 )
             elif subject != number:
-                what = f"found a cost of {_text(subject)} among the facts of {who}: a rule is about one unit"
-            elif _cost(value) is None:
-                what = f'found the cost {_text(value)} of {who}, expected a number from 0: 5, or "2.50"'
+                what = f"found a cost of {_value_text(subject)} among the facts of {who}: a rule is about one unit"
+            elif _exact_cost(value) is None:
+                what = f'found the cost {_value_text(value)} of {who}, expected a number from 0: 5, or "2.50"'
             else:
-                what = f"found the cost {_text(value)} of {who}, expected one value for each unit"
-            errors.append(self._remark("cost", what, source))
+                what = f"found the cost {_value_text(value)} of {who}, expected one value for each unit"
+            errors.append(self._error_at("cost", what, source))
         raise InputError(errors)
 
 
-def _shape(
+def _nodes_key(
     network: Network, unit: int, object_lists: Sequence[Sequence[Sequence[int]]], kinds: Sequence[int]
 ) -> Hashable:
     """Return a key for the object nodes of a unit that does not depend on their numbers.
@@ -265,7 +265,7 @@ def _shape(
     )
 
 
-def _cost(value: "Value") -> Cost | None:
+def _exact_cost(value: "Value") -> Cost | None:
     """Return a value as an exact cost, an ``int`` if possible; ``None`` if it is no number, or below 0."""
     if isinstance(value, int):
         return value if value >= 0 else None
@@ -275,7 +275,7 @@ def _cost(value: "Value") -> Cost | None:
     return int(cost) if cost.denominator == 1 else cost
 
 
-def _text(value: "Value") -> str:
+def _value_text(value: "Value") -> str:
     if isinstance(value, str):
         return quote(value)
     return str(value) if isinstance(value, int) else value.text
@@ -301,7 +301,7 @@ def read_measures(rules: str | PathLike[str] | Iterable[str | PathLike[str]]) ->
     measures: dict[str, Measure] = {}
     texts = [
         (source_text, f"measure {number}")
-        if isinstance(source_text, str) and _is_rules(source_text)
+        if isinstance(source_text, str) and _is_rule_text(source_text)
         else (read_plain_text(Path(source_text)), str(source_text))
         for number, source_text in enumerate(rules, 1)
     ]
@@ -314,5 +314,5 @@ def read_measures(rules: str | PathLike[str] | Iterable[str | PathLike[str]]) ->
     return measures
 
 
-def _is_rules(text: str) -> bool:
+def _is_rule_text(text: str) -> bool:
     return (":-" in text or text.rstrip().endswith(".")) and not exists(Path(text))

@@ -26,7 +26,14 @@ from clingo.ast import (
 )
 from clingo.symbol import SymbolType
 
-from foon_asp.encoding.encoding import PUBLIC_NAMES, Signature, fault, located, no_numbers, undefined
+from foon_asp.encoding.encoding import (
+    PUBLIC_NAMES,
+    Signature,
+    located_diagnostic,
+    non_numeric_terms,
+    program_fault,
+    undefined_message,
+)
 from foon_asp.encoding.encoding_file import check_text
 from foon_asp.encoding.fact_writer import FACT_PREDICATES, OBJECT_FACTS
 from foon_asp.encoding.messages import listener
@@ -34,7 +41,7 @@ from foon_asp.encoding.parsing import parse
 from foon_asp.encoding.stated import Stated
 from foon_asp.errors import UserError
 from foon_asp.network import Source
-from foon_asp.rules.number_limits import beyond
+from foon_asp.rules.number_limits import overflow_checks
 from foon_asp.rules.tuning import TUNING
 from foon_asp.rules.worlds import Worlds, unused_variable
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
@@ -98,11 +105,11 @@ def read_rules(text: str, origin: str) -> MeasureRules:
     try:
         parse(stated, statements.append, listener(messages))
     except RuntimeError as error:
-        raise fault(messages, str(error), [stated]) from None
-    return _Reader(statements, stated).rules()
+        raise program_fault(messages, str(error), [stated]) from None
+    return _MeasureReader(statements, stated).rules()
 
 
-class _Reader:
+class _MeasureReader:
     """Checker of the rules of measures, and their translator for clingo."""
 
     def __init__(self, statements: Sequence[AST], stated: Stated) -> None:
@@ -121,10 +128,12 @@ class _Reader:
             elif kind is ASTType.Defined:
                 declared.add((statement.name, statement.arity))
             elif not (kind in _HARMLESS or (kind is ASTType.Program and statement.name == "base")):
-                self._error("statement", "found a statement that is no rule, expected rules", statement)
+                self._add_error_at(
+                    "statement", "found a statement that is no rule, expected rules", statement
+                )
         self._atoms = [_Atoms(rule) for rule in self._rules]
         self._declared = declared
-        self._refuse_errors()
+        self._raise_errors()
 
     def rules(self) -> MeasureRules:
         """Check the rules and write them for clingo."""
@@ -135,30 +144,30 @@ class _Reader:
         self._check_names(names)
         self._check_numbers()
         self._check_loops()
-        self._refuse_errors()
-        dependent = self._dependent()
+        self._raise_errors()
+        dependent = self._dependent_predicates()
         world = unused_variable(self._stated.text, "W")
-        written = [_World(dependent, world).written(rule, self._source(rule)) for rule in self._rules]
-        written += self._beyond(names, dependent, world)
+        written = [_WorldWriter(dependent, world).write(rule, self._source(rule)) for rule in self._rules]
+        written += self._overflow_rules(names, dependent, world)
         constants = [
             Statement(f"{definition}", self._source(definition), False) for definition in self._constants
         ]
         return MeasureRules(
             names,
             (*constants, *written),
-            frozenset(name for name, _ in self._read()),
-            _nameless(self._atoms),
-            all(self._is_plain(atoms, dependent) for atoms in self._atoms),
+            frozenset(name for name, _ in self._facts_read()),
+            _is_nameless(self._atoms),
+            all(self._has_small_grounding(atoms, dependent) for atoms in self._atoms),
         )
 
-    def _beyond(
+    def _overflow_rules(
         self, names: Iterable[str], dependent: frozenset[Signature], world: str
     ) -> Iterator[Statement]:
         """Return rules that derive the cost ``BEYOND`` where arithmetic overflows 32 bits in clingo."""
         statements: list[AST] = []
         sources: list[Source] = []
         for name in names:
-            for rule, text in beyond(self._rules, f"cost({name},{world},{BEYOND})".format):
+            for rule, text in overflow_checks(self._rules, f"cost({name},{world},{BEYOND})".format):
                 before = len(statements)
                 parse_string(text, statements.append)
                 sources += [self._source(rule)] * (len(statements) - before)
@@ -167,19 +176,19 @@ class _Reader:
             for rule, source in zip(statements, sources, strict=True)
             if rule.ast_type is ASTType.Rule
         ]
-        writer = _World(dependent, world)
-        yield from (writer.written(rule, source) for rule, source in rules)
+        writer = _WorldWriter(dependent, world)
+        yield from (writer.write(rule, source) for rule, source in rules)
 
     def _check_head(self, rule: AST, atoms: "_Atoms", names: dict[str, Source]) -> None:
         """Refuse a head other than one atom of a permitted predicate; record the measure that it names."""
         head = rule.head
         if head.ast_type is not ASTType.Literal or head.sign != Sign.NoSign:
-            self._error(
+            self._add_error_at(
                 "head", "found a choice or a disjunction, expected a rule with one atom in its head", rule
             )
         elif head.atom.ast_type is not ASTType.SymbolicAtom:
             message = "found a constraint, expected a rule for what units cost: pass it with --constraint"
-            self._error("head", message, rule)
+            self._add_error_at("head", message, rule)
         for atom in atoms.heads:
             name, arity = _signature(atom)
             if (name, arity) == COST:
@@ -187,42 +196,46 @@ class _Reader:
                 symbol = term.symbol if term.ast_type is ASTType.SymbolicTerm else None
                 if symbol is None or symbol.type is not SymbolType.Function or symbol.arguments:
                     message = f"found cost({term},...), expected the name of a measure: cost(mine,U,N)"
-                    self._error("measure-name", message, atom)
+                    self._add_error_at("measure-name", message, atom)
                 else:
                     names.setdefault(symbol.name, self._source(atom))
             elif FACT_PREDICATES.get(name) == arity or (name, arity) in _REFUSED:
-                self._error("owned-predicate", f"found a rule for {name}/{arity}: give it another name", atom)
+                self._add_error_at(
+                    "owned-predicate", f"found a rule for {name}/{arity}: give it another name", atom
+                )
 
     def _check_atoms(self, atoms: "_Atoms") -> None:
         """Refuse atoms that are negated with a minus, reserved, undefined or not about one unit."""
         for minus in atoms.negated:
-            self._error("negation", "found an atom with a minus before it, expected one without", minus)
+            self._add_error_at(
+                "negation", "found an atom with a minus before it, expected one without", minus
+            )
         for atom in (*atoms.heads, *atoms.used):
             if atom.name.startswith("_"):
                 message = f"found {atom.name}, but names that begin with '_' are reserved: take another"
-                self._error("reserved-name", message, atom)
+                self._add_error_at("reserved-name", message, atom)
         defined = {_signature(atom) for other in self._atoms for atom in other.heads} | self._declared
         readable = {(name, arity) for name, arity in FACT_PREDICATES.items()} - _REFUSED.keys()
         for atom in atoms.used:
             signature = _signature(atom)
             shown = "{}/{}".format(*signature)
             if signature in _REFUSED:
-                self._error("not-of-a-unit", f"found {shown}, which {_REFUSED[signature]}", atom)
+                self._add_error_at("not-of-a-unit", f"found {shown}, which {_REFUSED[signature]}", atom)
             elif signature not in defined | readable and not atom.name.startswith("_"):
-                self._error("undefined-atom", undefined(signature, defined | readable), atom)
+                self._add_error_at("undefined-atom", undefined_message(signature, defined | readable), atom)
 
     def _check_names(self, names: dict[str, Source]) -> None:
         """Refuse reserved names of measures and constants, which have another meaning in the facts."""
         for name, source in names.items():
             if name in PUBLIC_NAMES or name.startswith("_"):
                 message = f"found a measure {name!r}, which is a name of ours: give it another one"
-                self._note("measure-name", message, source)
+                self._add_error("measure-name", message, source)
         for definition in self._constants:
             if definition.name in PUBLIC_NAMES or definition.name in names or definition.name.startswith("_"):
                 message = (
                     f"found #const {definition.name}, but that is a name in the facts: give it another one"
                 )
-                self._error("taken-constant", message, definition)
+                self._add_error_at("taken-constant", message, definition)
         if not names and not self._errors:
             raise UserError(
                 f"{self._stated.place}: expected rules for what units cost, such as "
@@ -231,11 +244,13 @@ class _Reader:
 
     def _check_numbers(self) -> None:
         """Refuse comparisons of a number with a term that never is one, and ``cost`` with an arity not 3."""
-        for term, message in no_numbers(self._rules, [definition.name for definition in self._constants]):
-            self._error("no-number", message, term)
+        for term, message in non_numeric_terms(
+            self._rules, [definition.name for definition in self._constants]
+        ):
+            self._add_error_at("no-number", message, term)
         for atom in (head for atoms in self._atoms for head in atoms.heads):
             if atom.name == COST[0] and _signature(atom) != COST:
-                self._error("head", f"found {atom}, expected a cost such as cost(mine,U,5)", atom)
+                self._add_error_at("head", f"found {atom}, expected a cost such as cost(mine,U,5)", atom)
 
     def _check_loops(self) -> None:
         """Refuse recursive rules, whose atoms may be infinitely many or undefined."""
@@ -251,9 +266,9 @@ class _Reader:
                 head for atoms in self._atoms for head in atoms.heads if _signature(head) == (name, arity)
             )
             message = f"found {name}/{arity}, which depends on itself, expected rules without loops"
-            self._error("loop", message, atom)
+            self._add_error_at("loop", message, atom)
 
-    def _read(self) -> Iterator[Signature]:
+    def _facts_read(self) -> Iterator[Signature]:
         """Yield the predicates of facts that the rules read."""
         derived = {_signature(atom) for other in self._atoms for atom in other.heads}
         for atoms in self._atoms:
@@ -261,9 +276,9 @@ class _Reader:
                 if FACT_PREDICATES.get(signature[0]) == signature[1] and signature not in derived:
                     yield signature
 
-    def _dependent(self) -> frozenset[Signature]:
+    def _dependent_predicates(self) -> frozenset[Signature]:
         """Return the predicates that depend on facts about units, and costs."""
-        dependent = {COST, *self._read()} - {("utensil", 1)}
+        dependent = {COST, *self._facts_read()} - {("utensil", 1)}
         before = 0
         while len(dependent) > before:
             before = len(dependent)
@@ -272,7 +287,7 @@ class _Reader:
                     dependent.update(map(_signature, atoms.heads))
         return frozenset(dependent)
 
-    def _is_plain(self, atoms: "_Atoms", dependent: frozenset[Signature]) -> bool:
+    def _has_small_grounding(self, atoms: "_Atoms", dependent: frozenset[Signature]) -> bool:
         """Return whether the grounding of a rule cannot be large."""
         tables = [atom for atom in atoms.used if _signature(atom) not in dependent]
         return (
@@ -285,13 +300,13 @@ class _Reader:
         begin = at.location.begin
         return Source(self._stated.place, begin.line, begin.column)
 
-    def _error(self, code: str, message: str, at: AST) -> None:
-        self._note(code, message, self._source(at))
+    def _add_error_at(self, code: str, message: str, at: AST) -> None:
+        self._add_error(code, message, self._source(at))
 
-    def _note(self, code: str, message: str, source: Source) -> None:
-        self._errors.append(located(Severity.ERROR, code, message, source, [self._stated]))
+    def _add_error(self, code: str, message: str, source: Source) -> None:
+        self._errors.append(located_diagnostic(Severity.ERROR, code, message, source, [self._stated]))
 
-    def _refuse_errors(self) -> None:
+    def _raise_errors(self) -> None:
         if self._errors:
             raise InputError(self._errors)
 
@@ -318,26 +333,26 @@ class _Atoms(Transformer):
         self.compared: set[str] = set()
         self.has_interval = False
         self.divides = False
-        self._noted = self.heads
+        self._collected = self.heads
         self.visit(rule.head)
-        self._noted = self.used
+        self._collected = self.used
         self.visit_sequence(rule.body)
 
     def visit_SymbolicAtom(self, atom: AST) -> AST:  # noqa: N802 (the name clingo looks for)
-        self._atom(atom.symbol)
+        self._collect_atom(atom.symbol)
         return atom
 
-    def _atom(self, symbol: AST) -> None:
+    def _collect_atom(self, symbol: AST) -> None:
         if symbol.ast_type is ASTType.UnaryOperation:
             self.negated.append(symbol)
         elif symbol.ast_type is ASTType.Pool:
             for one in symbol.arguments:
-                self._atom(one)
+                self._collect_atom(one)
         else:
-            self._noted.append(symbol)
-            self._terms(symbol.arguments)
+            self._collected.append(symbol)
+            self._visit_terms(symbol.arguments)
 
-    def _terms(self, terms: Iterable[AST]) -> None:
+    def _visit_terms(self, terms: Iterable[AST]) -> None:
         """Visit the terms that are not variables; as arguments, variables are only tested for equality."""
         for term in terms:
             if term.ast_type is not ASTType.Variable:
@@ -351,7 +366,7 @@ class _Atoms(Transformer):
         for element in aggregate.elements:
             for term in element.terms[:weighs]:
                 self.visit(term)
-            self._terms(element.terms[weighs:])
+            self._visit_terms(element.terms[weighs:])
             self.visit_sequence(element.condition)
         return aggregate
 
@@ -370,7 +385,7 @@ class _Atoms(Transformer):
         return interval
 
 
-def _nameless(rules: Sequence[_Atoms]) -> bool:
+def _is_nameless(rules: Sequence[_Atoms]) -> bool:
     """Whether rules compare units and object nodes for equality only.
 
     The argument positions of units and of object nodes are inferred from the facts, along the variables of
@@ -409,18 +424,18 @@ def _nameless(rules: Sequence[_Atoms]) -> bool:
     return (COST, 2) not in kinds
 
 
-class _World:
+class _WorldWriter:
     """Writer of rules with a world as first argument of the predicates that depend on facts."""
 
     def __init__(self, dependent: frozenset[Signature], world: str) -> None:
-        self._dependent, self._world = dependent, world
+        self._dependent_predicates, self._world = dependent, world
 
-    def written(self, rule: AST, source: Source) -> Statement:
+    def write(self, rule: AST, source: Source) -> Statement:
         """Return a rule as a statement for clingo, with a world if its head depends on facts."""
         heads = _Atoms(rule).heads
         text = str(rule)
-        if any(_signature(atom) in self._dependent for atom in heads):
-            changed = Worlds(self._dependent, self._world).visit(rule)
+        if any(_signature(atom) in self._dependent_predicates for atom in heads):
+            changed = Worlds(self._dependent_predicates, self._world).visit(rule)
             location = rule.location
             world = Function(location, WORLD, [Variable(location, self._world)], 0)
             body = [*changed.body, Literal(location, Sign.NoSign, SymbolicAtom(world))]

@@ -45,16 +45,16 @@ Head = Callable[[AST], str]
 
 def number_checks(statements: Iterable[AST]) -> str:
     """Return rules that derive ``_beyond`` for terms that overflow; an empty text where no term can."""
-    return "".join(f"{text}\n" for _, text in beyond(statements, _placed))
+    return "".join(f"{text}\n" for _, text in overflow_checks(statements, _overflow_atom))
 
 
-def _placed(term: AST) -> str:
+def _overflow_atom(term: AST) -> str:
     begin = term.location.begin
     shown = "the sum" if term.ast_type in _AGGREGATES else str(term).removeprefix("(").removesuffix(")")
     return f"{BEYOND[0]}({quote(begin.filename)},{begin.line},{begin.column},{quote(shown)})"
 
 
-def beyond(statements: Iterable[AST], head: Head) -> Iterator[tuple[AST, str]]:
+def overflow_checks(statements: Iterable[AST], head: Head) -> Iterator[tuple[AST, str]]:
     """Return check rules, which derive ``head`` where a term overflows, each with the statement of the term.
 
     The body of a check has the conditions of the statement that bind variables or have no arithmetic. The
@@ -64,36 +64,36 @@ def beyond(statements: Iterable[AST], head: Head) -> Iterator[tuple[AST, str]]:
         if not _CALCULATES.search(str(statement)):
             continue
         if statement.ast_type == ASTType.Definition:
-            yield from ((statement, text) for text in _checks(statement.value, [], head))
+            yield from ((statement, text) for text in _term_checks(statement.value, [], head))
         elif statement.ast_type in {ASTType.Rule, ASTType.Minimize}:
             for variant in statement.unpool(condition=True):
-                with_names = _Naming().visit(variant)
+                with_names = _AnonymousVariableNamer().visit(variant)
                 for node, conditions in _terms_with_conditions(with_names):
-                    yield from ((statement, text) for text in _checks(node, conditions, head))
-                for aggregate, elements in _sums(with_names):
+                    yield from ((statement, text) for text in _term_checks(node, conditions, head))
+                for aggregate, elements in _sum_aggregates(with_names):
                     total = f"#sum {{ {'; '.join(elements)} }} > {LARGEST}"
                     yield (
                         statement,
-                        f"{head(aggregate)} :- {_joined([*_conditions(with_names.body), total])}.",
+                        f"{head(aggregate)} :- {_body_text([*_check_conditions(with_names.body), total])}.",
                     )
 
 
-def _checks(node: AST, conditions: Sequence[AST], head: Head) -> Iterator[str]:
+def _term_checks(node: AST, conditions: Sequence[AST], head: Head) -> Iterator[str]:
     """Yield rules whose head holds where a term is beyond clingo's numbers."""
-    for term in _terms(node):
+    for term in _arithmetic_terms(node):
         leaves: dict[str, AST] = {}
         text = " ".join(_postfix(term, leaves))
         call = f"1 = @_exact({','.join([quote(text), *leaves])})"
         limit = _safe_magnitude(term)
         if limit < 0 or any(_has_interval(leaf) for leaf in leaves.values()):
-            yield f"{head(term)} :- {_joined([*conditions, call])}."
+            yield f"{head(term)} :- {_body_text([*conditions, call])}."
             continue
         numbers = [_number(leaf) for leaf in leaves.values()]
         if None not in numbers and not is_beyond(text, [n for n in numbers if n is not None]):
             continue
         for leaf, leaf_term in leaves.items():
             if _number(leaf_term) is None:
-                yield f"{head(term)} :- {_joined([*conditions, f'not -{limit} <= {leaf} <= {limit}', call])}."
+                yield f"{head(term)} :- {_body_text([*conditions, f'not -{limit} <= {leaf} <= {limit}', call])}."
 
 
 def _postfix(term: AST, leaves: dict[str, AST]) -> Iterator[str]:
@@ -115,20 +115,22 @@ def _postfix(term: AST, leaves: dict[str, AST]) -> Iterator[str]:
 
 def _safe_magnitude(term: AST) -> int:
     """Return the magnitude up to which values in a term cannot make the term overflow; -1 without one."""
-    return next((limit for limit in (LARGEST >> n for n in range(32)) if _size(term, limit) <= LARGEST), -1)
+    return next(
+        (limit for limit in (LARGEST >> n for n in range(32)) if _max_magnitude(term, limit) <= LARGEST), -1
+    )
 
 
-def _size(term: AST, limit: int) -> int:
+def _max_magnitude(term: AST, limit: int) -> int:
     """Return an upper bound on the magnitude of a term and its subterms.
 
     The values in the term are assumed to have at most the magnitude ``limit``.
     """
     if term.ast_type == ASTType.UnaryOperation:
-        return _size(term.argument, limit) + int(term.operator_type == UnaryOperator.Negation)
+        return _max_magnitude(term.argument, limit) + int(term.operator_type == UnaryOperator.Negation)
     if term.ast_type != ASTType.BinaryOperation:
         number = _number(term)
         return limit if number is None else abs(number)
-    a, b = _size(term.left, limit), _size(term.right, limit)
+    a, b = _max_magnitude(term.left, limit), _max_magnitude(term.right, limit)
     kind = term.operator_type
     if kind == BinaryOperator.Power:
         power = _number(term.right)
@@ -148,7 +150,7 @@ def _has_interval(term: AST) -> bool:
     return any(node.ast_type == ASTType.Interval for node in nodes(term))
 
 
-def _sums(rule: AST) -> Iterator[tuple[AST, list[str]]]:
+def _sum_aggregates(rule: AST) -> Iterator[tuple[AST, list[str]]]:
     """Return the sums of a rule, each with its elements as text, in which weights become magnitudes."""
     for body_part in rule.body if rule.ast_type == ASTType.Minimize else [rule.head, *rule.body]:
         aggregate = body_part.atom if body_part.ast_type == ASTType.Literal else body_part
@@ -157,10 +159,10 @@ def _sums(rule: AST) -> Iterator[tuple[AST, list[str]]]:
         if aggregate.function in _SUMS and any(
             _number(element.terms[0]) != 1 for element in aggregate.elements
         ):
-            yield aggregate, [text for element in aggregate.elements for text in _sizes(element)]
+            yield aggregate, [text for element in aggregate.elements for text in _magnitude_elements(element)]
 
 
-def _sizes(element: AST) -> Iterator[str]:
+def _magnitude_elements(element: AST) -> Iterator[str]:
     """Return two elements, as text, that add the magnitude of a positive and of a negative weight."""
     inner = element.condition
     condition = list(inner.condition) if isinstance(inner, AST) else list(inner)
@@ -173,7 +175,7 @@ def _sizes(element: AST) -> Iterator[str]:
 
 def _terms_with_conditions(statement: AST) -> Iterator[tuple[AST, Sequence[AST]]]:
     """Return the terms and conjuncts of a statement, each with the conditions that bind its variables."""
-    conditions = _conditions(statement.body)
+    conditions = _check_conditions(statement.body)
     if statement.ast_type == ASTType.Minimize:
         yield from ((term, conditions) for term in (statement.weight, statement.priority, *statement.terms))
         outer = list(statement.body)
@@ -194,7 +196,7 @@ def _terms_with_conditions(statement: AST) -> Iterator[tuple[AST, Sequence[AST]]
         elif atom.ast_type == ASTType.ConditionalLiteral:
             yield from _element_terms(atom, conditions)
         else:
-            yield conjunct, _without(conjunct, conditions)
+            yield conjunct, _conditions_without(conjunct, conditions)
 
 
 def _element_terms(
@@ -210,47 +212,49 @@ def _element_terms(
     if isinstance(conditional, AST) and conditional.ast_type == ASTType.ConditionalLiteral:
         terms.append(conditional.literal)
         conditional = [*conditional.condition, *([conditional.literal] if counted else ())]
-    inner = [*conditions, *_conditions(conditional)]
-    yield from ((node, _without(node, inner)) for node in dict.fromkeys((*terms, *conditional)))
+    inner = [*conditions, *_check_conditions(conditional)]
+    yield from ((node, _conditions_without(node, inner)) for node in dict.fromkeys((*terms, *conditional)))
 
 
-def _terms(node: AST) -> Iterator[AST]:
+def _arithmetic_terms(node: AST) -> Iterator[AST]:
     """Return the maximal terms with arithmetic in a node of the syntax tree."""
     if node.ast_type == ASTType.SymbolicAtom:
         symbol = node.symbol
         while symbol.ast_type == ASTType.UnaryOperation:  # p with a minus before it
             symbol = symbol.argument
         for argument in symbol.arguments:
-            yield from _terms(argument)
+            yield from _arithmetic_terms(argument)
         return
     if node.ast_type in {ASTType.BinaryOperation, ASTType.UnaryOperation}:
         leaves: dict[str, AST] = {}
         if any(word in _BINARY.values() for word in _postfix(node, leaves)):
             yield node
         for leaf in leaves.values():
-            yield from _terms(leaf)
+            yield from _arithmetic_terms(leaf)
         return
     for key in node.child_keys:
         child = getattr(node, key)
         for child_node in [child] if isinstance(child, AST) else child or ():
-            yield from _terms(child_node)
+            yield from _arithmetic_terms(child_node)
 
 
-def _conditions(body: Iterable[AST]) -> list[AST]:
+def _check_conditions(body: Iterable[AST]) -> list[AST]:
     """Return the conditions that bind variables or have neither arithmetic nor aggregates."""
     return [
-        condition for condition in body if _binds(condition) or not any(map(_calculates, nodes(condition)))
+        condition
+        for condition in body
+        if _binds(condition) or not any(map(_is_calculation, nodes(condition)))
     ]
 
 
-def _without(node: AST, conditions: Sequence[AST]) -> Sequence[AST]:
+def _conditions_without(node: AST, conditions: Sequence[AST]) -> Sequence[AST]:
     """Return the conditions for the check of a node, without the node itself if others bind its variables.
 
     Clingo drops an instance in which an equation overflows. A check with this equation would be dropped, too.
     """
     others = [condition for condition in conditions if condition != node]
-    bound = _bound(others)
-    inside = {name for term in _terms(node) for name in variables(term)}
+    bound = _bound_variables(others)
+    inside = {name for term in _arithmetic_terms(node) for name in variables(term)}
     return (
         [condition for condition in others if bound.issuperset(variables(condition))]
         if inside <= bound
@@ -258,7 +262,7 @@ def _without(node: AST, conditions: Sequence[AST]) -> Sequence[AST]:
     )
 
 
-def _bound(conditions: Sequence[AST]) -> set[str]:
+def _bound_variables(conditions: Sequence[AST]) -> set[str]:
     """Return the variables bound by positive atoms, or by equations with terms of bound variables."""
     bound: set[str] = set()
     comparisons: list[tuple[AST, AST]] = []
@@ -277,22 +281,22 @@ def _bound(conditions: Sequence[AST]) -> set[str]:
             name
             for one, other in comparisons
             if bound.issuperset(variables(other))
-            for name in _solved_for(one)
+            for name in _solvable_variables(one)
         )
     return bound
 
 
-def _solved_for(term: AST) -> Iterator[str]:
+def _solvable_variables(term: AST) -> Iterator[str]:
     """Return the variable for which clingo solves an equation with a linear term such as ``2*X+1``."""
     if term.ast_type == ASTType.Variable:
         yield term.name
     elif term.ast_type == ASTType.BinaryOperation and term.operator_type in _LINEAR:
         operands = (term.left, term.right)
         if any(_number(operand) is not None for operand in operands):
-            yield from (name for operand in operands for name in _solved_for(operand))
+            yield from (name for operand in operands for name in _solvable_variables(operand))
 
 
-def _calculates(node: AST) -> bool:
+def _is_calculation(node: AST) -> bool:
     return node.ast_type in {ASTType.BinaryOperation, ASTType.Aggregate, ASTType.BodyAggregate}
 
 
@@ -310,11 +314,11 @@ def _binds(condition: AST) -> bool:
     return equal or bool(atom.ast_type == ASTType.SymbolicAtom)
 
 
-def _joined(conditions: Sequence[AST | str]) -> str:
+def _body_text(conditions: Sequence[AST | str]) -> str:
     return "; ".join(map(str, conditions)) or "#true"
 
 
-class _Naming(Transformer):
+class _AnonymousVariableNamer(Transformer):
     """Rewriter that names each ``_`` in a term with arithmetic, so that a check can refer to it."""
 
     def __init__(self) -> None:

@@ -26,29 +26,33 @@ def numbered_unit(statements: Iterable[AST]) -> NumberedUnit | None:
     for statement in statements:
         if statement.ast_type == ASTType.Rule:
             for clause in clauses(statement, 0, {}):
-                text = _named_in(clause)
+                text = _numbered_unit_text(clause)
                 if text:
                     return NumberedUnit(text, source_of(statement))
     return None
 
 
-def _named_in(clause: Clause) -> str:
+def _numbered_unit_text(clause: Clause) -> str:
     """Return the atom or comparison of a clause that names a unit by its number; empty without one."""
-    conditions: list[Conjunct] = [conjunct for _, condition in clause.others for conjunct in condition]
+    conditions: list[Conjunct] = [conjunct for _, condition in clause.head_elements for conjunct in condition]
     conjuncts = [*clause.body, *conditions]
     units: set[str] = set()
     for literal in literals(conjuncts):
         for position in COLUMNS.get(literal.signature, Columns()).units:
             argument = literal.arguments[position]
             units.update(variables(argument))
-            if _has_number(argument):
+            if _has_constant(argument):
                 return literal.text
     tests = (conjunct for conjunct in conjuncts if isinstance(conjunct, Test))
     return next(
-        (test.text for test in tests if _has_number(test.ast) and not units.isdisjoint(variables(test.ast))),
+        (
+            test.text
+            for test in tests
+            if _has_constant(test.ast) and not units.isdisjoint(variables(test.ast))
+        ),
         "",
     )
 
 
-def _has_number(piece: AST) -> bool:
+def _has_constant(piece: AST) -> bool:
     return any(node.ast_type == ASTType.SymbolicTerm for node in nodes(piece))

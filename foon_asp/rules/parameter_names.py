@@ -7,7 +7,14 @@ from typing import Final
 from foon_asp.encoding.encoding_file import string_constant
 from foon_asp.encoding.own_encodings import is_own
 from foon_asp.proof.rule_meaning import LIBRARY
-from foon_asp.rules.fact_values import CONTENTS, MOTIONS, FactValues, has_text, nearest_text, unknown_text
+from foon_asp.rules.fact_values import (
+    CONTENTS,
+    MOTIONS,
+    FactValues,
+    has_text,
+    nearest_text,
+    unknown_text_message,
+)
 from foon_asp.rules.passed_constraint import Constraint, LibraryUse, find_constraint
 from foon_asp.rules.ready_made import LISTED
 
@@ -42,4 +49,4 @@ def unknown_parameters(
             if word and not has_text(PARAMETERS[parameter], word, values):
                 use = constraint if isinstance(constraint, LibraryUse) else f"{file.stem}:{parameter}={word}"
                 meant = nearest_text(PARAMETERS[parameter], word, values)
-                yield f"{use}: warning: {unknown_text(PARAMETERS[parameter], word, meant)}"
+                yield f"{use}: warning: {unknown_text_message(PARAMETERS[parameter], word, meant)}"

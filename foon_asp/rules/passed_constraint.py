@@ -106,7 +106,7 @@ def named_constraint(text: str, path: type[Path] = Path) -> Path | LibraryUse:
     """Return the ready-made constraint that ``NAME:CONSTANT=VALUE`` stands for; any other text is a path."""
     name, colon, _ = text.partition(":")
     if colon and not exists(Path(text)):
-        file = _bundled(Path(name))
+        file = _ready_made_file(Path(name))
         if file is not None:
             return LibraryUse(file, text)
     return path(text)
@@ -121,7 +121,7 @@ def find_constraint(constraint: Constraint) -> Constraint:
         return constraint
     if exists(constraint) and constraint.is_file():
         return constraint
-    bundled = _bundled(constraint)
+    bundled = _ready_made_file(constraint)
     if bundled is not None:
         return bundled
     name = str(constraint).partition(":")[0]
@@ -130,22 +130,22 @@ def find_constraint(constraint: Constraint) -> Constraint:
             f"{constraint}: constants can follow the name of a ready-made constraint only; set those of a "
             "file with -c CONSTANT=VALUE"
         )
-    names = ", ".join(sorted(file.stem for file in _library().glob(f"*{_SUFFIX}")))
+    names = ", ".join(sorted(file.stem for file in _constraints_folder().glob(f"*{_SUFFIX}")))
     rule = "; a rule is given with --rule" if ":-" in str(constraint) else ""
     raise UserError(
         f"{constraint}: no such file; expected an encoding (.lp) or a ready-made one: {names}{rule}"
     )
 
 
-def _library() -> Path:
+def _constraints_folder() -> Path:
     return encodings_folder() / "constraints"
 
 
-def _bundled(path: Path) -> Path | None:
+def _ready_made_file(path: Path) -> Path | None:
     """Return the file of the ready-made constraint with this name (``.lp`` may be missing), else ``None``."""
     if path.name != str(path):
         return None
-    file = _library() / (path.name.removesuffix(_SUFFIX) + _SUFFIX)
+    file = _constraints_folder() / (path.name.removesuffix(_SUFFIX) + _SUFFIX)
     return file if exists(file) else None
 
 

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from foon_asp.deadline import Deadline
 from foon_asp.encoding.exact import LARGEST
-from foon_asp.encoding.fact_writer import hundredths
+from foon_asp.encoding.fact_writer import prices_in_hundredths
 from foon_asp.encoding.own_encodings import is_own
 from foon_asp.errors import UserError
 from foon_asp.problem import Contradiction, LinearRow, Problem, Restriction
@@ -62,7 +62,7 @@ class ReadyMade:
         """The predicates that the constraints read, in addition to those of the built-in encodings."""
         return READ | {_PRICE} if "max_price" in self.constants else READ
 
-    def fit(self, problem: Problem) -> bool:
+    def has_same_meaning(self, problem: Problem) -> bool:
         """Whether the constraints have the same meaning for a problem here as in clingo.
 
         ``False`` if some are ``unsettled`` and the rules see less than the kitchen (``kitchen_seen``), and
@@ -72,7 +72,7 @@ class ReadyMade:
             return False
         try:
             if "max_price" in self.constants:
-                hundredths(problem, range(len(problem.network)), [_PRICE])
+                prices_in_hundredths(problem, range(len(problem.network)), [_PRICE])
         except UserError:
             return False
         return True
@@ -81,7 +81,7 @@ class ReadyMade:
         """Return ``False``: the search is never left to enforce the constraints."""
         return False
 
-    def applied(self, problem: Problem, deadline: Deadline) -> Restriction | Contradiction:
+    def restriction_of(self, problem: Problem, deadline: Deadline) -> Restriction | Contradiction:
         """Return the units removed from a problem and the sets required, or a contradiction."""
         meanings, _ = self._meanings(problem)
         # what is needed by a unit of the last set is made by one of the others, as the tree executes
@@ -95,7 +95,7 @@ class ReadyMade:
         removed: frozenset[int] = frozenset().union(*(meaning.removed for meaning in meanings))
         return Restriction(removed.__contains__, required)
 
-    def counted(self, problem: Problem, deadline: Deadline) -> Iterator[LinearRow]:
+    def upper_limits(self, problem: Problem, deadline: Deadline) -> Iterator[LinearRow]:
         """Return the limits on sums over units."""
         for rule_meaning in self._meanings(problem)[0]:
             if rule_meaning.max_sum is not None and all(len(units) == 1 for units, _ in rule_meaning.things):
@@ -133,12 +133,12 @@ def ready_made(constraints: Sequence[Constraint], settings: Sequence[str]) -> Re
                 return None
             files.append(file)
             uses.append((file.stem, constraint.constants if isinstance(constraint, LibraryUse) else shared))
-        rules = _values(uses, shared)
+        rules = _rules_with_values(uses, shared)
         return None if rules is None or len(set(files)) < len(files) else ReadyMade(*rules, files)
     return None
 
 
-def _values(
+def _rules_with_values(
     uses: Sequence[tuple[str, Mapping[str, str]]], shared: Mapping[str, str]
 ) -> tuple[Sequence[Rule], Mapping[str, str]] | None:
     """Return constraints with their values, and all constants as terms; ``None`` if a value is not plain."""

@@ -42,11 +42,11 @@ class TraitReader:
         alternatives = []
         for conjunct in conjuncts:
             if isinstance(conjunct, Literal):
-                terms = tuple(self._term(argument, names) for argument in conjunct.arguments)
-                alternatives.append(self._unfolded(conjunct, terms, above))
+                terms = tuple(self._replace_term(argument, names) for argument in conjunct.arguments)
+                alternatives.append(self._unfold_literal(conjunct, terms, above))
         return [[atom for atoms in chosen for atom in atoms] for chosen in product(*alternatives)]
 
-    def _unfolded(
+    def _unfold_literal(
         self, literal: Literal, terms: tuple[_Term, ...], above: tuple[Signature, ...]
     ) -> list[list[_Atom]]:
         """Return the disjuncts of a literal, with auxiliary predicates replaced by the bodies of rules."""
@@ -64,7 +64,7 @@ class TraitReader:
             disjuncts += self._disjuncts(clause.body, names, (*above, signature))
         return disjuncts
 
-    def _term(self, term: AST, names: dict[str, _Term]) -> _Term:
+    def _replace_term(self, term: AST, names: dict[str, _Term]) -> _Term:
         symbol = value(term, self._constants)
         if symbol is not None:
             return symbol

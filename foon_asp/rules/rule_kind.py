@@ -29,8 +29,8 @@ from foon_asp.rules.clause import (
     source_of,
     value,
 )
-from foon_asp.rules.dependence import Dependence, Depends, Doubt
-from foon_asp.rules.fact_values import COLUMNS, misplaced
+from foon_asp.rules.dependence import Dependence, Doubt, Monotonicity
+from foon_asp.rules.fact_values import COLUMNS, position_of_wrong_type
 from foon_asp.rules.locality import Locality
 from foon_asp.rules.understood import AtLeastOne, Removes, Row, Translator
 
@@ -131,7 +131,9 @@ class Analysis:
             [clause for clause in rule_clauses if self._why_never(clause.body) is None]
             for rule_clauses in clauses_by_rule
         ]
-        self.live = [clause for rule_clauses in (*self.of_rule, _implied()) for clause in rule_clauses]
+        self.live = [
+            clause for rule_clauses in (*self.of_rule, _implied_clauses()) for clause in rule_clauses
+        ]
         self.dependence = Dependence(self.live, self.constants, varied)
         self._locality = Locality(self.live, self.dependence)
         self.translator = Translator(self.live, self.constants, self.dependence)
@@ -139,7 +141,7 @@ class Analysis:
         self.at_least_ones: dict[int, tuple[AtLeastOne, ...]] = {}
         self.rows: dict[int, Row] = {}
         self.rules = tuple(
-            self._understood(number, self._rule(statement, live))
+            self._translate_rule(number, self._classify_statement(statement, live))
             for number, (statement, live) in enumerate(zip(self.statements, self.of_rule, strict=True))
         )
 
@@ -159,13 +161,13 @@ class Analysis:
         if clause.head is not None:
             return Kind.HELPER, None
         kinds = {
-            Depends.NOT: Kind.FACT,
-            Depends.GROWS: Kind.SHRINKING,
-            Depends.SHRINKS: Kind.REQUIRING,
-            Depends.BOTH: Kind.OTHER,
+            Monotonicity.NOT: Kind.FACT,
+            Monotonicity.GROWS: Kind.SHRINKING,
+            Monotonicity.SHRINKS: Kind.REQUIRING,
+            Monotonicity.BOTH: Kind.OTHER,
         }
         kind = kinds[dependence.of_body(clause.body)]
-        return kind, self._why_both(clause) if kind is Kind.OTHER else None
+        return kind, self._why_not_monotone(clause) if kind is Kind.OTHER else None
 
     def reads(self, signature: Signature) -> bool:
         """Whether some rule reads a predicate."""
@@ -188,7 +190,7 @@ class Analysis:
                     for position, symbol in symbols.items()
                     if symbol is not None
                 }
-                misfit = misplaced(COLUMNS[conjunct.signature], values)
+                misfit = position_of_wrong_type(COLUMNS[conjunct.signature], values)
                 if misfit is not None:
                     texts = misfit in COLUMNS[conjunct.signature].texts
                     kind = (
@@ -199,14 +201,14 @@ class Analysis:
                     return f"{conjunct.text} never holds, since {kind}"
         return None
 
-    def _why_both(self, clause: Clause) -> Doubt:
+    def _why_not_monotone(self, clause: Clause) -> Doubt:
         """Return why a rule is neither monotone nor antimonotone."""
         for conjunct in clause.body:
-            if self.dependence.of_conjunct(conjunct) is Depends.BOTH:
+            if self.dependence.of_conjunct(conjunct) is Monotonicity.BOTH:
                 return Doubt(f"more units may make `{conjunct.text}` true or false", clause.source)
         return Doubt("more units may break it, and others may mend it", clause.source)
 
-    def _rule(self, statement: AST, live: Sequence[Clause]) -> Rule:
+    def _classify_statement(self, statement: AST, live: Sequence[Clause]) -> Rule:
         """Return a statement as a rule with its kind and locality."""
         source = source_of(statement)
         if statement.ast_type != ASTType.Rule:
@@ -215,7 +217,7 @@ class Analysis:
         if not live:
             idle = list(clauses(statement, 0, self.constants))
             off = next((why for clause in idle if (why := self._why_never(clause.body))), _NEVER)
-            kind = Kind.FACT if any(clause.constraint for clause in idle) else Kind.HELPER
+            kind = Kind.FACT if any(clause.is_constraint for clause in idle) else Kind.HELPER
             return Rule(source, kind, f"{off}, so it has no effect", source)
         kinds = [self.kind(clause) for clause in live]
         kind = _conjunction_kind(kind for kind, _ in kinds)
@@ -234,7 +236,7 @@ class Analysis:
             nonlocality.source if nonlocality else None,
         )
 
-    def _understood(self, number: int, rule: Rule) -> Rule:
+    def _translate_rule(self, number: int, rule: Rule) -> Rule:
         """Record the translations of a rule; return the rule with the kind that follows from them."""
         live = self.of_rule[number]
         if not rule.local or rule.kind in {Kind.HELPER, Kind.OTHER}:
@@ -248,7 +250,7 @@ class Analysis:
                 return rule
             self.at_least_ones[number] = at_least_ones
             return rule._replace(one_of=True)
-        removes = self.translator.removes(live)
+        removes = self.translator.removal(live)
         if removes is None:
             return rule
         self.removals[number] = removes
@@ -264,7 +266,7 @@ def _conjunction_kind(kinds: Iterable[Kind]) -> Kind:
 
 
 @cache
-def _implied() -> list[Clause]:
+def _implied_clauses() -> list[Clause]:
     """Return the rules of the built-in encoding that user rules can read."""
     statements: list[AST] = []
     parse_string(_IMPLIED, statements.append)

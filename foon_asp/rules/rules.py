@@ -13,12 +13,12 @@ from foon_asp.encoding.encoding import Encoding, read_encoding
 from foon_asp.encoding.stated import Stated
 from foon_asp.network import Source
 from foon_asp.problem import Contradiction, LinearRow, Problem, Restriction, Wanted, reach
-from foon_asp.rules.clause import Signature, literals, written
+from foon_asp.rules.clause import Signature, literals, statement_text
 from foon_asp.rules.dependence import TIMES
 from foon_asp.rules.rule_kind import Analysis, Kind, Rule
 from foon_asp.rules.tuning import TUNING
 from foon_asp.rules.understood import AtLeastOne, Understood
-from foon_asp.rules.unit_answers import UnitAnswers, ask_units, candidates
+from foon_asp.rules.unit_answers import UnitAnswers, ask_units, candidate_units
 
 _SHRINKING = {Kind.HELPER, Kind.FACT, Kind.DELETING, Kind.SHRINKING}
 
@@ -82,7 +82,7 @@ class Rules:
         return Rules(self._encodings, self._constants, varied, self._endless)
 
     @cached_property
-    def shown(self) -> tuple["ShownRule", ...]:
+    def shown_rules(self) -> tuple["ShownRule", ...]:
         """The rules as they are shown to users; those of a ready-made constraint as in its file."""
         texts: dict[int, str] = {}
         uses: dict[str, Stated] = {}
@@ -93,7 +93,7 @@ class Rules:
                 uses[rules.place] = rules
                 file, originals = rules.file, read_encoding(rules.file).statements
             pairs = zip(_rule_statements(encoding.statements), _rule_statements(originals), strict=True)
-            texts.update((id(statement), written(original, file)) for statement, original in pairs)
+            texts.update((id(statement), statement_text(original, file)) for statement, original in pairs)
 
         def source_in_file(source: Source | None) -> Source | None:
             use = None if source is None else uses.get(source.file)
@@ -140,7 +140,7 @@ class Rules:
 
     @cached_property
     def unsettled(self) -> tuple[Rule, ...]:
-        """The rules that clingo has to enforce: the restriction by :meth:`applied` does not cover them."""
+        """The rules that clingo has to enforce: the restriction by :meth:`restriction_of` does not cover them."""
         settled = self._analysis.removals.keys() | self._analysis.at_least_ones.keys()
         return tuple(
             rule
@@ -177,7 +177,7 @@ class Rules:
     def limits(self, problem: Problem, deadline: Deadline) -> list[LinearRow]:
         """Return the linear limits on executions that rules state, over the units that can execute.
 
-        Raises :class:`UserError` as :meth:`applied` does.
+        Raises :class:`UserError` as :meth:`restriction_of` does.
         """
         answers = self._answers(problem, deadline) if self._analysis.rows else None
         limits: list[LinearRow] = []
@@ -190,12 +190,12 @@ class Rules:
                 limits.append(LinearRow(weights, row.bound, row.at_least, row.used))
         return limits
 
-    def counted(self, problem: Problem, deadline: Deadline) -> Iterator[LinearRow]:
+    def upper_limits(self, problem: Problem, deadline: Deadline) -> Iterator[LinearRow]:
         """Return the upper limits on sums over units, where the network is not large."""
         if not self.leave_to_search(problem):
             yield from (row for row in self.limits(problem, deadline) if not row.at_least)
 
-    def applied(
+    def restriction_of(
         self, problem: Problem, deadline: Deadline, units: Collection[int] | None = None
     ) -> Restriction | Contradiction | None:
         """Return the restriction of a problem by the rules that remove units or require one of a set.
@@ -226,9 +226,9 @@ class Rules:
                 numbers = analysis.removals.keys() | analysis.at_least_ones.keys() | analysis.rows.keys()
                 clauses = [clause for number in numbers for clause in analysis.of_rule[number]]
                 programs = [line for one in stated for line in one.program]
-                rules, read = analysis.translator.support(programs, clauses)
+                rules, read = analysis.translator.complete_program(programs, clauses)
                 plain = problem if problem.restriction is None else replace(problem, restriction=None)
-                among = self._readable(plain) if units is None else units
+                among = self._evaluated_units(plain) if units is None else units
                 answers = ask_units(
                     plain,
                     among,
@@ -239,7 +239,7 @@ class Rules:
             self._last = problem, units, answers
         return self._last[2]
 
-    def _readable(self, problem: Problem) -> Collection[int]:
+    def _evaluated_units(self, problem: Problem) -> Collection[int]:
         """Return the units to evaluate rules on: all that can execute.
 
         In a large network, they are only the units that at-least-one constraints name, if no other rules are
@@ -247,7 +247,7 @@ class Rules:
         """
         network = problem.network
         if len(network) > TUNING.evaluated_units and not (self._analysis.removals or self._analysis.rows):
-            named = candidates(network, (one.wanted for one in self._at_least_ones))
+            named = candidate_units(network, (one.wanted for one in self._at_least_ones))
             if named is not None:
                 return named
         return reach(problem).units

@@ -13,7 +13,7 @@ from foon_asp.errors import UserError
 from foon_asp.rules.passed_constraint import Constraint, LibraryUse, RuleText
 
 
-def loaded(constraints: Sequence[Constraint]) -> dict[Constraint, Loaded]:
+def load_constraints(constraints: Sequence[Constraint]) -> dict[Constraint, Loaded]:
     """Return the file or text that clingo loads for each constraint.
 
     Rules given as text are called ``rule 1``, ``rule 2`` and so on; ready-made constraints with constants of
@@ -30,13 +30,13 @@ def loaded(constraints: Sequence[Constraint]) -> dict[Constraint, Loaded]:
             loaded_by_constraint[constraint] = Stated(f"rule {rules}", constraint.text)
         elif isinstance(constraint, LibraryUse):
             uses += 1
-            loaded_by_constraint[constraint] = _renamed(constraint, uses)
+            loaded_by_constraint[constraint] = _renamed_constraint(constraint, uses)
         else:
             loaded_by_constraint[constraint] = constraint
     return loaded_by_constraint
 
 
-def _renamed(use: LibraryUse, number: int) -> Stated:
+def _renamed_constraint(use: LibraryUse, number: int) -> Stated:
     """Return the text of a ready-made constraint with constants set, and constants and predicates renamed.
 
     Each statement is on the same line as its beginning in the file.
@@ -48,7 +48,7 @@ def _renamed(use: LibraryUse, number: int) -> Stated:
             names_known = ", ".join(encoding.constants) or "none"
             raise UserError(f"{use}: {use.file.stem} has no constant {name!r}; it has {names_known}")
     own = {*encoding.defined, *encoding.declared} - PUBLIC - EXTENDED
-    renaming = _Renaming(own, encoding.constants, number)
+    renaming = _Renamer(own, encoding.constants, number)
     statements: list[AST] = []
     parse(use.file, statements.append, lambda *_: None)
     lines: dict[int, list[str]] = {}
@@ -57,7 +57,7 @@ def _renamed(use: LibraryUse, number: int) -> Stated:
             continue
         if statement.ast_type == ASTType.Definition and statement.name in values:
             default, value = str(statement.value), values[statement.name]
-            changed = statement.update(value=_term(constant_value(statement.name, default, value)))
+            changed = statement.update(value=_parse_term(constant_value(statement.name, default, value)))
         else:
             changed = statement
         lines.setdefault(statement.location.begin.line, []).append(str(renaming.visit(changed)))
@@ -66,13 +66,13 @@ def _renamed(use: LibraryUse, number: int) -> Stated:
     return Stated(f"use {number}", f"{text}\n", use.file, use.written, tuple(names.items()))
 
 
-def _term(text: str) -> AST:
+def _parse_term(text: str) -> AST:
     statements: list[AST] = []
     parse_string(f"#const _value = {text}.", statements.append)
     return cast("AST", statements[-1].value)
 
 
-class _Renaming(Transformer):
+class _Renamer(Transformer):
     """Rewriter that renames predicates and constants."""
 
     def __init__(self, predicates: Collection[Signature], constants: Collection[str], number: int) -> None:
@@ -83,14 +83,14 @@ class _Renaming(Transformer):
         return f"_{name.lstrip('_')}_{self._number}"
 
     def visit_SymbolicAtom(self, atom: AST) -> AST:  # noqa: N802 (the name clingo looks for)
-        return atom.update(symbol=self._symbol(atom.symbol))
+        return atom.update(symbol=self._rename_symbol(atom.symbol))
 
-    def _symbol(self, symbol: AST) -> AST:
+    def _rename_symbol(self, symbol: AST) -> AST:
         """Return the symbol of an atom, with the new name of its predicate if it has one."""
         if symbol.ast_type == ASTType.UnaryOperation:  # classical negation
-            return symbol.update(argument=self._symbol(symbol.argument))
+            return symbol.update(argument=self._rename_symbol(symbol.argument))
         if symbol.ast_type == ASTType.Pool:
-            return symbol.update(arguments=[self._symbol(argument) for argument in symbol.arguments])
+            return symbol.update(arguments=[self._rename_symbol(argument) for argument in symbol.arguments])
         own = (symbol.name, len(symbol.arguments)) in self._predicates
         name = self.name(symbol.name) if own else symbol.name
         return symbol.update(name=name, arguments=self.visit_sequence(symbol.arguments))
@@ -105,11 +105,11 @@ class _Renaming(Transformer):
         return definition.update(name=self.name(definition.name), value=self.visit(definition.value))
 
     def visit_Defined(self, defined: AST) -> AST:  # noqa: N802
-        return self._signature(defined)
+        return self._rename_signature(defined)
 
     def visit_ShowSignature(self, shown: AST) -> AST:  # noqa: N802
-        return self._signature(shown)
+        return self._rename_signature(shown)
 
-    def _signature(self, statement: AST) -> AST:
+    def _rename_signature(self, statement: AST) -> AST:
         own = (statement.name, statement.arity) in self._predicates
         return statement.update(name=self.name(statement.name)) if own else statement

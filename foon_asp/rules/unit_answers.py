@@ -48,10 +48,10 @@ def ask_units(
             rows = worker_process.derive(text, *ANSWER, deadline)
     except ProgramError:
         return None
-    return _read(problem, rows)
+    return _read_answers(problem, rows)
 
 
-def candidates(network: Network, wanted: Iterable[Wanted]) -> set[int] | None:
+def candidate_units(network: Network, wanted: Iterable[Wanted]) -> set[int] | None:
     """Return all units with a name that the traits ask for, a superset of the units that rules require.
 
     ``None`` if a rule requires units without saying a name.
@@ -70,7 +70,7 @@ def candidates(network: Network, wanted: Iterable[Wanted]) -> set[int] | None:
     return units
 
 
-def _read(problem: Problem, rows: Iterable[tuple[Value, ...]]) -> UnitAnswers:
+def _read_answers(problem: Problem, rows: Iterable[tuple[Value, ...]]) -> UnitAnswers:
     """Return the removed units, required sets and weights in the atoms that clingo derived."""
     removed: set[int] = set()
     required: dict[tuple[Value, Value], set[int] | None] = {}  # None where a set is not needed

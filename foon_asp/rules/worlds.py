@@ -18,12 +18,12 @@ class Worlds(Transformer):
 
     def visit_SymbolicAtom(self, atom: AST) -> AST:  # noqa: N802 (the name clingo looks for)
         """Return an atom with a world."""
-        return atom.update(symbol=self._changed(atom.symbol))
+        return atom.update(symbol=self._add_world(atom.symbol))
 
-    def _changed(self, symbol: AST) -> AST:
+    def _add_world(self, symbol: AST) -> AST:
         """Return a symbol with a world, if its predicate differs from world to world."""
         if symbol.ast_type is ASTType.Pool:
-            return symbol.update(arguments=[self._changed(one) for one in symbol.arguments])
+            return symbol.update(arguments=[self._add_world(one) for one in symbol.arguments])
         if symbol.ast_type is ASTType.UnaryOperation:
             return symbol
         if (symbol.name, len(symbol.arguments)) not in self._dependent:
