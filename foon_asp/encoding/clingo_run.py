@@ -75,7 +75,10 @@ def ground(
     products: int = 0,
     endless: bool = False,
 ) -> Grounded:
-    """Return the ground program of files and facts; raises like :func:`run`, and ``KeyboardInterrupt``."""
+    """Return the ground program of files and facts; the parameters are those of :func:`run`.
+
+    Raises the errors of :func:`run`, ``LimitError`` at a limit, and ``KeyboardInterrupt`` at ctrl-C.
+    """
     try:
         return Grounded(files, facts, arguments, products, deadline, endless)
     except ProgramError as error:
@@ -83,7 +86,7 @@ def ground(
 
 
 def as_user_error(error: ProgramError, files: Sequence[Loaded] = ()) -> UserError:
-    """Return clingo's messages as one error with places and source lines."""
+    """Return the error for the user with clingo's messages, their places and source lines."""
     from foon_asp.encoding.encoding import program_fault  # noqa: PLC0415 (slow to import, needed for faults only)
 
     return program_fault(error.messages, error.otherwise, files)

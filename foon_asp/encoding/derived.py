@@ -22,7 +22,8 @@ Value = int | str | Term
 def derive(text: str, name: str, arity: int) -> list[tuple[Value, ...]]:
     """Ground a stratified program and return the arguments of each atom of a predicate.
 
-    Raises :class:`ProgramError` for statements or instances that clingo refuses or drops.
+    The predicate is given by ``name`` and ``arity``. Raises :class:`ProgramError` for statements or instances
+    that clingo refuses or drops.
     """
     messages: list[str] = []
     with refuse_messages(messages):
@@ -35,6 +36,7 @@ def derive(text: str, name: str, arity: int) -> list[tuple[Value, ...]]:
 
 
 def _value(symbol: Symbol) -> Value:
+    """Return an argument of an atom as number, string or :class:`Term`."""
     if symbol.type is SymbolType.Number:
         return symbol.number
     return symbol.string if symbol.type is SymbolType.String else Term(str(symbol))

@@ -1,4 +1,4 @@
-"""Encodings, built-in or of the user: their parser, and checks before solving."""
+"""Parser of encodings, built-in or of the user, and checks before solving."""
 
 import difflib
 import re
@@ -99,7 +99,10 @@ class Encoding:
     statements: list[AST] = field(default_factory=list)
 
     def first_argument_names(self, signatures: Collection[Signature]) -> Iterator[tuple[str, str]]:
-        """Return atoms over signatures: the predicate, and the first argument, empty where it is no name."""
+        """Yield the predicate and the first argument of each atom over some signatures.
+
+        The argument is empty if it is not a name, such as a variable or a number.
+        """
         symbols = (
             node.symbol for statement in self.statements for node in nodes(statement) if _is_atom(node)
         )
@@ -123,18 +126,21 @@ class Encoding:
         return {(atom.name, len(atom.arguments)) for atom in atoms if constant in map(str, atom.arguments)}
 
     def remark(self, severity: Severity, code: str, message: str, source: Source) -> Diagnostic:
-        """Return a diagnostic about a place in these rules, with its line."""
+        """Return a diagnostic about a place in these rules, with its source line."""
         return located_diagnostic(severity, code, message, source, [self.rules])
 
 
 def _is_atom(node: AST) -> bool:
+    """Whether a node is an atom without a minus before it, and without a pool."""
     return node.ast_type == ASTType.SymbolicAtom and node.symbol.ast_type == ASTType.Function
 
 
 def read_encoding(rules: Loaded) -> Encoding:
-    """Parse an encoding and the files that it includes; raises :class:`InputError` for a syntax error.
+    """Parse an encoding and the files that it includes.
 
-    Also raises as :func:`foon_asp.encoding.encoding_file.included_files` and ``check_text`` in that module.
+    Raises :class:`InputError` for a syntax error, and for a text or file that
+    :mod:`foon_asp.encoding.encoding_file` refuses. Raises :class:`UserError` for a missing file and for a
+    text without rules.
     """
     encoding = Encoding(rules)
     collector = _Collector(encoding)
@@ -142,6 +148,7 @@ def read_encoding(rules: Loaded) -> Encoding:
     kinds: set[ASTType] = set()
 
     def statement(statement: AST) -> None:
+        """Collect a statement; record its file and kind."""
         included.add(statement.location.begin.filename)
         kinds.add(statement.ast_type)
         collector.statement(statement)
@@ -169,7 +176,7 @@ def read_encoding(rules: Loaded) -> Encoding:
 
 
 class _Collector(Transformer):
-    """Visitor that collects signatures in heads and bodies, and names in terms, of statements."""
+    """Visitor that records in ``encoding`` what statements define and use: atoms, names and constants."""
 
     def __init__(self, encoding: Encoding) -> None:
         self.encoding = encoding
@@ -223,7 +230,10 @@ class _Collector(Transformer):
         return atom
 
     def _record_atom(self, symbol: AST, sign: str) -> None:
-        """Record the signature of an atom as defined or used, with its first place."""
+        """Record the signature of an atom as defined or used, with its first place.
+
+        ``sign`` is ``-`` for an atom after a minus, else empty.
+        """
         if symbol.ast_type == ASTType.UnaryOperation:  # classical negation: -p(X)
             self._record_atom(symbol.argument, "" if sign else "-")
         elif symbol.ast_type == ASTType.Pool:  # p(1;2)
@@ -259,17 +269,20 @@ class _Collector(Transformer):
         return aggregate.update(**self.visit_children(aggregate))
 
     def _record_assignment(self, aggregate: AST) -> None:
+        """Record whether an aggregate may give a variable its value, as in ``N = #count {...}``."""
         guard = aggregate.left_guard
         if guard is not None and guard.comparison == ComparisonOperator.Equal:
             self.encoding.assigns |= guard.term.ast_type != ASTType.SymbolicTerm
 
     def _visit_head(self, head: AST) -> None:
+        """Visit a head; atoms in it are recorded as defined."""
         self._in_head = True
         self.visit(head)
         self._in_head = False
 
 
 def _source(location: Location) -> Source:
+    """Return the place where a location of clingo begins."""
     return Source(location.begin.filename, location.begin.line, location.begin.column)
 
 
@@ -278,11 +291,14 @@ def check_encodings(
 ) -> list[Diagnostic]:
     """Check the user's files: the constraints ``added``, and files in ``base`` that are not built-in.
 
-    ``others`` are further built-in files that are loaded. Returns warnings about undefined atoms, each with
-    the most similar defined predicate. It also returns warnings about terms that are compared with numbers
-    and can never be numbers. Raises :class:`InputError` for statements that would change the set of trees or
-    their order, or that clingo would ignore silently. These are rules for built-in predicates, reserved
-    names, and statements other than rules.
+    ``others`` are further built-in files that are loaded.
+
+    Returns warnings about two mistakes. An atom has a predicate that nothing defines; the most similar one is
+    suggested. Or a term is compared with numbers and can never be a number.
+
+    Raises :class:`InputError` for statements that would change the set of trees or their order, or that
+    clingo would ignore silently. These are rules for built-in predicates, reserved names, and statements
+    other than rules.
     """
     errors: list[Diagnostic] = []
     defined = set(PUBLIC)
@@ -320,9 +336,10 @@ def check_encodings(
 
 
 def non_numeric_terms(statements: Iterable[AST], constants: Collection[str]) -> Iterator[tuple[AST, str]]:
-    """Yield the terms that compare above every number because they are no numbers, each with a message.
+    """Yield the terms that are compared with numbers and are none, each with a message.
 
-    They are names that no ``#const`` sets, and texts as guards of a count or sum.
+    Such a term is above every number. It is a name that no ``#const`` sets, or a text as guard of a count or
+    sum.
     """
     for node in (node for statement in statements for node in nodes(statement)):
         terms: list[AST] = []
@@ -347,6 +364,7 @@ def non_numeric_terms(statements: Iterable[AST], constants: Collection[str]) -> 
 
 @cache
 def _is_built_in(rules: Loaded) -> bool:
+    """Whether rules are a file of the built-in encodings, or a ready-made constraint."""
     path = rules.file if isinstance(rules, Stated) else rules
     return path is not None and path.resolve().is_relative_to(encodings_folder().resolve())
 
@@ -361,7 +379,10 @@ def _statement_errors(encoding: Encoding, refused: Sequence[ASTType]) -> list[Di
 
 
 def _definition_errors(encoding: Encoding, owned: frozenset[Signature]) -> list[Diagnostic]:
-    """Return errors for rules for predicates that a constraint may not define."""
+    """Return an error for each predicate that rules define although a constraint may not.
+
+    ``owned`` are the predicates of facts and of the built-in encodings. Reserved names are refused, too.
+    """
     return [
         encoding.remark(
             Severity.ERROR,
@@ -396,7 +417,10 @@ def _reserved_name_errors(encoding: Encoding) -> list[Diagnostic]:
 
 
 def _replaced_definition_errors(encoding: Encoding) -> list[Diagnostic]:
-    """Return errors for rules for reserved predicates that the replaced original does not define."""
+    """Return an error for each reserved predicate in a head of a file that replaces a built-in one.
+
+    Those that the built-in file of the same name defines are allowed.
+    """
     name = encoding.rules.name if isinstance(encoding.rules, Path) else ""
     ours = [
         file for file in (encodings_folder() / name, encodings_folder() / "by_need" / name) if file.is_file()
@@ -416,7 +440,10 @@ def _replaced_definition_errors(encoding: Encoding) -> list[Diagnostic]:
 
 
 def _constant_errors(encoding: Encoding, names: set[str]) -> list[Diagnostic]:
-    """Return errors for constants that would replace a name in the facts or in another file."""
+    """Return errors for constants that would replace a name in the facts or in another file.
+
+    ``names`` are the names in other files.
+    """
     return [
         encoding.remark(
             Severity.ERROR,
@@ -431,6 +458,7 @@ def _constant_errors(encoding: Encoding, names: set[str]) -> list[Diagnostic]:
 
 
 def _is_reserved(name: str) -> bool:
+    """Whether a name begins with ``_``, perhaps after a minus."""
     return name.lstrip("-").startswith(_PREFIX)
 
 
@@ -449,11 +477,12 @@ def undefined_message(signature: Signature, defined: set[Signature]) -> str:
 
 
 def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) -> list[str]:
-    """Return ``NAME=VALUE`` settings as arguments of clingo, of the type of the default in their ``#const``.
+    """Return settings ``NAME=VALUE`` as arguments of clingo: ``-c`` and ``NAME=VALUE`` by turns.
 
-    Where the default is a string, the setting becomes a string, with or without quotes. Where the default is
-    a number, the setting has to be an integer of 32 bits. Raises :class:`UserError` for an unknown name, and
-    for a constant that only a ready-made constraint with its own values has.
+    Each value gets the type of the default in its ``#const``. Where the default is a string, the value
+    becomes a string, with or without quotes. Where the default is a number, the value has to be an integer of
+    32 bits. Raises :class:`UserError` for an unknown name, and for a constant that only a ready-made
+    constraint with its own values has.
     """
     defaults = {
         name: value
@@ -494,10 +523,11 @@ def constant_value(name: str, default: str, value: str) -> str:
 
 
 def unset_constant_warnings(added: Sequence[Encoding], constants: Sequence[str]) -> list[str]:
-    """Return warnings for constants that are not set and have no effect with their default: "", #sup or #inf.
+    """Return a warning for each constant that is not set and has no effect with its default.
 
-    There is no warning where a rule derives a fact with the constant as argument, and another encoding
-    derives facts of the same predicate, such as ``allergen("milk").``
+    Such defaults are ``""``, ``#sup`` and ``#inf``. There is no warning where a rule derives a fact with the
+    constant as argument, and another encoding derives facts of the same predicate, such as
+    ``allergen("milk").``
     """
     settings_given = {setting.partition("=")[0] for setting in constants}
     warnings = []
@@ -529,10 +559,12 @@ def unset_constant_warnings(added: Sequence[Encoding], constants: Sequence[str])
 
 
 def _is_number(value: str) -> bool:
+    """Whether a default is a whole number, ``#sup`` or ``#inf``."""
     return value in {"#sup", "#inf"} or value.lstrip("-").isdigit()
 
 
 def _is_int32(value: str) -> bool:
+    """Whether a text is a whole number that clingo can represent."""
     return bool(re.fullmatch(r"-?\d{1,10}", value, re.ASCII)) and abs(int(value)) <= LARGEST
 
 
@@ -573,7 +605,10 @@ def program_fault(
 
 
 def _dropped_message(message: str, term: str) -> str:
-    """Return the message that clingo would drop an instance of a rule or element."""
+    """Return the message that clingo would drop an instance of a rule or element.
+
+    ``message`` and ``term`` are what clingo says of it.
+    """
     no_value = f"a term has no value here: {term.removeprefix('(').removesuffix(')')}"
     if message == "tuple ignored" and _NEGATIVE.match(term):
         return (
@@ -594,7 +629,10 @@ def _dropped_message(message: str, term: str) -> str:
 def located_diagnostic(
     severity: Severity, code: str, message: str, source: Source, files: Sequence[Loaded] = ()
 ) -> Diagnostic:
-    """Return a diagnostic with its source line, found in the files and texts or in the source's own file."""
+    """Return a diagnostic with its source line, found in the files and texts or in the source's own file.
+
+    A place in a ready-made constraint with constants of its own is replaced by the place in its file.
+    """
     for rules in files:
         if isinstance(rules, Stated) and rules.place == source.file:
             lines = rules.text.split("\n")

@@ -55,7 +55,7 @@ def included_files(path: Path) -> list[Path]:
 
 
 def source_line(source: Source) -> str:
-    """Return the line of an encoding at a place; files of other kinds are never quoted."""
+    """Return the line of an encoding at a place; empty if there is none, and for files of other kinds."""
     path = Path(source.file)
     if path.suffix != _SUFFIX or not path.is_file():
         return ""
@@ -72,7 +72,11 @@ class _Token(NamedTuple):
 
 
 def check_text(text: str, origin: str) -> None:
-    """Check rules without a file, as :func:`included_files` does; they may include nothing."""
+    """Raise :class:`InputError` for rules without a file that break the rules of :func:`included_files`.
+
+    ``origin`` is their name in messages. They may include nothing. Raises :class:`UserError` for a text that
+    is not UTF-8.
+    """
     errors: list[Diagnostic] = []
     if any("\ud800" <= letter <= "\udfff" for letter in text):
         raise UserError(f"{origin}: expected a rule in UTF-8")
@@ -82,7 +86,10 @@ def check_text(text: str, origin: str) -> None:
 
 
 def _check_file(file: Path, errors: list[Diagnostic]) -> list[Path]:
-    """Append the errors of a file to ``errors``, and return the files that it includes."""
+    """Append the errors of a file to ``errors``, and return the files that it includes.
+
+    Raises :class:`UserError` for a file that is no encoding by its name.
+    """
     if file.suffix != _SUFFIX:
         raise UserError(f"{file}: expected an encoding, a file whose name ends in {_SUFFIX}")
     if any("\ud800" <= letter <= "\udfff" for letter in str(file)):  # clingo takes UTF-8 only
@@ -172,7 +179,7 @@ def _include_refusal(file: Path, target: str) -> str:
 
 
 def _tokens(text: str) -> Iterator[_Token]:
-    """Return the tokens of a program, without blanks and comments."""
+    """Yield the tokens of a program, without blanks and comments."""
     offset = 0
     while match := _TOKEN.match(text, offset):
         kind = str(match.lastgroup)

@@ -22,7 +22,7 @@ class GroundProgram:
     """Ground program of files and text; raises :class:`ProgramError` where clingo refuses it.
 
     A rule instance that clingo drops with only a message is an error, too. ``products`` is the number of
-    products of rates in the text. A search ends at the ``deadline``, if any.
+    products of rates in the text. A search ends at the ``deadline``, if there is one.
     """
 
     deadline: Deadline | None = None
@@ -39,9 +39,8 @@ class GroundProgram:
             checks = [file for file in files if isinstance(file, Stated) and file.place == CHECKS_FILE]
             self._load([file for file in files if file not in checks], logger)
             self._control.add("base", [], text)
-            self._load(
-                checks, logger
-            )  # last, since the check of a sum that clasp refuses has to be grounded before the sum
+            # last, since the check of a sum that clasp refuses has to be grounded before the sum
+            self._load(checks, logger)
             parts = [("_product", [Number(number)]) for number in range(products)]
             self._ground([("base", []), *parts])
 
@@ -56,16 +55,17 @@ class GroundProgram:
                 self._control.load(file)
 
     def _ground(self, parts: Sequence[tuple[str, Sequence[Symbol]]]) -> None:
-        """Ground parts of the program, and record messages about overflows."""
+        """Ground parts of the program; add messages about overflows to the others."""
         try:
             self._control.ground(parts, Exact())
         finally:
             self._messages += overflow_messages(self._control)
 
     def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
-        """Return the arguments of all atoms of each predicate, by name and arity; all arguments are numbers.
+        """Return the arguments of all atoms of each predicate, given by name and arity.
 
-        The rules have to be stratified, so that grounding alone derives all atoms.
+        The result has a list for each predicate; all arguments have to be numbers. The rules have to be
+        stratified, so that grounding alone derives all atoms.
         """
         atoms = self._control.symbolic_atoms
         return [
@@ -106,6 +106,7 @@ class GroundProgram:
         faults: list[Exception] = []  # raised in clingo's thread, to be raised again in this one
 
         def model(model: Model) -> bool:
+            """Report an answer; return whether to continue, which is ``False`` after an error."""
             try:
                 atoms = {name: _first_arguments(model, name, arity) for name, arity in predicates}
                 rows = {name: _rows_of_numbers(model, name, arity) for name, arity in predicates}
@@ -128,11 +129,11 @@ class GroundProgram:
         )
 
     def close(self) -> None:
-        """Release the program."""
+        """Release the program: nothing to do, as it is in this process."""
 
 
 def _statistics_lines(statistics: Any, name: str = "") -> Iterator[str]:
-    """Return clingo's statistics, a tree of numbers, as one line per number with its path."""
+    """Yield clingo's statistics as one line per number, such as ``solving.solvers.choices = 9``."""
     if isinstance(statistics, dict):
         for key, child in statistics.items():
             yield from _statistics_lines(child, f"{name}.{key}" if name else key)
@@ -156,7 +157,10 @@ def _wait(handle: SolveHandle, deadline: Deadline) -> None:
 
 
 def _used(model: Model) -> frozenset[int]:
-    """Return the numbers of the units in use in an answer."""
+    """Return the numbers of the units in use in an answer.
+
+    Raises :class:`UserError` if an argument of ``use/1`` is no number.
+    """
     units = set()
     for symbol in model.symbols(shown=True):
         if symbol.type is SymbolType.Function and symbol.match("use", 1):
@@ -168,7 +172,7 @@ def _used(model: Model) -> frozenset[int]:
 
 
 def _rows_of_numbers(model: Model, name: str, arity: int) -> frozenset[tuple[int, ...]]:
-    """Return the arguments of all atoms of a predicate in an answer, if these are numbers."""
+    """Return the arguments of the atoms of a predicate in an answer, of those with numbers alone."""
     atoms = (symbol.arguments for symbol in model.symbols(atoms=True) if symbol.match(name, arity))
     return frozenset(
         tuple(argument.number for argument in arguments)
@@ -178,5 +182,6 @@ def _rows_of_numbers(model: Model, name: str, arity: int) -> frozenset[tuple[int
 
 
 def _first_arguments(model: Model, name: str, arity: int) -> Counter[int]:
+    """Return how many atoms of a predicate an answer has for each first argument, which is a number."""
     atoms = (symbol for symbol in model.symbols(atoms=True) if symbol.match(name, arity))
     return Counter(symbol.arguments[0].number for symbol in atoms)

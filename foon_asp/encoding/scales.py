@@ -14,8 +14,8 @@ from foon_asp.problem.number import INT32_MAX
 class CostScale(NamedTuple):
     """Integer weights for the costs of units by an objective whose costs are fractions and add up.
 
-    ``weights[c]`` is ``floor(scale * c)``; ``exact`` says that no cost is rounded. ``places[c]`` is the
-    index of a cost in the vectors of :meth:`Scales.vector`. ``total`` is the weight of all units.
+    ``weights[c]`` is ``floor(scale * c)``. ``exact``: no cost is rounded. ``places[c]`` is the index of a
+    cost in the vectors of :meth:`Scales.vector`. ``total`` is the weight of all units.
     """
 
     scale: Fraction
@@ -100,7 +100,7 @@ class Scales:
         self.rounded: Objective | None = rounded[0] if rounded else None
 
     def weight(self, objective: Objective, units: Iterable[int]) -> int:
-        """Return the total weight of units in clingo."""
+        """Return the total weight of units in clingo, by an objective."""
         if multiplies(objective):
             assert self.rates is not None
             return sum(self.rates.weights[self._problem.rate(unit)] for unit in units)
@@ -160,7 +160,7 @@ class Scales:
         return vector
 
     def unit_vector(self, unit: int) -> Mapping[int, int]:
-        """Return the vector of one unit, without zeros."""
+        """Return the :meth:`vector` of one unit, without zeros."""
         assert self.rounded is not None
         if multiplies(self.rounded):
             assert self.rates is not None
@@ -168,11 +168,14 @@ class Scales:
         return {self.costs[self.rounded].places[Fraction(self._problem.figure(self.rounded, unit))]: 1}
 
     def unit_vectors(self) -> dict[int, Mapping[int, int]]:
-        """Return the vectors of all units."""
+        """Return the :meth:`vector` of each unit of the question, by unit id, without zeros."""
         return {unit: self.unit_vector(unit) for unit in self._units}
 
     def bound(self, objective: Objective, weight: int) -> int | Fraction:
-        """Return the bound on an objective (for success, an upper one) from a lower bound on weights."""
+        """Return the bound on the cost by an objective that follows from a lower bound on weights.
+
+        For success, it is an upper bound.
+        """
         if multiplies(objective):
             return Fraction(1) if self.rates is None else self.rates.success_bound(weight)
         return weight / self.costs[objective].scale if objective in self.costs else weight

@@ -36,7 +36,10 @@ class WorkerProgram:
         products: int,
         deadline: Deadline,
     ) -> None:
-        """Take a worker process, and wait until it has grounded the files and the text."""
+        """Take a worker process, and wait until it has grounded the files and the text.
+
+        ``products`` is the number of products of rates in the text.
+        """
         self._worker = take(_KEY, _start)
         self._give_back = weakref.finalize(self, _forget, self._worker)
         command = "ground", _folder(), list(files), text, list(arguments), products, _memory_left(deadline)
@@ -57,7 +60,10 @@ class WorkerProgram:
         on_tree: Callable[[FoundAnswer], None],
         on_bound: Callable[[list[int]], None],
     ) -> Ended:
-        """Search for the best answer, and return how the search ended; trees are reported in this process."""
+        """Search for the best answer, and return how the search ended; trees are reported in this process.
+
+        The parameters are those of :meth:`foon_asp.encoding.ground_program.GroundProgram.search`.
+        """
         handlers: _Handlers = {"tree": on_tree, "bound": on_bound}
         return Ended(
             *_ask(self._worker, self.deadline, "search", opt_mode, list(predicates), handlers=handlers)
@@ -94,7 +100,7 @@ def _folder() -> str | None:
 
 
 def start_in_advance() -> None:
-    """Start a process in advance, if none waits."""
+    """Start a worker process for a later program, unless one is waiting."""
     give_back(_KEY, take(_KEY, _start))
 
 
@@ -111,9 +117,10 @@ def _forget(worker: Worker) -> None:
 
 
 def _ask(worker: Worker, deadline: Deadline, *command: object, handlers: _Handlers | None = None) -> Any:
-    """Send a command to a worker, and return its answer.
+    """Send a command to a worker, and return its answer; ``handlers`` are called with reports on the way.
 
-    Raises :class:`ProgramError` and :class:`UserError` as the program does, and :class:`LimitError`.
+    Raises the :class:`ProgramError` or :class:`UserError` that the worker reports, and :class:`LimitError` at
+    a limit. Raises :class:`BugError` for any other error in the worker.
     """
     try:
         kind, value = worker.ask(packed(command), deadline, handlers)
@@ -129,7 +136,10 @@ def _ask(worker: Worker, deadline: Deadline, *command: object, handlers: _Handle
 
 
 def _error_of_death(code: int, has_spoken: bool, deadline: Deadline) -> UserError | LimitError:
-    """Return the error for a process that died: memory ran out, or else the rules made it stop."""
+    """Return the error for a process that died with an exit code.
+
+    It is :class:`LimitError` if memory ran out; else the rules, or the start of Python, are to blame.
+    """
     if code in _OF_MEMORY or (deadline.memory is not None and code == -signal.SIGSEGV):
         deadline.out_of_memory()
         return LimitError(deadline)

@@ -1,4 +1,4 @@
-"""One rule of an encoding taken apart: its head, and the conjuncts of its body."""
+"""Rules of an encoding taken apart: the head of a rule, and the conjuncts of its body."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from operator import eq, ge, gt, le, lt, ne
@@ -42,9 +42,10 @@ _NUMBER_AGGREGATES = {AggregateFunction.Count, AggregateFunction.Sum, AggregateF
 
 
 class Literal(NamedTuple):
-    """An atom in a body: as it is, negated once (``not p``) or twice (``not not p``).
+    """A literal: an atom as it is, negated once (``not p``) or negated twice (``not not p``).
 
-    The name of a classically negated atom (``-p``) begins with a minus.
+    ``negations`` is 0, 1 or 2. The predicate name of a classically negated atom (``-p``) begins with a minus.
+    ``text`` is the literal as clingo prints it.
     """
 
     signature: Signature
@@ -59,7 +60,11 @@ class Literal(NamedTuple):
 
 
 class Test(NamedTuple):
-    """A comparison, ``#true`` or ``#false``; ``holds`` is its value, ``None`` if unknown."""
+    """A comparison, ``#true`` or ``#false``.
+
+    ``holds`` is its truth value; ``None`` if it depends on a variable, or on a term that is not evaluated
+    here.
+    """
 
     ast: AST
     holds: bool | None
@@ -75,21 +80,25 @@ class Conditional(NamedTuple):
 
 
 class Element(NamedTuple):
-    """An element of an aggregate: the terms that it adds where its condition holds."""
+    """An element ``terms : condition`` of an aggregate, which adds the terms where the condition holds."""
 
     terms: tuple[AST, ...]
     condition: "tuple[Conjunct, ...]"
 
 
 class Guard(NamedTuple):
-    """A guard of an aggregate: the comparison, with the aggregate on the left and the term on the right."""
+    """A comparison of an aggregate, on its left, with a term, on its right: ``> 9``."""
 
     comparison: ComparisonOperator
     term: AST
 
 
 class Aggregate(NamedTuple):
-    """An aggregate in a body; ``holds`` is its value where the guards alone decide it, else ``None``."""
+    """An aggregate in a body.
+
+    ``holds`` is its truth value if the guards alone decide it, as in ``#count { ... } < #sup``; else
+    ``None``. ``negations`` is 0, 1 or 2.
+    """
 
     function: AggregateFunction
     elements: tuple[Element, ...]
@@ -100,7 +109,7 @@ class Aggregate(NamedTuple):
 
 
 class UnknownConjunct(NamedTuple):
-    """A conjunct of another kind, such as a theory atom."""
+    """A conjunct of any other kind, such as a theory atom; only its text is kept."""
 
     text: str
 
@@ -114,7 +123,7 @@ class Clause(NamedTuple):
     ``plain``: the rule is a constraint, or its head is one atom without negation or choice.
     ``head``: this atom; ``None`` for a constraint, and for a rule that is not plain.
     ``head_elements``: the head atoms of a rule that is not plain, each with its condition.
-    ``number``: the number of the rule, the same for all clauses of a rule with pools.
+    ``number``: a number for the rule, the same for all clauses of a rule with pools.
     ``ast``: the syntax tree of the clause; its body has one node for each conjunct of ``body``.
     """
 
@@ -128,19 +137,19 @@ class Clause(NamedTuple):
 
     @property
     def is_constraint(self) -> bool:
-        """Whether the clause has no head."""
+        """Whether the clause is a constraint, which has no head."""
         return self.plain and self.head is None
 
     @property
     def heads(self) -> list[Literal]:
-        """The atoms of its head."""
+        """All atoms in the head; empty for a constraint."""
         return [atom for atom in (self.head, *(atom for atom, _ in self.head_elements)) if atom is not None]
 
 
 def clauses(rule: AST, number: int, constants: Constants) -> Iterator[Clause]:
-    """Unpool a rule: return one clause for each choice from its pools.
+    """Unpool a rule: yield one clause for each choice from its pools, such as ``p(1;2)``.
 
-    ``number`` is the number of the rule; each of its clauses gets it.
+    ``number`` is stored in each clause, so that the rule of a clause can be found again.
     """
     source = source_of(rule)
     for clause in rule.unpool(condition=True):
@@ -159,13 +168,16 @@ def clauses(rule: AST, number: int, constants: Constants) -> Iterator[Clause]:
 
 
 def source_of(statement: AST) -> Source:
-    """Return where a statement begins."""
+    """Return the file, line and column where a statement begins."""
     begin = statement.location.begin
     return Source(begin.filename, begin.line, begin.column)
 
 
 def statement_text(statement: AST, rules: Loaded | None = None) -> str:
-    """Return a statement on one line, as it is written in its file or in the text of ``rules``."""
+    """Return a statement on one line, as it is written in its ``.lp`` file or in the text of ``rules``.
+
+    If it is from neither, it is returned as clingo prints it.
+    """
     begin, end = statement.location.begin, statement.location.end
     if isinstance(rules, Stated) and begin.filename == rules.place:
         content = rules.text.encode("utf-8")
@@ -180,12 +192,15 @@ def statement_text(statement: AST, rules: Loaded | None = None) -> str:
 
 
 def _has_no_operation(term: AST) -> bool:
-    """Whether a term has no arithmetic, so that its text is its value."""
+    """Whether a term has no binary operation such as ``+``, so that its text is its value."""
     return all(node.ast_type != ASTType.BinaryOperation for node in nodes(term))
 
 
 def value(term: AST, constants: Constants) -> Symbol | None:
-    """Return the value of a term without variables and arithmetic, ``None`` for other terms."""
+    """Return the value of a number, text or word, also after a minus; ``None`` for any other term.
+
+    A word that names a constant has the value of the constant, which is ``None`` if it is unknown.
+    """
     if term.ast_type == ASTType.SymbolicTerm:
         symbol: Symbol = term.symbol
         if symbol.type is SymbolType.Function and not symbol.arguments and symbol.name in constants:
@@ -198,14 +213,14 @@ def value(term: AST, constants: Constants) -> Symbol | None:
 
 
 def plain_value(symbol: Symbol) -> str | int | None:
-    """Return the text or number that a symbol is; ``None`` for others, such as words without quotes."""
+    """Return a symbol as number or as text in quotes; ``None`` for others, such as words without quotes."""
     if symbol.type is SymbolType.Number:
         return symbol.number
     return symbol.string if symbol.type is SymbolType.String else None
 
 
 def factors(term: AST) -> list[AST]:
-    """Return the two factors of a product, or a term itself."""
+    """Return the two factors of a product; any other term is returned as the only factor."""
     product = (ASTType.BinaryOperation, BinaryOperator.Multiplication)
     is_product = (term.ast_type, getattr(term, "operator_type", None)) == product
     return [term.left, term.right] if is_product else [term]
@@ -214,7 +229,8 @@ def factors(term: AST) -> list[AST]:
 def constant_values(definitions: Iterable[AST], settings: Sequence[str]) -> dict[str, Symbol | None]:
     """Return the values of constants by name, from ``#const`` statements and settings ``name=value``.
 
-    ``None`` stands for a value that is unknown without clingo.
+    A setting replaces a default value; settings of other names are ignored. ``None`` stands for a value that
+    only clingo can tell, such as one with arithmetic or one that names another constant.
     """
     texts: dict[str, str | None] = {}
     for definition in definitions:
@@ -238,14 +254,21 @@ def constant_values(definitions: Iterable[AST], settings: Sequence[str]) -> dict
     return values
 
 
-def variables(*pieces: AST) -> Iterator[str]:
-    """Return the names of the variables in pieces of a rule, without the anonymous ``_``."""
-    nodes_inside = (node for piece in pieces for node in nodes(piece))
-    return (node.name for node in nodes_inside if node.ast_type == ASTType.Variable and node.name != "_")
+def variables(*syntax_nodes: AST) -> Iterator[str]:
+    """Yield the names of the variables in nodes of a syntax tree, each as often as it occurs.
+
+    The anonymous variable ``_`` is left out.
+    """
+    inner_nodes = (node for syntax_node in syntax_nodes for node in nodes(syntax_node))
+    return (node.name for node in inner_nodes if node.ast_type == ASTType.Variable and node.name != "_")
 
 
 def global_variables(conjunct: Conjunct) -> Iterator[str]:
-    """Return the global variables of a conjunct; variables in conditions may be local."""
+    """Yield the names of the global variables of a conjunct.
+
+    They are the variables of a literal, a comparison or a guard. Those in the elements of an aggregate and in
+    a conditional literal may be local, and are left out.
+    """
     if isinstance(conjunct, Literal):
         return variables(*conjunct.arguments)
     if isinstance(conjunct, Test):
@@ -256,7 +279,7 @@ def global_variables(conjunct: Conjunct) -> Iterator[str]:
 
 
 def literals(conjuncts: Iterable[Conjunct]) -> Iterator[Literal]:
-    """Return all literals in conjuncts, including those in conditions and aggregates."""
+    """Yield all literals in conjuncts, including those in conditions and aggregates."""
     for conjunct in conjuncts:
         if isinstance(conjunct, Literal):
             yield conjunct
@@ -268,16 +291,20 @@ def literals(conjuncts: Iterable[Conjunct]) -> Iterator[Literal]:
 
 
 class _Reader:
-    """Reader of rules, under known values of constants."""
+    """Reader that turns the syntax trees of bodies and heads into conjuncts and literals.
+
+    ``constants`` are the values that it uses to evaluate comparisons.
+    """
 
     def __init__(self, constants: Constants) -> None:
         self._constants = constants
 
     def conjuncts(self, body: Iterable[AST]) -> tuple[Conjunct, ...]:
+        """Return the conjuncts of a body or condition, in order."""
         return tuple(map(self.conjunct, body))
 
     def conjunct(self, node: AST) -> Conjunct:
-        """Return a part of a body: an aggregate, a conditional literal or a literal."""
+        """Return a node of a body as a conjunct of the class that fits."""
         if node.ast_type == ASTType.ConditionalLiteral:
             literal = self.literal(node.literal)
             return Conditional(literal, self.conjuncts(node.condition), str(node))
@@ -289,7 +316,7 @@ class _Reader:
         return self.literal(node)
 
     def literal(self, node: AST) -> Literal | Test | UnknownConjunct:
-        """Return a literal over a predicate, a comparison or a constant; ``UnknownConjunct`` for anything else."""
+        """Return a literal over a predicate, a test, or ``UnknownConjunct`` for anything else."""
         text = str(node)
         if node.ast_type != ASTType.Literal:
             return UnknownConjunct(text)
@@ -309,7 +336,7 @@ class _Reader:
         return UnknownConjunct(text)
 
     def _compare(self, comparison: AST) -> bool | None:
-        """Return whether a comparison holds, ``None`` where a term has no known value."""
+        """Return whether a chain of comparisons holds; ``None`` if the value of a term is unknown."""
         values = [
             value(term, self._constants) for term in (comparison.term, *(g.term for g in comparison.guards))
         ]
@@ -323,7 +350,11 @@ class _Reader:
         )
 
     def _aggregate(self, node: AST) -> Aggregate:
-        """Return an aggregate; its left guard is turned around, so that each guard stands on the right."""
+        """Return an aggregate of a body.
+
+        A left guard is turned around, so that each guard stands on the right. ``{ a; b }`` becomes a count of
+        elements without terms.
+        """
         atom = node.atom
         guards = []
         if atom.left_guard is not None:
@@ -342,21 +373,21 @@ class _Reader:
             elements = tuple(
                 Element(tuple(element.terms), self.conjuncts(element.condition)) for element in atom.elements
             )
-        holds = [self._holds_at_infinity(function, guard) for guard in guards]
-        sure = False if False in holds else True if holds and all(holds) else None
-        if sure is not None and node.sign == Sign.Negation:
-            sure = not sure
-        return Aggregate(function, elements, tuple(guards), int(node.sign), sure, str(node))
+        guard_values = [self._holds_at_infinity(function, guard) for guard in guards]
+        holds = False if False in guard_values else True if guard_values and all(guard_values) else None
+        if holds is not None and node.sign == Sign.Negation:
+            holds = not holds
+        return Aggregate(function, elements, tuple(guards), int(node.sign), holds, str(node))
 
     def _holds_at_infinity(self, function: AggregateFunction, guard: Guard) -> bool | None:
-        """Return whether a sum or count satisfies a guard ``#inf`` or ``#sup``, ``None`` for other guards."""
+        """Return whether a sum or count satisfies a guard ``#inf`` or ``#sup``; ``None`` for other guards."""
         bound = value(guard.term, self._constants)
         if function not in _NUMBER_AGGREGATES or bound not in (Infimum, Supremum):
             return None
         return comparison_holds(Number(0), guard.comparison, bound)
 
     def head_atoms(self, head: AST) -> Iterator[tuple[Literal, tuple[Conjunct, ...]]]:
-        """Return the atoms of a head that is not plain, with their conditions."""
+        """Yield the atoms of a head that is not plain, each with its condition; ``not`` is dropped."""
         if head.ast_type == ASTType.Literal:
             atom = self.literal(head)
             if isinstance(atom, Literal):

@@ -1,4 +1,4 @@
-"""Monotonicity of predicates in the tree: monotone, antimonotone, both or neither.
+"""Monotonicity of predicates in the units of the tree: monotone, antimonotone, both or neither.
 
 ``available(O)`` holds if O is in the kitchen or a unit of the tree makes O. All units of a tree execute, so
 ``available`` is monotone. A predicate with neither rules nor facts never holds.
@@ -43,7 +43,13 @@ _ArgumentPosition = tuple[Signature, int]
 
 
 class Monotonicity(Flag):
-    """Monotonicity of an atom: whether more units can make it true (``GROWS``) or false (``SHRINKS``)."""
+    """How the truth of an atom depends on the units of the tree.
+
+    ``GROWS``: more units can make it true, never false.
+    ``SHRINKS``: more units can make it false, never true.
+    ``BOTH``: more units can make it true or false.
+    ``NOT``: it does not depend on them.
+    """
 
     NOT = 0
     GROWS = 1
@@ -51,7 +57,7 @@ class Monotonicity(Flag):
     BOTH = 3
 
     def negated(self) -> "Monotonicity":
-        """Return the monotonicity of the negation."""
+        """Return the monotonicity of the negation: ``GROWS`` and ``SHRINKS`` are swapped."""
         swapped = {Monotonicity.GROWS: Monotonicity.SHRINKS, Monotonicity.SHRINKS: Monotonicity.GROWS}
         return swapped.get(self, self)
 
@@ -67,9 +73,11 @@ class Doubt(NamedTuple):
 
 
 class Dependence:
-    """Monotonicity of each predicate of a program, as a fixpoint over its rules.
+    """Monotonicity of each predicate of a program, computed as a fixpoint over its rules.
 
-    ``varied`` are predicates whose facts vary within the question.
+    ``varied``: the predicates whose facts vary within the question; their monotonicity is unknown.
+    ``doubts``: by predicate that rules derive, why its monotonicity is unknown.
+    ``loops``: the predicates with recursion through ``not`` or an aggregate, each with the place of a rule.
     """
 
     def __init__(
@@ -99,7 +107,7 @@ class Dependence:
                     self._depends[clause.head.signature] = after
 
     def of_predicate(self, signature: Signature) -> Monotonicity:
-        """Return the monotonicity of a predicate."""
+        """Return the monotonicity of a predicate; ``NOT`` for a predicate of facts."""
         return self._depends.get(signature, Monotonicity.NOT)
 
     def of_body(self, conjuncts: Iterable[Conjunct]) -> Monotonicity:
@@ -121,7 +129,7 @@ class Dependence:
         return Monotonicity.BOTH if isinstance(conjunct, UnknownConjunct) else Monotonicity.NOT
 
     def doubt(self, conjuncts: Iterable[Conjunct]) -> Doubt | None:
-        """Return why the monotonicity of conjuncts is unknown, ``None`` where it is known."""
+        """Return the first reason why the monotonicity of conjuncts is unknown; ``None`` if it is known."""
         conjuncts = tuple(conjuncts)
         for literal in literals(conjuncts):
             reason = self.doubts.get(literal.signature) or self._doubt_of_predicate(literal.signature)
@@ -131,7 +139,7 @@ class Dependence:
         return Doubt(f"{strange.text} is nothing that is looked into") if strange else None
 
     def _doubt_of_predicate(self, signature: Signature) -> Doubt | None:
-        """Return why the monotonicity of a predicate without rules is unknown, ``None`` where it is known."""
+        """Return a doubt about a predicate that does not come from its rules; ``None`` without one."""
         name, arity = signature
         if name.startswith("-"):
             return Doubt(f"{name}/{arity} is negated with a minus")
@@ -146,7 +154,10 @@ class Dependence:
         return None
 
     def _find_doubts(self, program: Sequence[Clause]) -> None:
-        """Record for each predicate the first reason why its monotonicity is unknown."""
+        """Fill ``doubts``: a predicate gets the first doubt about a body of its rules, or about its head.
+
+        Also fills ``loops``.
+        """
         for clause in program:
             if not clause.plain:
                 for atom in clause.heads:
@@ -165,27 +176,30 @@ class Dependence:
                         changed = True
 
     def _find_loops(self, program: Sequence[Clause]) -> None:
-        """Record in ``loops`` the predicates with recursion through ``not`` or an aggregate."""
+        """Fill ``loops``, and give the predicates in it a doubt."""
         reads: defaultdict[Signature, set[Signature]] = defaultdict(set)
-        unclear: list[tuple[Signature, Signature, Source]] = []
+        nonpositive: list[tuple[Signature, Signature, Source]] = []
         for clause in program:
             for head in clause.heads:
                 for read, plainly in _predicates_read(clause.body, clause.plain):
                     reads[head.signature].add(read)
                     if not plainly:
-                        unclear.append((head.signature, read, clause.source))
-        behind = {signature: _closure(signature, reads) for signature in reads}
-        for head_signature, read, source in unclear:
-            if head_signature not in behind.get(read, ()):
+                        nonpositive.append((head.signature, read, clause.source))
+        sources_of = {signature: _closure(signature, reads) for signature in reads}
+        for head_signature, read, source in nonpositive:
+            if head_signature not in sources_of.get(read, ()):
                 continue
-            for looped in behind[read]:
-                if head_signature in behind.get(looped, ()):
+            for looped in sources_of[read]:
+                if head_signature in sources_of.get(looped, ()):
                     self.loops.setdefault(looped, source)
                     reason = f"{predicate_text(looped)} is derived from itself through `not` or an aggregate"
                     self.doubts.setdefault(looped, Doubt(reason, source))
 
     def _find_nonnegative(self, program: Sequence[Clause]) -> None:
-        """Find the arguments of predicates that are never negative numbers, as a greatest fixpoint."""
+        """Set ``_nonnegative`` to the predicate arguments that are never negative numbers.
+
+        They are the greatest fixpoint: each rule derives such an argument from such arguments.
+        """
         facts = {
             (signature, position) for signature, subjects in SUBJECTS.items() for position in subjects.numbers
         }
@@ -209,17 +223,18 @@ class Dependence:
             self._nonnegative -= maybe_negative
 
     def _is_nonnegative(self, term: AST, condition: Iterable[Conjunct]) -> bool:
-        """Whether a term cannot be a negative number where the condition holds.
+        """Whether a term is never a negative number where the condition holds.
 
-        The term may be a product with a number of executions (of ``times/2``), which is never negative.
+        A product counts as nonnegative only if one factor is a number of executions, as ``N`` in
+        ``times(U,N)``.
         """
         condition = tuple(condition)
         product = factors(term)
         if len(product) > 1:
             counts = [str(literal.arguments[1]) for literal in condition if _is_times_atom(literal)]
             return any(
-                str(count) in counts and self._is_nonnegative(other, condition)
-                for count, other in (product, product[::-1])
+                str(count) in counts and self._is_nonnegative(weight, condition)
+                for count, weight in (product, product[::-1])
             )
         symbol = value(term, self._constants)
         if symbol is not None:
@@ -247,7 +262,10 @@ class Dependence:
         return dependence.negated() if aggregate.negations == 1 else dependence
 
     def _of_guard(self, aggregate: Aggregate, guard: Guard, conditions: Monotonicity) -> Monotonicity:
-        """Return the monotonicity of one guard of an aggregate from that of its conditions."""
+        """Return the monotonicity of an aggregate with one of its guards.
+
+        ``conditions`` is the monotonicity of the conditions of its elements.
+        """
         operator, function = guard.comparison, aggregate.function
         if operator in {ComparisonOperator.Equal, ComparisonOperator.NotEqual}:
             if operator is ComparisonOperator.Equal and self._is_count_of_zero(aggregate, guard):
@@ -265,7 +283,7 @@ class Dependence:
         return conditions if upwards else conditions.negated()
 
     def _is_count_of_zero(self, aggregate: Aggregate, guard: Guard) -> bool:
-        """Whether a guard is ``#count { ... } = 0``."""
+        """Whether an aggregate is a ``#count`` and the bound in its guard is 0."""
         bound = value(guard.term, self._constants)
         return (
             aggregate.function is AggregateFunction.Count
@@ -276,18 +294,20 @@ class Dependence:
 
 
 def _is_times_atom(conjunct: Conjunct) -> TypeGuard[Literal]:
+    """Whether a conjunct is an atom ``times(U,N)`` without ``not``."""
     return isinstance(conjunct, Literal) and conjunct.positive and conjunct.signature == TIMES
 
 
 def predicate_text(signature: Signature) -> str:
-    """Write a predicate with its arity."""
+    """Return a predicate with its arity, such as ``use/1``."""
     return f"{signature[0]}/{signature[1]}"
 
 
 def _predicates_read(conjuncts: Iterable[Conjunct], plainly: bool) -> Iterator[tuple[Signature, bool]]:
-    """Return the predicates that a body reads, each with a flag.
+    """Yield the predicates that a body reads, each with a flag.
 
-    The flag is ``False`` if the predicate is negated, aggregated or in a condition, or if not ``plainly``.
+    The flag is ``True`` for a positive literal. It is ``False`` if the predicate is negated, or stands in an
+    aggregate or a condition, or if ``plainly`` is ``False``.
     """
     for conjunct in conjuncts:
         if isinstance(conjunct, Literal):

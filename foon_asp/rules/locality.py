@@ -32,14 +32,14 @@ _TreeTerms = dict[str, set[Subject]]  # by term: what it is known to stand for i
 
 
 class Nonlocality(NamedTuple):
-    """The reason why a rule is not local, and its place."""
+    """The reason why a rule is not local, and the place of that rule."""
 
     reason: str
     source: Source
 
 
 class Locality:
-    """Locality of each rule of a program, as a fixpoint over its auxiliary predicates."""
+    """Locality of each rule of a program, computed as a fixpoint over its auxiliary predicates."""
 
     def __init__(self, program: Sequence[Clause], dependence: Dependence) -> None:
         """Find the locality of all predicates that the clauses of a program derive."""
@@ -55,7 +55,7 @@ class Locality:
         self._find_about_arguments(program)
 
     def nonlocality(self, clause: Clause) -> Nonlocality | None:
-        """Return why a rule is not local, ``None`` where it is."""
+        """Return why a rule is not local; ``None`` if it is local."""
         if any(atom.signature[0].startswith("-") for atom in clause.heads):
             return Nonlocality(
                 "an atom with a minus rules out the one without, wherever that is", clause.source
@@ -69,7 +69,11 @@ class Locality:
         return lacking.nonlocality if lacking else None
 
     def _find_leads_to(self) -> dict[Signature, dict[int, set[Subject]]]:
-        """Return the subjects of the arguments of auxiliary predicates that are always in the tree."""
+        """Return what the arguments of auxiliary predicates always stand for in the tree.
+
+        The result has the subjects by predicate and argument position. It is the greatest fixpoint over the
+        rules, and is also set as ``_leads_to``.
+        """
         leads = {
             signature: {position: set(Subject) for position in range(signature[1])}
             for signature in self._rules
@@ -91,7 +95,11 @@ class Locality:
         return leads
 
     def _find_about_arguments(self, program: Sequence[Clause]) -> None:
-        """Find the arguments of auxiliary predicates that must be in the tree; a rule is local only then."""
+        """Fill ``_about`` and ``_nonlocal`` for all auxiliary predicates, as a fixpoint.
+
+        ``_about`` gets the arguments that have to be in the tree, so that the rules for a predicate are
+        local. ``_nonlocal`` gets the predicates with a rule that is not local whatever their arguments are.
+        """
         changed = True
         while changed:
             changed = False
@@ -114,7 +122,10 @@ class Locality:
                     changed |= self._add_about_arguments(clause, clause.head)
 
     def _add_about_arguments(self, clause: Clause, head: Literal) -> bool:
-        """Find head arguments that must be in the tree to make a rule local; return whether any is new."""
+        """Add the head arguments to ``_about`` that have to be in the tree so that a rule is local.
+
+        If none can make it local, mark the predicate as not local. Return whether anything changed.
+        """
         changed = False
         while head.signature not in self._nonlocal:
             about = self._about[head.signature]
@@ -128,15 +139,15 @@ class Locality:
             if lacking is None:
                 return changed
             changed = True
-            places = [p for p, term in enumerate(head.arguments) if str(term) == lacking.term]
-            if places and places[0] not in about:
-                about[places[0]] = lacking.subject
+            positions = [p for p, term in enumerate(head.arguments) if str(term) == lacking.term]
+            if positions and positions[0] not in about:
+                about[positions[0]] = lacking.subject
             else:
                 self._mark_nonlocal(head.signature, lacking.nonlocality)
         return changed
 
     def _mark_nonlocal(self, signature: Signature, nonlocality: Nonlocality) -> bool:
-        """Record why rules for a predicate are not local; return whether that is new."""
+        """Record why a predicate is not local, unless a reason is known; return whether it is the first."""
         if signature in self._nonlocal:
             return False
         self._nonlocal[signature] = nonlocality
@@ -181,7 +192,10 @@ class Locality:
     def _lacking_term(
         self, conjuncts: Iterable[Conjunct], tree_terms: _TreeTerms, source: Source
     ) -> "_LackingTerm | None":
-        """Return the first term that has to be in the tree but may be outside; ``None`` if there is none."""
+        """Return the first term that has to be in the tree but may be outside; ``None`` if there is none.
+
+        ``tree_terms`` has the terms that are known to be in the tree.
+        """
         for conjunct in conjuncts:
             lacking = self._lacking_term_in_conjunct(conjunct, tree_terms, source)
             if lacking:
@@ -191,22 +205,22 @@ class Locality:
     def _lacking_term_in_conjunct(
         self, conjunct: Conjunct, tree_terms: _TreeTerms, source: Source
     ) -> "_LackingTerm | None":
-        """Return the reason why a conjunct is not local, with its term; ``None`` for a local conjunct."""
+        """Return the first term of a conjunct that must be in the tree but may be outside, else ``None``."""
         if isinstance(conjunct, Literal):
             return self._lacking_term_in_literal(conjunct, tree_terms, source)
         if isinstance(conjunct, Conditional):
             # it matters only where its condition holds and its literal does not
-            against = conjunct.literal
-            if isinstance(against, Literal) and against.negations == 1:
-                against = against._replace(negations=0)
-                met = self._tree_terms((against, *conjunct.condition), tree_terms)
+            literal = conjunct.literal
+            if isinstance(literal, Literal) and literal.negations == 1:
+                atom = literal._replace(negations=0)
+                inner_terms = self._tree_terms((atom, *conjunct.condition), tree_terms)
             else:
-                met = self._tree_terms(conjunct.condition, tree_terms)
-            return self._lacking_term((conjunct.literal, *conjunct.condition), met, source)
+                inner_terms = self._tree_terms(conjunct.condition, tree_terms)
+            return self._lacking_term((conjunct.literal, *conjunct.condition), inner_terms, source)
         if isinstance(conjunct, Aggregate):
             for element in conjunct.elements:
-                met = self._tree_terms(element.condition, tree_terms)
-                lacking = self._lacking_term(element.condition, met, source)
+                inner_terms = self._tree_terms(element.condition, tree_terms)
+                lacking = self._lacking_term(element.condition, inner_terms, source)
                 if lacking:
                     return lacking
         if isinstance(conjunct, UnknownConjunct):
@@ -218,7 +232,10 @@ class Locality:
     def _lacking_term_in_literal(
         self, literal: Literal, tree_terms: _TreeTerms, source: Source
     ) -> "_LackingTerm | None":
-        """Return the reason why a literal is not local, with its term; ``None`` for a local literal."""
+        """Return the first argument that has to be in the tree but may be outside, else ``None``.
+
+        The literal may also be not local whatever its arguments are; then the result has an empty term.
+        """
         signature = literal.signature
         if signature in self._nonlocal:
             return _LackingTerm("", Subject.UNIT, self._nonlocal[signature])
@@ -259,6 +276,7 @@ def _has_one_value(term: AST) -> bool:
 
 
 def _atom_text(literal: Literal) -> str:
+    """Return the atom of a literal as text, without ``not``."""
     name, arity = literal.signature
     arguments = ",".join(map(str, literal.arguments))
     return f"{name}({arguments})" if arity else name

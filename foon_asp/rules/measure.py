@@ -1,4 +1,4 @@
-"""User measures: rules for the cost of each unit, and their evaluation by clingo."""
+"""User measures: rules that define the cost of each unit, and their evaluation by clingo."""
 
 import hashlib
 import re
@@ -45,15 +45,16 @@ class Measure:
 
     @property
     def digest(self) -> str:
-        """The SHA-256 digest of the rules."""
+        """The SHA-256 digest of the rules, in hexadecimal."""
         return hashlib.sha256(self.text.encode()).hexdigest()
 
     def costs(self, problem: Problem, deadline: Deadline | None = None) -> Sequence[Cost]:
-        """Return the cost of each unit of a problem, by id.
+        """Return the cost of each unit of a problem, by id; a unit without a rule costs 0.
 
         Clingo evaluates the rules until the deadline at most. The costs are cached for the network.
 
-        Raises :class:`InputError` if rules give a unit two costs, or a cost other than a number from 0.
+        Raises :class:`InputError` if rules give a unit two costs, or a cost other than a number from 0, and
+        :class:`UserError` if they read success rates and there are none.
         """
         from foon_asp.rules.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)
 
@@ -77,8 +78,9 @@ def wrong_cost(
 ) -> str | None:
     """Return a message about the first unit whose cost differs from the stated cost; ``None`` if none does.
 
-    ``stated`` has costs by unit id. Each such unit is evaluated, even if others have the same facts.
-    Raises the errors of :meth:`Measure.costs`.
+    ``stated`` has costs by unit id. Each such unit is evaluated, even if another unit has the same facts.
+    There is also a message if the rules do not define the measure. Raises the errors of
+    :meth:`Measure.costs`.
     """
     from foon_asp.rules.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)
 
@@ -120,7 +122,7 @@ class _Evaluation:
         return list(map(by_key.__getitem__, alike))
 
     def _fact_keys(self) -> Sequence[Hashable] | None:
-        """Return a key for each unit.
+        """Return a key for each unit, by id.
 
         Units with equal keys have the same facts, except for numbers of units and nodes. ``None`` if the
         rules use these numbers, or read a fact that the keys do not cover.
@@ -160,7 +162,10 @@ class _Evaluation:
         return list(zip(*columns, strict=True)) if columns else [()] * len(network)
 
     def cost_by_number(self, units: Iterable[int]) -> dict[int, Cost]:
-        """Return the cost of each unit that the rules give a cost, by unit number (not id)."""
+        """Return the costs of units, given by id, that rules derive; the result is by unit number.
+
+        Raises :class:`InputError` for an invalid cost, and for a unit with two costs.
+        """
         by_number = {self._number(unit): unit for unit in units}
         values: dict[int, Cost] = {}
         for world, name, number, value in self._derive_costs(by_number.values(), self._rules.statements):
@@ -177,7 +182,8 @@ class _Evaluation:
     ) -> Sequence[tuple["Value", ...]]:
         """Derive costs of units with clingo: rows of world, measure, unit number and cost.
 
-        Raises :class:`InputError` if clingo drops an instance of a rule.
+        The world is the number of the unit whose facts were used. Raises :class:`InputError` if clingo drops
+        an instance of a rule.
         """
         from foon_asp.encoding import derived  # noqa: PLC0415
         from foon_asp.encoding.encoding import program_fault  # noqa: PLC0415 (takes clingo along)
@@ -201,7 +207,7 @@ class _Evaluation:
             raise self._with_places(program_fault(refused.messages, refused.otherwise), statements) from None
 
     def _with_places(self, error: UserError, statements: Sequence["Statement"]) -> UserError:
-        """Return an error in the text for clingo with its place in the rules."""
+        """Return an error about the text for clingo with places in the rules of the user instead."""
         if not isinstance(error, InputError):
             return UserError(f"{self._measure.place}: {error}")
         return InputError(
@@ -214,6 +220,7 @@ class _Evaluation:
         )
 
     def _error_at(self, code: str, message: str, source: Source) -> Diagnostic:
+        """Return an error about the rules, with the line at its source."""
         from foon_asp.encoding.encoding import located_diagnostic  # noqa: PLC0415 (takes clingo along)
 
         stated = Stated(self._measure.place, self._measure.text)
@@ -241,7 +248,10 @@ class _Evaluation:
                     'a large cost is given in a table, as text: "5000000000"'
                 )
             elif subject != number:
-                what = f"found a cost of {_value_text(subject)} among the facts of {who}: a rule is about one unit"
+                what = (
+                    f"found a cost of {_value_text(subject)} among the facts of {who}: "
+                    "a rule is about one unit"
+                )
             elif _exact_cost(value) is None:
                 what = f'found the cost {_value_text(value)} of {who}, expected a number from 0: 5, or "2.50"'
             else:
@@ -266,7 +276,10 @@ def _nodes_key(
 
 
 def _exact_cost(value: "Value") -> Cost | None:
-    """Return a value as an exact cost, an ``int`` if possible; ``None`` if it is no number, or below 0."""
+    """Return a derived value as an exact cost: ``5``, or for ``"2.50"`` the fraction 5/2.
+
+    ``None`` if it is no number from 0.
+    """
     if isinstance(value, int):
         return value if value >= 0 else None
     if not isinstance(value, str) or not _DECIMAL.fullmatch(value):
@@ -276,6 +289,7 @@ def _exact_cost(value: "Value") -> Cost | None:
 
 
 def _value_text(value: "Value") -> str:
+    """Return a derived value as it would be written in a rule."""
     if isinstance(value, str):
         return quote(value)
     return str(value) if isinstance(value, int) else value.text
@@ -315,4 +329,5 @@ def read_measures(rules: str | PathLike[str] | Iterable[str | PathLike[str]]) ->
 
 
 def _is_rule_text(text: str) -> bool:
+    """Whether a text is rules, and not the path of a file."""
     return (":-" in text or text.rstrip().endswith(".")) and not exists(Path(text))

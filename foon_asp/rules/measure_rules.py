@@ -82,10 +82,11 @@ class MeasureRules(NamedTuple):
     """Rules of measures, translated for clingo.
 
     ``names``: the names of the measures, each with the place of its first occurrence.
-    ``reads``: the predicates of facts that the rules read.
-    ``nameless``: units whose facts differ only in numbers of units and object nodes cost the same.
-    ``plain``: no rule has an interval, a division, two tables or many atoms, so the grounding cannot be
-    large.
+    ``statements``: the program for clingo, one statement per line.
+    ``reads``: the names of the predicates of facts that the rules read.
+    ``nameless``: whether units cost the same if their facts differ only in numbers of units and object nodes.
+    ``plain``: whether the grounding cannot be large, since no rule has an interval, a division, two tables or
+    many atoms.
     """
 
     names: dict[str, Source]
@@ -97,7 +98,11 @@ class MeasureRules(NamedTuple):
 
 @lru_cache(maxsize=64)
 def read_rules(text: str, origin: str) -> MeasureRules:
-    """Read the rules of measures; raises :class:`InputError` unless they are over facts about one unit."""
+    """Parse and check the rules of measures; the results for the last texts are cached.
+
+    ``origin`` is the name of the text in messages. Raises :class:`InputError` for a syntax error, and unless
+    all rules are over facts about one unit.
+    """
     check_text(text, origin)
     stated = Stated(origin, text)
     statements: list[AST] = []
@@ -110,7 +115,10 @@ def read_rules(text: str, origin: str) -> MeasureRules:
 
 
 class _MeasureReader:
-    """Checker of the rules of measures, and their translator for clingo."""
+    """Checker of the rules of measures, and their translator for clingo.
+
+    The checks collect errors in ``_errors``, so that one exception has all of them.
+    """
 
     def __init__(self, statements: Sequence[AST], stated: Stated) -> None:
         """Sort the statements; raises :class:`InputError` for statements that are not allowed."""
@@ -136,7 +144,7 @@ class _MeasureReader:
         self._raise_errors()
 
     def rules(self) -> MeasureRules:
-        """Check the rules and write them for clingo."""
+        """Return the rules translated for clingo; raises :class:`InputError` if a check finds an error."""
         names: dict[str, Source] = {}
         for rule, atoms in zip(self._rules, self._atoms, strict=True):
             self._check_head(rule, atoms, names)
@@ -163,7 +171,10 @@ class _MeasureReader:
     def _overflow_rules(
         self, names: Iterable[str], dependent: frozenset[Signature], world: str
     ) -> Iterator[Statement]:
-        """Return rules that derive the cost ``BEYOND`` where arithmetic overflows 32 bits in clingo."""
+        """Yield rules that derive the cost ``BEYOND`` where arithmetic overflows 32 bits in clingo.
+
+        ``names`` are the measures, ``dependent`` the predicates that get a world, ``world`` its variable.
+        """
         statements: list[AST] = []
         sources: list[Source] = []
         for name in names:
@@ -180,7 +191,10 @@ class _MeasureReader:
         yield from (writer.write(rule, source) for rule, source in rules)
 
     def _check_head(self, rule: AST, atoms: "_Atoms", names: dict[str, Source]) -> None:
-        """Refuse a head other than one atom of a permitted predicate; record the measure that it names."""
+        """Add an error for a head other than one atom of a permitted predicate.
+
+        The measure that the head names is added to ``names``.
+        """
         head = rule.head
         if head.ast_type is not ASTType.Literal or head.sign != Sign.NoSign:
             self._add_error_at(
@@ -205,7 +219,7 @@ class _MeasureReader:
                 )
 
     def _check_atoms(self, atoms: "_Atoms") -> None:
-        """Refuse atoms that are negated with a minus, reserved, undefined or not about one unit."""
+        """Add errors for atoms that are negated with a minus, reserved, undefined or not about one unit."""
         for minus in atoms.negated:
             self._add_error_at(
                 "negation", "found an atom with a minus before it, expected one without", minus
@@ -225,7 +239,10 @@ class _MeasureReader:
                 self._add_error_at("undefined-atom", undefined_message(signature, defined | readable), atom)
 
     def _check_names(self, names: dict[str, Source]) -> None:
-        """Refuse reserved names of measures and constants, which have another meaning in the facts."""
+        """Add errors for names of measures and constants that have another meaning in the facts.
+
+        Raises :class:`UserError` if the rules define no measure and have no other error.
+        """
         for name, source in names.items():
             if name in PUBLIC_NAMES or name.startswith("_"):
                 message = f"found a measure {name!r}, which is a name of ours: give it another one"
@@ -243,7 +260,10 @@ class _MeasureReader:
             )
 
     def _check_numbers(self) -> None:
-        """Refuse comparisons of a number with a term that never is one, and ``cost`` with an arity not 3."""
+        """Add errors for comparisons of a number with a term that never is one.
+
+        Also add errors for heads ``cost`` with another number of arguments than 3.
+        """
         for term, message in non_numeric_terms(
             self._rules, [definition.name for definition in self._constants]
         ):
@@ -253,7 +273,7 @@ class _MeasureReader:
                 self._add_error_at("head", f"found {atom}, expected a cost such as cost(mine,U,5)", atom)
 
     def _check_loops(self) -> None:
-        """Refuse recursive rules, whose atoms may be infinitely many or undefined."""
+        """Add an error for recursive rules, whose atoms may be infinitely many or undefined."""
         graph: dict[Signature, set[Signature]] = {}
         for atoms in self._atoms:
             for head in map(_signature, atoms.heads):
@@ -269,7 +289,7 @@ class _MeasureReader:
             self._add_error_at("loop", message, atom)
 
     def _facts_read(self) -> Iterator[Signature]:
-        """Yield the predicates of facts that the rules read."""
+        """Yield the predicates of facts that the rules read; one may be repeated."""
         derived = {_signature(atom) for other in self._atoms for atom in other.heads}
         for atoms in self._atoms:
             for signature in map(_signature, atoms.used):
@@ -277,7 +297,7 @@ class _MeasureReader:
                     yield signature
 
     def _dependent_predicates(self) -> frozenset[Signature]:
-        """Return the predicates that depend on facts about units, and costs."""
+        """Return ``cost/3``, the predicates of facts about units, and all predicates that depend on them."""
         dependent = {COST, *self._facts_read()} - {("utensil", 1)}
         before = 0
         while len(dependent) > before:
@@ -288,7 +308,7 @@ class _MeasureReader:
         return frozenset(dependent)
 
     def _has_small_grounding(self, atoms: "_Atoms", dependent: frozenset[Signature]) -> bool:
-        """Return whether the grounding of a rule cannot be large."""
+        """Whether the grounding of a rule, given by its atoms, cannot be large."""
         tables = [atom for atom in atoms.used if _signature(atom) not in dependent]
         return (
             not (atoms.has_interval or atoms.divides)
@@ -296,17 +316,21 @@ class _MeasureReader:
             and len(atoms.used) <= TUNING.plain_atoms
         )
 
-    def _source(self, at: AST) -> Source:
-        begin = at.location.begin
+    def _source(self, node: AST) -> Source:
+        """Return the place of a node of the syntax tree, in the file or text of the rules."""
+        begin = node.location.begin
         return Source(self._stated.place, begin.line, begin.column)
 
-    def _add_error_at(self, code: str, message: str, at: AST) -> None:
-        self._add_error(code, message, self._source(at))
+    def _add_error_at(self, code: str, message: str, node: AST) -> None:
+        """Add an error at a node of the syntax tree."""
+        self._add_error(code, message, self._source(node))
 
     def _add_error(self, code: str, message: str, source: Source) -> None:
+        """Add an error at a place."""
         self._errors.append(located_diagnostic(Severity.ERROR, code, message, source, [self._stated]))
 
     def _raise_errors(self) -> None:
+        """Raise :class:`InputError` with the errors so far, if there are any."""
         if self._errors:
             raise InputError(self._errors)
 
@@ -315,14 +339,17 @@ _HARMLESS = {ASTType.ShowSignature, ASTType.Comment}
 
 
 def _signature(atom: AST) -> Signature:
+    """Return name and arity of an atom."""
     return atom.name, len(atom.arguments)
 
 
 class _Atoms(Transformer):
     """Visitor that collects the atoms of a rule, as terms, and the use of its variables.
 
-    ``compared`` are the variables that are used other than in tests for equality. ``divides`` says whether
-    the rule has a division: clingo's process crashes at -2147483648 / -1.
+    ``heads``, ``used``: the atoms in the head, and those in the body.
+    ``negated``: atoms with a minus before them.
+    ``compared``: the variables that are used other than in tests for equality.
+    ``divides``: whether the rule has a division; clingo's process crashes at -2147483648 / -1.
     """
 
     def __init__(self, rule: AST) -> None:
@@ -343,11 +370,12 @@ class _Atoms(Transformer):
         return atom
 
     def _collect_atom(self, symbol: AST) -> None:
+        """Collect an atom, or each atom of a pool, and visit its arguments."""
         if symbol.ast_type is ASTType.UnaryOperation:
             self.negated.append(symbol)
         elif symbol.ast_type is ASTType.Pool:
-            for one in symbol.arguments:
-                self._collect_atom(one)
+            for argument in symbol.arguments:
+                self._collect_atom(argument)
         else:
             self._collected.append(symbol)
             self._visit_terms(symbol.arguments)
@@ -359,14 +387,15 @@ class _Atoms(Transformer):
                 self.visit(term)
 
     def visit_BodyAggregate(self, aggregate: AST) -> AST:  # noqa: N802
-        weighs = aggregate.function != AggregateFunction.Count
+        """Visit an aggregate; its weights are compared, unlike its other terms."""
+        weight_count = int(aggregate.function != AggregateFunction.Count)
         for guard in (aggregate.left_guard, aggregate.right_guard):
             if guard is not None:
                 self.visit(guard)
         for element in aggregate.elements:
-            for term in element.terms[:weighs]:
+            for term in element.terms[:weight_count]:
                 self.visit(term)
-            self._visit_terms(element.terms[weighs:])
+            self._visit_terms(element.terms[weight_count:])
             self.visit_sequence(element.condition)
         return aggregate
 
@@ -389,8 +418,8 @@ def _is_nameless(rules: Sequence[_Atoms]) -> bool:
     """Whether rules compare units and object nodes for equality only.
 
     The argument positions of units and of object nodes are inferred from the facts, along the variables of
-    each rule. The answer is no if such a position has a constant or a variable of the other kind, or if such
-    a variable is compared.
+    each rule. The answer is ``False`` if such a position has a constant or a variable of the other kind, or
+    if such a variable is compared.
     """
     kinds: dict[tuple[Signature, int], str] = {(COST, 1): _UNIT}
     for name, arity in FACT_PREDICATES.items():
@@ -425,7 +454,10 @@ def _is_nameless(rules: Sequence[_Atoms]) -> bool:
 
 
 class _WorldWriter:
-    """Writer of rules with a world as first argument of the predicates that depend on facts."""
+    """Writer of rules with a world as first argument of the predicates that depend on facts.
+
+    ``world`` is a name of a variable that no rule has.
+    """
 
     def __init__(self, dependent: frozenset[Signature], world: str) -> None:
         self._dependent_predicates, self._world = dependent, world

@@ -40,22 +40,23 @@ _AGGREGATES = {ASTType.BodyAggregate, ASTType.HeadAggregate}
 _CALCULATES = re.compile(r"[+*/\\^&?~|]|(?<!:)-|#sum")  # matches every rule with arithmetic, and some others
 
 Head = Callable[[AST], str]
-"""Returns the head of a rule that holds where a term overflows."""
+"""A function that returns, for a term, the head of the rule that holds where the term overflows."""
 
 
 def number_checks(statements: Iterable[AST]) -> str:
-    """Return rules that derive ``_beyond`` for terms that overflow; an empty text where no term can."""
+    """Return the text of rules that derive ``_beyond/4`` where a term overflows; empty where no term can."""
     return "".join(f"{text}\n" for _, text in overflow_checks(statements, _overflow_atom))
 
 
 def _overflow_atom(term: AST) -> str:
+    """Return the atom ``_beyond(File,Line,Column,Term)`` for a term or a sum."""
     begin = term.location.begin
     shown = "the sum" if term.ast_type in _AGGREGATES else str(term).removeprefix("(").removesuffix(")")
     return f"{BEYOND[0]}({quote(begin.filename)},{begin.line},{begin.column},{quote(shown)})"
 
 
 def overflow_checks(statements: Iterable[AST], head: Head) -> Iterator[tuple[AST, str]]:
-    """Return check rules, which derive ``head`` where a term overflows, each with the statement of the term.
+    """Yield check rules, which derive ``head`` where a term overflows, each with the statement of the term.
 
     The body of a check has the conditions of the statement that bind variables or have no arithmetic. The
     check evaluates the term again only if a value in it is large enough for an overflow.
@@ -79,7 +80,10 @@ def overflow_checks(statements: Iterable[AST], head: Head) -> Iterator[tuple[AST
 
 
 def _term_checks(node: AST, conditions: Sequence[AST], head: Head) -> Iterator[str]:
-    """Yield rules whose head holds where a term is beyond clingo's numbers."""
+    """Yield check rules for the terms in a node, where an overflow is possible.
+
+    ``conditions`` are the bodies of the rules; their heads are ``head`` of the term.
+    """
     for term in _arithmetic_terms(node):
         leaves: dict[str, AST] = {}
         text = " ".join(_postfix(term, leaves))
@@ -93,7 +97,8 @@ def _term_checks(node: AST, conditions: Sequence[AST], head: Head) -> Iterator[s
             continue
         for leaf, leaf_term in leaves.items():
             if _number(leaf_term) is None:
-                yield f"{head(term)} :- {_body_text([*conditions, f'not -{limit} <= {leaf} <= {limit}', call])}."
+                large = f"not -{limit} <= {leaf} <= {limit}"
+                yield f"{head(term)} :- {_body_text([*conditions, large, call])}."
 
 
 def _postfix(term: AST, leaves: dict[str, AST]) -> Iterator[str]:
@@ -141,17 +146,22 @@ def _max_magnitude(term: AST, limit: int) -> int:
 
 
 def _number(term: AST) -> int | None:
+    """Return the number that a term is; ``None`` for any other term."""
     if term.ast_type == ASTType.SymbolicTerm and term.symbol.type is SymbolType.Number:
         return int(term.symbol.number)
     return None
 
 
 def _has_interval(term: AST) -> bool:
+    """Whether a term has an interval such as ``1..9``."""
     return any(node.ast_type == ASTType.Interval for node in nodes(term))
 
 
 def _sum_aggregates(rule: AST) -> Iterator[tuple[AST, list[str]]]:
-    """Return the sums of a rule, each with its elements as text, in which weights become magnitudes."""
+    """Yield each sum of a rule with its elements as text, where weights are replaced by magnitudes.
+
+    A sum whose weights are all 1 is left out.
+    """
     for body_part in rule.body if rule.ast_type == ASTType.Minimize else [rule.head, *rule.body]:
         aggregate = body_part.atom if body_part.ast_type == ASTType.Literal else body_part
         if aggregate.ast_type not in _AGGREGATES:
@@ -163,7 +173,7 @@ def _sum_aggregates(rule: AST) -> Iterator[tuple[AST, list[str]]]:
 
 
 def _magnitude_elements(element: AST) -> Iterator[str]:
-    """Return two elements, as text, that add the magnitude of a positive and of a negative weight."""
+    """Yield two elements, as text: one adds a positive weight, one the magnitude of a negative weight."""
     inner = element.condition
     condition = list(inner.condition) if isinstance(inner, AST) else list(inner)
     weight = "_Weight"
@@ -174,7 +184,7 @@ def _magnitude_elements(element: AST) -> Iterator[str]:
 
 
 def _terms_with_conditions(statement: AST) -> Iterator[tuple[AST, Sequence[AST]]]:
-    """Return the terms and conjuncts of a statement, each with the conditions that bind its variables."""
+    """Yield the terms and conjuncts of a statement, each with the conditions that bind its variables."""
     conditions = _check_conditions(statement.body)
     if statement.ast_type == ASTType.Minimize:
         yield from ((term, conditions) for term in (statement.weight, statement.priority, *statement.terms))
@@ -202,7 +212,7 @@ def _terms_with_conditions(statement: AST) -> Iterator[tuple[AST, Sequence[AST]]
 def _element_terms(
     element: AST, conditions: Sequence[AST], counted: bool = False
 ) -> Iterator[tuple[AST, Sequence[AST]]]:
-    """Return the terms and literals of an element, each with the conditions that bind its variables.
+    """Yield the terms and literals of an element, each with the conditions that bind its variables.
 
     The element is of an aggregate, a choice or a disjunction, or is a conditional literal. With ``counted``,
     its literal is one of the conditions.
@@ -217,7 +227,7 @@ def _element_terms(
 
 
 def _arithmetic_terms(node: AST) -> Iterator[AST]:
-    """Return the maximal terms with arithmetic in a node of the syntax tree."""
+    """Yield the maximal terms with arithmetic in a node of the syntax tree."""
     if node.ast_type == ASTType.SymbolicAtom:
         symbol = node.symbol
         while symbol.ast_type == ASTType.UnaryOperation:  # p with a minus before it
@@ -239,7 +249,7 @@ def _arithmetic_terms(node: AST) -> Iterator[AST]:
 
 
 def _check_conditions(body: Iterable[AST]) -> list[AST]:
-    """Return the conditions that bind variables or have neither arithmetic nor aggregates."""
+    """Return the conjuncts of a body that bind variables or have neither arithmetic nor aggregates."""
     return [
         condition
         for condition in body
@@ -251,6 +261,7 @@ def _conditions_without(node: AST, conditions: Sequence[AST]) -> Sequence[AST]:
     """Return the conditions for the check of a node, without the node itself if others bind its variables.
 
     Clingo drops an instance in which an equation overflows. A check with this equation would be dropped, too.
+    Without the node, conditions with variables that nothing else binds are left out as well.
     """
     others = [condition for condition in conditions if condition != node]
     bound = _bound_variables(others)
@@ -279,15 +290,15 @@ def _bound_variables(conditions: Sequence[AST]) -> set[str]:
         before = len(bound)
         bound.update(
             name
-            for one, other in comparisons
-            if bound.issuperset(variables(other))
-            for name in _solvable_variables(one)
+            for solved_term, value_term in comparisons
+            if bound.issuperset(variables(value_term))
+            for name in _solvable_variables(solved_term)
         )
     return bound
 
 
 def _solvable_variables(term: AST) -> Iterator[str]:
-    """Return the variable for which clingo solves an equation with a linear term such as ``2*X+1``."""
+    """Yield the variable for which clingo solves an equation with a linear term such as ``2*X+1``."""
     if term.ast_type == ASTType.Variable:
         yield term.name
     elif term.ast_type == ASTType.BinaryOperation and term.operator_type in _LINEAR:
@@ -297,6 +308,7 @@ def _solvable_variables(term: AST) -> Iterator[str]:
 
 
 def _is_calculation(node: AST) -> bool:
+    """Whether a node is an operation with two operands or an aggregate."""
     return node.ast_type in {ASTType.BinaryOperation, ASTType.Aggregate, ASTType.BodyAggregate}
 
 
@@ -315,6 +327,7 @@ def _binds(condition: AST) -> bool:
 
 
 def _body_text(conditions: Sequence[AST | str]) -> str:
+    """Return conditions as the body of a rule; ``#true`` if there are none."""
     return "; ".join(map(str, conditions)) or "#true"
 
 
@@ -326,12 +339,14 @@ class _AnonymousVariableNamer(Transformer):
         self._in_term = False
 
     def visit_BinaryOperation(self, term: AST) -> AST:  # noqa: N802 (the name clingo looks for)
+        """Rename each ``_`` within an operation."""
         before, self._in_term = self._in_term, True
         changed = term.update(**self.visit_children(term))
         self._in_term = before
         return changed
 
     def visit_Variable(self, variable: AST) -> AST:  # noqa: N802
+        """Return a variable, under a new name such as ``_Any1`` if it is ``_`` within an operation."""
         if self._in_term and variable.name == "_":
             return variable.update(name=f"_Any{next(self._number)}")
         return variable

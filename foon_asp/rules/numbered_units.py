@@ -1,4 +1,4 @@
-"""Rules that name units by their numbers."""
+"""Search for rules that name a unit by its number, such as ``:- use(7).``"""
 
 from collections.abc import Iterable
 from typing import NamedTuple
@@ -12,14 +12,14 @@ from foon_asp.rules.fact_values import COLUMNS, Columns
 
 
 class NumberedUnit(NamedTuple):
-    """The atom or comparison of a rule that names a unit by its number, as text, and its rule's source."""
+    """The atom or comparison that names a unit by its number, as text, and the place of its rule."""
 
     text: str
     source: Source
 
 
 def numbered_unit(statements: Iterable[AST]) -> NumberedUnit | None:
-    """Return the first atom or comparison that names a unit by its number; ``None`` without one.
+    """Return the first atom or comparison that names a unit by its number, as ``use(7)`` does, else ``None``.
 
     A number that is matched with a unit only through a user predicate is not found.
     """
@@ -54,5 +54,6 @@ def _numbered_unit_text(clause: Clause) -> str:
     )
 
 
-def _has_constant(piece: AST) -> bool:
-    return any(node.ast_type == ASTType.SymbolicTerm for node in nodes(piece))
+def _has_constant(syntax_node: AST) -> bool:
+    """Whether a node of the syntax tree has a number, text or word in it."""
+    return any(node.ast_type == ASTType.SymbolicTerm for node in nodes(syntax_node))

@@ -1,4 +1,4 @@
-"""Warnings for names in parameters of ready-made constraints that do not occur in the network."""
+"""Warnings about parameters of ready-made constraints that name nothing in the network."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -36,7 +36,11 @@ PARAMETERS: Final[Mapping[str, tuple[str, ...]]] = {
 def unknown_parameters(
     constraints: Sequence[Constraint], settings: Sequence[str], values: FactValues
 ) -> Iterator[str]:
-    """Return a warning for each parameter whose name is not in the network, with the most similar name."""
+    """Yield a warning for each parameter whose value names nothing in the network, with a similar name.
+
+    Only unchanged ready-made constraints are checked. ``settings``, as ``NAME=VALUE``, are the parameters of
+    those that are passed without constants of their own.
+    """
     shared = dict(setting.partition("=")[::2] for setting in settings)
     for constraint in dict.fromkeys(map(find_constraint, constraints)):
         file = constraint.file if isinstance(constraint, LibraryUse) else constraint

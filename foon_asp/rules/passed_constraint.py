@@ -1,4 +1,4 @@
-"""Constraints as they are passed: a file, a rule as text, a ready-made one with constants of its own."""
+"""Constraints as users pass them: a file, a rule as text, or a ready-made one with constants of its own."""
 
 import re
 from os import PathLike
@@ -27,9 +27,9 @@ class RuleText(NamedTuple):
 
 
 class LibraryUse(NamedTuple):
-    """A ready-made constraint with constants of its own.
+    """A ready-made constraint with constants of its own, as ``forbid_motion:forbidden_motion=fry``.
 
-    ``file`` is its file, and ``written`` the text of its option.
+    ``file`` is the file of the constraint, and ``written`` this text of the option.
     """
 
     file: Path
@@ -37,7 +37,7 @@ class LibraryUse(NamedTuple):
 
     @property
     def name(self) -> str:
-        """The name of the use in messages, in place of a file's name."""
+        """The text of the option, which messages have in place of a file's name."""
         return self.written
 
     def __str__(self) -> str:
@@ -45,7 +45,7 @@ class LibraryUse(NamedTuple):
 
     @property
     def constants(self) -> dict[str, str]:
-        """The constants with their values as written; raises :class:`UserError` for wrong syntax."""
+        """The values of the constants by name, as written; raises :class:`UserError` for wrong syntax."""
         name, _, remaining = self.written.partition(":")
         values: dict[str, str] = {}
         while True:
@@ -103,7 +103,10 @@ def given_constraint(constraint: str | PathLike[str] | Constraint) -> Constraint
 
 
 def named_constraint(text: str, path: type[Path] = Path) -> Path | LibraryUse:
-    """Return the ready-made constraint that ``NAME:CONSTANT=VALUE`` stands for; any other text is a path."""
+    """Return a text as use of a ready-made constraint if it is ``NAME:CONSTANT=VALUE``, else as a path.
+
+    An existing path is always a path. ``path`` is the class of paths that are returned.
+    """
     name, colon, _ = text.partition(":")
     if colon and not exists(Path(text)):
         file = _ready_made_file(Path(name))
@@ -138,6 +141,7 @@ def find_constraint(constraint: Constraint) -> Constraint:
 
 
 def _constraints_folder() -> Path:
+    """Return the folder of the ready-made constraints."""
     return encodings_folder() / "constraints"
 
 
@@ -150,7 +154,7 @@ def _ready_made_file(path: Path) -> Path | None:
 
 
 def exists(path: Path) -> bool:
-    """Whether a path exists; a text that cannot be a path does not."""
+    """Whether a path exists; ``False`` for a text that cannot be a path."""
     try:
         return path.exists()
     except (OSError, ValueError):

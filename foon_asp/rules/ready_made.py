@@ -39,12 +39,12 @@ _REQUIRING_PREFIX = "require_"  # prefix of the names of constraints that requir
 
 
 class ReadyMade:
-    """Ready-made constraints of one question, with the meaning by which certificates are checked.
+    """Ready-made constraints of one question, which are evaluated without clingo.
 
     They are local. A tree needs redundant units for them only as members of required sets.
     ``unsettled``: some constraints do more than to remove and require units; these are antimonotone.
     ``shrinking``: all constraints are antimonotone: if a tree keeps to them, so does every subtree.
-    ``constants``: the constants by name, as terms. ``files``: the files of the constraints.
+    ``constants``: the constants by name, as terms of clingo. ``files``: the files of the constraints.
     """
 
     local: Final = True
@@ -63,7 +63,7 @@ class ReadyMade:
         return READ | {_PRICE} if "max_price" in self.constants else READ
 
     def has_same_meaning(self, problem: Problem) -> bool:
-        """Whether the constraints have the same meaning for a problem here as in clingo.
+        """Whether the constraints mean the same for a problem here as in clingo.
 
         ``False`` if some are ``unsettled`` and the rules see less than the kitchen (``kitchen_seen``), and
         for prices that clingo refuses.
@@ -96,20 +96,23 @@ class ReadyMade:
         return Restriction(removed.__contains__, required)
 
     def upper_limits(self, problem: Problem, deadline: Deadline) -> Iterator[LinearRow]:
-        """Return the limits on sums over units."""
+        """Yield the upper limits on sums over units, where each summand belongs to one unit."""
         for rule_meaning in self._meanings(problem)[0]:
             if rule_meaning.max_sum is not None and all(len(units) == 1 for units, _ in rule_meaning.things):
                 amounts = {unit: int(amount) for units, amount in rule_meaning.things for unit in units}
                 yield LinearRow(amounts, int(rule_meaning.max_sum))
 
     def keeps(self, problem: Problem, units: Collection[int]) -> bool:
-        """Whether a tree keeps to all constraints."""
+        """Whether a tree, given by the ids of its units, keeps to all constraints."""
         _, ruled = self._meanings(problem)
         tree = frozenset(units)
         return ruled.fault(tree, frozenset(range(len(problem.network))) - tree) is None
 
     def _meanings(self, problem: Problem) -> tuple[tuple[Meaning, ...], Ruled]:
-        """Return the meanings of the constraints for a problem, and a checker of trees against these."""
+        """Return the meanings of the constraints for a problem, and a checker of trees against these.
+
+        The result for the last problem is cached.
+        """
         if self._last is None or self._last[0] is not problem:
             question, nodes = question_of(problem), len(problem.network.objects)
             meanings = tuple(meaning(rule, question) for rule in self.rules)
@@ -141,7 +144,12 @@ def ready_made(constraints: Sequence[Constraint], settings: Sequence[str]) -> Re
 def _rules_with_values(
     uses: Sequence[tuple[str, Mapping[str, str]]], shared: Mapping[str, str]
 ) -> tuple[Sequence[Rule], Mapping[str, str]] | None:
-    """Return constraints with their values, and all constants as terms; ``None`` if a value is not plain."""
+    """Return constraints with the values of their constants, and all constants as terms of clingo.
+
+    ``uses`` are the names of constraints with their constants; these are ``shared`` where a use has none of
+    its own. ``None`` if a value is not a plain text or number, a constant is missing, or a setting in
+    ``shared`` is not used.
+    """
     facts: dict[str, set[str]] = {name: set() for name in LISTED}
     constants: dict[str, str] = {}
     used_names: set[str] = set()
@@ -176,7 +184,7 @@ def _rules_with_values(
 
 
 def question_of(problem: Problem) -> Question:
-    """Return the view of a problem that constraints read."""
+    """Return what the meanings of constraints read of a problem: its network, kitchen, goals and rates."""
     seen = problem.as_seen or problem
     return Question(
         problem.network,

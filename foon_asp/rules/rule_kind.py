@@ -38,11 +38,12 @@ from foon_asp.rules.understood import AtLeastOne, Removes, Row, Translator
 class Kind(StrEnum):
     """The effect of a rule on the set of trees.
 
-    ``FACT``: it is independent of the tree, and allows every tree or none. ``DELETING``: it excludes the
-    trees with one of certain units, which are known without clingo. ``SHRINKING``: it is antimonotone: if it
-    allows a tree, it allows every subset. ``REQUIRING``: it is monotone: if it allows a tree, it allows every
-    superset. ``OTHER``: its kind is unknown. ``HELPER``: it derives an auxiliary predicate, and excludes
-    nothing by itself.
+    ``FACT``: it is independent of the tree, and allows every tree or none.
+    ``DELETING``: it excludes the trees with one of certain units, which are known without clingo.
+    ``SHRINKING``: it is antimonotone: if it allows a tree, it allows every subset.
+    ``REQUIRING``: it is monotone: if it allows a tree, it allows every superset.
+    ``OTHER``: its kind is unknown.
+    ``HELPER``: it derives an auxiliary predicate, and excludes nothing by itself.
     """
 
     FACT = "fact"
@@ -73,11 +74,11 @@ class Rule(NamedTuple):
     """A rule of one question, with its kind and locality.
 
     ``reason``, at ``reason_source``: why the kind is ``OTHER``, or why the rule has no effect; else empty.
-    ``nonlocality``, at ``nonlocality_source``: the facts outside the tree that the rule reads. It is empty
-    for a local rule, whose truth for a tree stays the same without the facts of units outside the tree and of
-    object nodes that only such units have. A ``HELPER`` is always local: its facts count for the rules that
-    use it.
-    ``one_of``: the rule requires a unit of each of one or several sets; the sets are found before the search.
+    ``nonlocality``, at ``nonlocality_source``: the facts outside the tree that the rule reads; empty for a
+    local rule. The truth of a local rule for a tree stays the same without the facts of units outside the
+    tree and of object nodes that only such units have. A ``HELPER`` is always local: its facts count for the
+    rules that use it.
+    ``one_of``: the rule requires a unit of each of one or several sets, which are found before the search.
     """
 
     source: Source
@@ -90,12 +91,12 @@ class Rule(NamedTuple):
 
     @property
     def local(self) -> bool:
-        """Whether it reads facts about the tree alone."""
+        """Whether the rule reads facts about the tree alone."""
         return not self.nonlocality
 
     @property
     def without_effect(self) -> bool:
-        """Whether it allows every tree, since a condition in it never holds."""
+        """Whether the rule allows every tree, since a condition in it never holds."""
         return bool(self.reason) and self.kind is not Kind.OTHER
 
 
@@ -115,7 +116,8 @@ class Analysis:
     ) -> None:
         """Analyse parsed statements.
 
-        ``settings`` are the constants that are set, as ``name=value`` for clingo.
+        ``settings`` are the constants that are set, as ``name=value`` for clingo. ``varied`` are predicates
+        whose facts vary within the question.
         """
         statements = tuple(statements)
         self.definitions = [statement for statement in statements if statement.ast_type == ASTType.Definition]
@@ -146,7 +148,7 @@ class Analysis:
         )
 
     def kind(self, clause: Clause) -> tuple[Kind, Doubt | None]:
-        """Return the kind of a clause, and the reason if the kind is ``OTHER``, else ``None``."""
+        """Return the kind of a clause, and why it is ``OTHER``; ``None`` for any other kind."""
         dependence = self.dependence
         doubt: Doubt | None
         if not clause.plain:
@@ -170,7 +172,7 @@ class Analysis:
         return kind, self._why_not_monotone(clause) if kind is Kind.OTHER else None
 
     def reads(self, signature: Signature) -> bool:
-        """Whether some rule reads a predicate."""
+        """Whether the body of some rule has a predicate."""
         return any(
             literal.signature == signature for clause in self.live for literal in literals(clause.body)
         )
@@ -209,16 +211,20 @@ class Analysis:
         return Doubt("more units may break it, and others may mend it", clause.source)
 
     def _classify_statement(self, statement: AST, live: Sequence[Clause]) -> Rule:
-        """Return a statement as a rule with its kind and locality."""
+        """Return a statement as a rule with its kind and locality.
+
+        ``live`` are its clauses that can have an effect.
+        """
         source = source_of(statement)
         if statement.ast_type != ASTType.Rule:
             reason = f"{str(statement).split(maxsplit=1)[0]} is nothing that is looked into"
             return Rule(source, Kind.OTHER, reason, source, reason, source)
         if not live:
-            idle = list(clauses(statement, 0, self.constants))
-            off = next((why for clause in idle if (why := self._why_never(clause.body))), _NEVER)
-            kind = Kind.FACT if any(clause.is_constraint for clause in idle) else Kind.HELPER
-            return Rule(source, kind, f"{off}, so it has no effect", source)
+            idle_clauses = list(clauses(statement, 0, self.constants))
+            reasons = map(self._why_never, (clause.body for clause in idle_clauses))
+            why_never = next(filter(None, reasons), _NEVER)
+            kind = Kind.FACT if any(clause.is_constraint for clause in idle_clauses) else Kind.HELPER
+            return Rule(source, kind, f"{why_never}, so it has no effect", source)
         kinds = [self.kind(clause) for clause in live]
         kind = _conjunction_kind(kind for kind, _ in kinds)
         doubt = next((doubt for _, doubt in kinds if doubt), None)
@@ -237,7 +243,11 @@ class Analysis:
         )
 
     def _translate_rule(self, number: int, rule: Rule) -> Rule:
-        """Record the translations of a rule; return the rule with the kind that follows from them."""
+        """Return a rule with the kind that follows from its translations.
+
+        The translations are added to ``removals``, ``at_least_ones`` and ``rows``, under the index of the
+        rule (``number``).
+        """
         live = self.of_rule[number]
         if not rule.local or rule.kind in {Kind.HELPER, Kind.OTHER}:
             return rule

@@ -1,4 +1,4 @@
-"""The rules added to one question, from the user and the library, analysed without clingo where possible."""
+"""The user and ready-made rules of one question, analysed without clingo where possible."""
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
@@ -24,7 +24,7 @@ _SHRINKING = {Kind.HELPER, Kind.FACT, Kind.DELETING, Kind.SHRINKING}
 
 
 class ShownRule(NamedTuple):
-    """A rule as it is shown: its text, and places in files.
+    """A rule as users see it: its text, and places in files.
 
     ``use`` is the option text of a ready-made constraint with constants of its own, else empty.
     """
@@ -69,7 +69,8 @@ class Rules:
     ) -> None:
         """Analyse encodings, under constants that are set as ``name=value`` for clingo.
 
-        ``endless`` says that grounding them may not terminate.
+        ``varied`` are predicates of facts that the question derives or varies. ``endless`` says that
+        grounding the rules may not terminate.
         """
         self._encodings, self._constants, self._endless = tuple(encodings), tuple(constants), endless
         self._last: tuple[Problem, Collection[int] | None, UnitAnswers | None] | None = None
@@ -83,7 +84,7 @@ class Rules:
 
     @cached_property
     def shown_rules(self) -> tuple["ShownRule", ...]:
-        """The rules as they are shown to users; those of a ready-made constraint as in its file."""
+        """The rules as users see them; those of a ready-made constraint as in its file."""
         texts: dict[int, str] = {}
         uses: dict[str, Stated] = {}
         for encoding in self._encodings:
@@ -96,6 +97,7 @@ class Rules:
             texts.update((id(statement), statement_text(original, file)) for statement, original in pairs)
 
         def source_in_file(source: Source | None) -> Source | None:
+            """Return a place, of a ready-made constraint with its file instead of the name of its use."""
             use = None if source is None else uses.get(source.file)
             return source if source is None or use is None else source._replace(file=str(use.file))
 
@@ -140,7 +142,7 @@ class Rules:
 
     @cached_property
     def unsettled(self) -> tuple[Rule, ...]:
-        """The rules that clingo has to enforce: the restriction by :meth:`restriction_of` does not cover them."""
+        """The rules that clingo has to enforce, since :meth:`restriction_of` does not cover them."""
         settled = self._analysis.removals.keys() | self._analysis.at_least_ones.keys()
         return tuple(
             rule
@@ -160,6 +162,7 @@ class Rules:
 
     @property
     def _at_least_ones(self) -> list[AtLeastOne]:
+        """The at-least-one constraints of all rules."""
         return [one for of_rule in self._analysis.at_least_ones.values() for one in of_rule]
 
     @property
@@ -177,7 +180,7 @@ class Rules:
     def limits(self, problem: Problem, deadline: Deadline) -> list[LinearRow]:
         """Return the linear limits on executions that rules state, over the units that can execute.
 
-        Raises :class:`UserError` as :meth:`restriction_of` does.
+        Empty if clingo refuses a rule. Raises :class:`UserError` as :meth:`restriction_of` does.
         """
         answers = self._answers(problem, deadline) if self._analysis.rows else None
         limits: list[LinearRow] = []
@@ -191,7 +194,7 @@ class Rules:
         return limits
 
     def upper_limits(self, problem: Problem, deadline: Deadline) -> Iterator[LinearRow]:
-        """Return the upper limits on sums over units, where the network is not large."""
+        """Yield the upper limits on sums over units; none if the rules are left to the search."""
         if not self.leave_to_search(problem):
             yield from (row for row in self.limits(problem, deadline) if not row.at_least)
 
@@ -216,16 +219,19 @@ class Rules:
     def _answers(
         self, problem: Problem, deadline: Deadline, units: Collection[int] | None = None
     ) -> UnitAnswers | None:
-        """Return the evaluation of the rules on single units; ``None`` where clingo refuses a rule."""
+        """Return the evaluation of the rules on single units; ``None`` where clingo refuses a rule.
+
+        The result for the last problem and units is cached.
+        """
         analysis = self._analysis
         if self._last is None or self._last[0] is not problem or self._last[1] is not units:
-            stated: list[Understood] = [*analysis.removals.values(), *self._at_least_ones]
-            stated += analysis.rows.values()
+            understood: list[Understood] = [*analysis.removals.values(), *self._at_least_ones]
+            understood += analysis.rows.values()
             answers: UnitAnswers | None = UnitAnswers(Restriction(lambda _: False), {})
-            if stated:
+            if understood:
                 numbers = analysis.removals.keys() | analysis.at_least_ones.keys() | analysis.rows.keys()
                 clauses = [clause for number in numbers for clause in analysis.of_rule[number]]
-                programs = [line for one in stated for line in one.program]
+                programs = [line for rule in understood for line in rule.program]
                 rules, read = analysis.translator.complete_program(programs, clauses)
                 plain = problem if problem.restriction is None else replace(problem, restriction=None)
                 among = self._evaluated_units(plain) if units is None else units

@@ -1,4 +1,4 @@
-"""Texts for clingo of constraints: files, rules, and ready-made constraints with renamed predicates."""
+"""Texts of constraints for clingo: files, rules, and ready-made constraints with renamed predicates."""
 
 from collections.abc import Collection, Sequence
 from typing import cast
@@ -37,9 +37,10 @@ def load_constraints(constraints: Sequence[Constraint]) -> dict[Constraint, Load
 
 
 def _renamed_constraint(use: LibraryUse, number: int) -> Stated:
-    """Return the text of a ready-made constraint with constants set, and constants and predicates renamed.
+    """Return a ready-made constraint with its constants set, as text in which names end in a number.
 
-    Each statement is on the same line as its beginning in the file.
+    Constants and predicates of its own are renamed, so that a constraint can be used twice. Each statement is
+    on the same line as its beginning in the file. ``number`` is that of the use.
     """
     encoding = read_encoding(use.file)
     values = use.constants
@@ -67,13 +68,14 @@ def _renamed_constraint(use: LibraryUse, number: int) -> Stated:
 
 
 def _parse_term(text: str) -> AST:
+    """Return a term as syntax tree."""
     statements: list[AST] = []
     parse_string(f"#const _value = {text}.", statements.append)
     return cast("AST", statements[-1].value)
 
 
 class _Renamer(Transformer):
-    """Rewriter that renames predicates and constants."""
+    """Rewriter that gives some predicates and constants a name with a number: ``_tainted_1``."""
 
     def __init__(self, predicates: Collection[Signature], constants: Collection[str], number: int) -> None:
         self._predicates, self._constants, self._number = predicates, constants, number
@@ -111,5 +113,6 @@ class _Renamer(Transformer):
         return self._rename_signature(shown)
 
     def _rename_signature(self, statement: AST) -> AST:
+        """Return ``#defined`` or ``#show``, with the new name of its predicate if it has one."""
         own = (statement.name, statement.arity) in self._predicates
         return statement.update(name=self.name(statement.name)) if own else statement

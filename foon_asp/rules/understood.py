@@ -57,10 +57,11 @@ class Removes(NamedTuple):
 
 
 class AtLeastOne(NamedTuple):
-    """A rule that requires a unit for each term of which its program derives ``asks``.
+    """A rule that requires a unit of each of several sets.
 
-    The tree needs a unit in whose world the program derives ``meets`` of the same term. ``wanted`` are traits
-    of such units.
+    Its program derives ``asks`` of a term for each set, and ``meets`` of this term in the world of each unit
+    in the set. If it derives ``meets`` in the world ``NOTHING``, no unit of the set is needed. ``wanted`` are
+    traits of the units in the sets.
     """
 
     program: tuple[str, ...]
@@ -98,7 +99,8 @@ _ALLOWED = {
 class Translator:
     """Translator of rules to removals, at-least-one constraints or rows.
 
-    The method for a kind returns ``None`` for a rule of another kind.
+    The method for a kind returns ``None`` for a rule of another kind. ``program`` has the clauses of all
+    rules.
     """
 
     def __init__(self, program: Sequence[Clause], constants: Constants, dependence: Dependence) -> None:
@@ -118,7 +120,7 @@ class Translator:
         self._units_read_by_predicate: dict[Signature, int] = {}
 
     def removal(self, clauses: Sequence[Clause]) -> Removes | None:
-        """Return the rule that consists of ``clauses`` as a removal of units."""
+        """Return the rule that consists of ``clauses`` as a removal of units; ``None`` for another rule."""
         if not all(self._has_no_calculation(clause.body) for clause in clauses):
             return None
         if any(self._count_units_read(clause.body) > 1 for clause in clauses):
@@ -128,28 +130,32 @@ class Translator:
         )
 
     def at_least_one(self, clause: Clause) -> AtLeastOne | None:
-        """Return the at-least-one constraint that a requiring rule stands for."""
-        deciding = [n for n, one in enumerate(clause.body) if self._count_units_read([one])]
+        """Return the at-least-one constraint that a requiring rule stands for; ``None`` for another rule."""
+        deciding = [n for n, conjunct in enumerate(clause.body) if self._count_units_read([conjunct])]
         others = [n for n in range(len(clause.body)) if n not in deciding]
         alternatives = [self._alternatives(clause, n) for n in deciding]
         if None in alternatives or not self._has_no_calculation(clause.body):
             return None
         bound = {name for n in others for name in global_variables(clause.body[n])}
-        of = f"({','.join([*sorted(bound), ''])})" if bound else "()"
-        when = [str(self._worlds.visit(clause.ast.body[n])) for n in others]
+        set_term = f"({','.join([*sorted(bound), ''])})" if bound else "()"
+        set_conditions = [str(self._worlds.visit(clause.ast.body[n])) for n in others]
         self._numbers += 1
-        program = [f"{self._answer_head('asks', of, _WORLD_OF_NOTHING)} :- {'; '.join(when) or '#true'}."]
+        asks = self._answer_head("asks", set_term, _WORLD_OF_NOTHING)
+        program = [f"{asks} :- {'; '.join(set_conditions) or '#true'}."]
         rows: list[Sequence[Trait]] = []
         always = all(getattr(clause.body[n], "holds", None) for n in others)
-        for written, conjuncts in (pair for pairs in alternatives for pair in pairs or ()):
-            body = "; ".join([*when, *written, f"__world({self._world})"])
-            program.append(f"{self._answer_head('meets', of, self._world)} :- {body}.")
+        for unit_conditions, conjuncts in (pair for pairs in alternatives for pair in pairs or ()):
+            body = "; ".join([*set_conditions, *unit_conditions, f"__world({self._world})"])
+            program.append(f"{self._answer_head('meets', set_term, self._world)} :- {body}.")
             rows += TraitReader(self._clauses, self._constants).rows(conjuncts)
             always &= self._requires_unit(conjuncts)
         return AtLeastOne(tuple(program), Wanted(rows, always))
 
     def row(self, clause: Clause) -> Row | None:
-        """Return the row that a rule such as ``:- #sum { N,U : times(U,N) } > 9`` stands for."""
+        """Return the row that a rule such as ``:- #sum { N,U : times(U,N) } > 9`` stands for.
+
+        ``None`` for another rule.
+        """
         body = clause.body
         if len(body) == 1 and isinstance(body[0], Aggregate):
             return self._sum_row(body[0], clause.ast.body[0].atom.elements)
@@ -197,7 +203,10 @@ class Translator:
         return [*rules, *programs], facts
 
     def _sum_row(self, aggregate: Aggregate, elements: Sequence[AST]) -> Row | None:
-        """Return the row that bounds a sum or count with one guard; ``None`` for other aggregates."""
+        """Return the row that bounds a sum or count with one guard; ``None`` for other aggregates.
+
+        ``elements`` are the syntax trees of its elements.
+        """
         is_sum = aggregate.function is AggregateFunction.Sum
         sizes = {len(element.terms) for element in aggregate.elements}
         if aggregate.negations or len(aggregate.guards) != 1 or sizes != {1 + is_sum}:
@@ -220,7 +229,8 @@ class Translator:
         """Return a rule that derives the weight of one execution, and the predicate that states executions.
 
         The predicate is ``use/1`` or ``times/2``. Nothing else reads the number of executions, so the weight
-        of n executions is n times this weight. ``None`` if the element has another form.
+        of n executions is n times this weight. ``None`` if the element has another form. ``condition`` has
+        the syntax trees of its condition.
         """
         executions = _execution_arguments(element.condition)
         if executions is None or not self._has_no_calculation(element.condition):
@@ -248,7 +258,12 @@ class Translator:
         return f"{self._answer_head('weighs', weight, unit)} :- {'; '.join(body)}.", signature.signature
 
     def _remaining_bound(self, comparison: int, term: AST) -> tuple[bool, int] | None:
-        """Return the bound that forbids a comparison: whether it is a lower bound, and its number."""
+        """Return the bound that forbids a comparison: whether it is a lower bound, and its number.
+
+        For ``> 9`` it is ``(False, 9)``.
+
+        ``None`` if the term is no number, and for ``=`` and ``!=``.
+        """
         number, allowed = value(term, self._constants), _ALLOWED.get(ComparisonOperator(comparison))
         if number is None or number.type is not SymbolType.Number or allowed is None:
             return None
@@ -289,10 +304,12 @@ class Translator:
         ]
 
     def _new_answer_head(self, what: str, of: object) -> str:
+        """Return a head ``_of_unit`` with a new number, in the world that is a variable."""
         self._numbers += 1
         return self._answer_head(what, of, self._world)
 
     def _answer_head(self, what: str, of: object, world: object) -> str:
+        """Return a head ``_of_unit`` with the number of the last translation."""
         return f'{ANSWER[0]}({self._numbers},"{what}",{of},{world})'
 
     def _rule_text(self, head: str, clause: Clause) -> str:
@@ -323,7 +340,10 @@ class Translator:
         return min(looks, 2)
 
     def _count_units_read_by_atom(self, signature: Signature) -> int:
-        """Return on how many units of the tree an atom depends; 2 stands for more than one."""
+        """Return on how many units of the tree an atom depends; 2 stands for more than one.
+
+        The result is cached by predicate.
+        """
         if signature in {USE, AVAILABLE}:
             return 1
         if signature not in self._units_read_by_predicate:
@@ -357,7 +377,10 @@ class Translator:
     def _has_no_calculation(
         self, body: Iterable[Conjunct], above: frozenset[Signature] = frozenset()
     ) -> bool:
-        """Whether a body, and the rules that derive what it reads, calculate nothing."""
+        """Whether a body, and the rules that derive what it reads, calculate nothing.
+
+        ``above`` has the predicates whose rules are being checked.
+        """
         conjuncts = tuple(body)
         terms = [term for one in conjuncts for term in _terms_of(one)]
         inner = [literal for one in conjuncts for literal in literals([one])]
@@ -373,6 +396,7 @@ class Translator:
         )
 
     def _is_variable_or_value(self, term: AST) -> bool:
+        """Whether a term is a variable, or has a value that is known without clingo."""
         return term.ast_type == ASTType.Variable or value(term, self._constants) is not None
 
 
@@ -380,7 +404,7 @@ _Alternative = tuple[list[str], Sequence[Conjunct]]
 
 
 def _terms_of(conjunct: Conjunct) -> Iterator[AST]:
-    """Return all terms in a conjunct, except in comparisons whose truth is known."""
+    """Yield all terms in a conjunct, except in comparisons whose truth is known."""
     if isinstance(conjunct, Literal):
         yield from conjunct.arguments
     elif isinstance(conjunct, Test):
@@ -417,16 +441,18 @@ def _comparison(test: Test) -> tuple[AST, int, AST] | None:
 
 
 def _states_executions(conjunct: Conjunct) -> bool:
+    """Whether a conjunct is an atom ``use(U)`` or ``times(U,N)`` without ``not``."""
     return isinstance(conjunct, Literal) and conjunct.positive and conjunct.signature in _ONE_EXECUTION
 
 
 def _execution_arguments(condition: Iterable[Conjunct]) -> tuple[AST, ...] | None:
-    """Return the arguments of the one literal of a condition that states executions, else ``None``."""
+    """Return the arguments of the only ``use(U)`` or ``times(U,N)`` in a condition, else ``None``."""
     literals = [one for one in condition if _states_executions(one)]
     return literals[0].arguments if len(literals) == 1 and isinstance(literals[0], Literal) else None
 
 
 def _states_count(condition: Iterable[Conjunct], count: AST) -> bool:
+    """Whether ``count`` is the number of executions in the only ``times(U,N)`` of a condition."""
     executions = _execution_arguments(condition)
     return executions is not None and len(executions) == 2 and str(executions[1]) == str(count)
 

@@ -15,7 +15,11 @@ from foon_asp.rules.understood import ANSWER, NOTHING
 
 
 class UnitAnswers(NamedTuple):
-    """Removed units and required sets as a ``restriction``, and ``weights`` by row and by unit id."""
+    """The evaluation of rules on single units.
+
+    ``restriction`` has the removed units and the required sets. ``weights`` has the weight of units by the
+    number of a row and by unit id.
+    """
 
     restriction: Restriction | Contradiction
     weights: Mapping[int, Mapping[int, int]]
@@ -30,9 +34,9 @@ def ask_units(
 ) -> UnitAnswers | None:
     """Evaluate the programs of rules on units; with a ``deadline``, in another process.
 
-    ``read`` are the predicates of facts that the rules read. Returns ``None`` if clingo refuses a rule; the
-    search then reports the message of clingo. Raises :class:`UserError` if rules read a price that is not a
-    whole number of hundredths.
+    ``program`` has the rules as text. ``read`` are the predicates of facts that the rules read. Returns
+    ``None`` if clingo refuses a rule; the search then reports the message of clingo. Raises
+    :class:`UserError` if rules read a price that is not a whole number of hundredths.
     """
     try:
         facts = write_facts_read(problem, sorted(units), read)
@@ -71,7 +75,10 @@ def candidate_units(network: Network, wanted: Iterable[Wanted]) -> set[int] | No
 
 
 def _read_answers(problem: Problem, rows: Iterable[tuple[Value, ...]]) -> UnitAnswers:
-    """Return the removed units, required sets and weights in the atoms that clingo derived."""
+    """Return the removed units, required sets and weights in the atoms that clingo derived.
+
+    ``rows`` are the arguments of the atoms ``_of_unit``.
+    """
     removed: set[int] = set()
     required: dict[tuple[Value, Value], set[int] | None] = {}  # None where a set is not needed
     weights: dict[int, dict[int, int]] = {}

@@ -39,7 +39,11 @@ _Values = Mapping[str, Sequence[Symbol]]  # by variable, where all values are kn
 
 
 class _Unmatched(NamedTuple):
-    """A literal that matches no fact: its rule, the rule's head, its constants, the warning and its place."""
+    """A literal that matches no fact, with the warning about it and its place.
+
+    ``clause`` is the index of its rule in the file, ``head`` the predicate that the rule derives, and
+    ``constants`` are the values in the literal.
+    """
 
     clause: int
     head: Signature | None
@@ -51,7 +55,7 @@ class _Unmatched(NamedTuple):
 def unmatched_warnings(
     theirs: Sequence[Encoding], ours: Sequence[Encoding], settings: Sequence[str], values: FactValues
 ) -> Iterator[Diagnostic]:
-    """Return a warning for each literal over a fact whose constants match nothing in the network.
+    """Yield a warning for each literal over a fact whose constants match nothing in the network.
 
     ``theirs`` are user files, ``ours`` ready-made constraints used with them, and ``settings`` the constants
     that are set. There is no warning if another rule with the same head has a literal that matches and has
@@ -86,7 +90,10 @@ class _Search:
         self._listed_values = self._find_listed_values(program)
 
     def unmatched(self, program: Sequence[Clause]) -> Iterator[_Unmatched]:
-        """Return the literals of the rules of one file that match no fact."""
+        """Return the literals of the rules of one file that match no fact.
+
+        A literal is left out if another rule with the same head matches with the same constants.
+        """
         candidates: list[_Unmatched] = []
         matched: defaultdict[tuple[Signature | None, frozenset[Symbol]], set[int]] = defaultdict(set)
         for number, clause in enumerate(program):
@@ -135,11 +142,15 @@ class _Search:
         return [dict(zip(values_by_position, combination, strict=True)) for combination in combinations]
 
     def _matches(self, literal: Literal, row: Mapping[int, Symbol]) -> bool:
+        """Whether some fact has the values in ``row``, by argument position of the literal."""
         wanted = {position: plain_value(symbol) for position, symbol in row.items()}
         return self._values.matches(literal.signature[0], COLUMNS[literal.signature], wanted)
 
     def _argument_values(self, literal: Literal, bound: _Values) -> dict[int, Sequence[Symbol]]:
-        """Return the possible values of arguments, by position, without arguments of unknown values."""
+        """Return the possible values of arguments, by position, without arguments of unknown values.
+
+        ``bound`` has the possible values of variables.
+        """
         values_by_position: dict[int, Sequence[Symbol]] = {}
         for position, argument in enumerate(literal.arguments):
             if argument.ast_type == ASTType.Variable:
@@ -156,10 +167,10 @@ class _Search:
         values: dict[str, Sequence[Symbol]] = {}
         for conjunct in conjuncts:
             if isinstance(conjunct, Test) and (equation := _equation(conjunct.ast)) is not None:
-                for one, other in (equation, equation[::-1]):
-                    symbol = value(other, self._constants)
-                    if one.ast_type == ASTType.Variable and symbol is not None:
-                        values[one.name] = (symbol,)
+                for variable, term in (equation, equation[::-1]):
+                    symbol = value(term, self._constants)
+                    if variable.ast_type == ASTType.Variable and symbol is not None:
+                        values[variable.name] = (symbol,)
             elif isinstance(conjunct, Literal) and conjunct.positive:
                 for position, argument in enumerate(conjunct.arguments):
                     symbols = self._listed_values.get((conjunct.signature, position))
@@ -188,7 +199,10 @@ class _Search:
         return columns
 
     def _warning_text(self, literal: Literal, rows: Sequence[Mapping[int, Symbol]]) -> str:
-        """Return the warning about a literal that matches no fact, with similar names."""
+        """Return the warning about a literal that matches no fact, with similar names.
+
+        ``rows`` are its combinations of values.
+        """
         name, columns = literal.signature[0], COLUMNS[literal.signature]
         variables = {
             position: argument.name
@@ -247,7 +261,11 @@ class _Search:
 def _unlisted_warnings(
     program: Sequence[Clause], constants: Constants, values: FactValues
 ) -> list[tuple[Clause, str]]:
-    """Return warnings for listed facts of ready-made constraints where no listed name is in the network."""
+    """Return warnings for user facts such as ``allergen("milk").`` with a name that is not in the network.
+
+    Each warning comes with the clause of the fact. There is none for a predicate of which some fact has a
+    name in the network.
+    """
     listed: defaultdict[Signature, list[tuple[Clause, str]]] = defaultdict(list)
     for clause in program:
         if clause.head is not None and clause.head.signature in LISTED_FACTS and not clause.body:
@@ -265,7 +283,10 @@ def _unlisted_warnings(
 def _literals_with_scope(
     conjuncts: Iterable[Conjunct], scope: tuple[Conjunct, ...]
 ) -> Iterator[tuple[Literal, tuple[Conjunct, ...]]]:
-    """Return the literals in conjuncts of a body, each with the other conjuncts of its condition."""
+    """Yield the literals in conjuncts of a body, each with the conjuncts of the condition around it.
+
+    A literal outside conditions comes with ``scope``.
+    """
     for conjunct in conjuncts:
         if isinstance(conjunct, Literal):
             yield conjunct, scope
@@ -277,7 +298,7 @@ def _literals_with_scope(
 
 
 def _equation(node: AST) -> tuple[AST, AST] | None:
-    """Return the two terms of ``X = Y``."""
+    """Return the two terms of ``X = Y``; ``None`` for any other node."""
     if node.ast_type != ASTType.Literal or node.sign != Sign.NoSign:
         return None
     atom = node.atom
@@ -294,6 +315,7 @@ def _is_set(symbol: Symbol) -> bool:
 
 
 def _symbol_text(symbol: Symbol) -> str:
+    """Return a symbol as text, without the quotes of a string."""
     return symbol.string if symbol.type is SymbolType.String else str(symbol)
 
 
@@ -304,5 +326,6 @@ def _literal_text(literal: Literal, arguments: Mapping[int, str]) -> str:
 
 
 def _first_three(words: Sequence[str]) -> list[str]:
+    """Return the first three different words, and ``...`` if there are more."""
     words = list(dict.fromkeys(words))
     return [*words[:3], "..."] if len(words) > 3 else words

@@ -10,14 +10,15 @@ from foon_asp.rules.clause import Signature
 class Worlds(Transformer):
     """Rewriter that adds a world as first argument to predicates that differ from world to world.
 
-    Their names get a ``prefix``; ``world`` is a variable that no rule has.
+    ``dependent`` are these predicates; their names get a ``prefix``. ``world`` is a variable that no rule
+    has.
     """
 
     def __init__(self, dependent: Collection[Signature], world: str, prefix: str = "_") -> None:
         self._dependent, self._world, self._prefix = dependent, world, prefix
 
     def visit_SymbolicAtom(self, atom: AST) -> AST:  # noqa: N802 (the name clingo looks for)
-        """Return an atom with a world."""
+        """Return an atom, with a world if its predicate differs from world to world."""
         return atom.update(symbol=self._add_world(atom.symbol))
 
     def _add_world(self, symbol: AST) -> AST:
@@ -33,7 +34,7 @@ class Worlds(Transformer):
 
 
 def unused_variable(text: str, name: str) -> str:
-    """Return a name of a variable that does not occur in a text of rules."""
+    """Return ``name``, with as many ``_`` after it as it takes that a text of rules does not have it."""
     while name in text:
         name += "_"
     return name
