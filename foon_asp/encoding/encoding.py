@@ -74,13 +74,14 @@ class Encoding:
     without a file, their name stands in place of the file.
 
     Attributes:
+        rules: The file or text.
         defined: Signatures of atoms in heads, with places.
         declared: Signatures under ``#defined``, with places.
         used: Signatures of atoms in bodies, with places.
         names: Names of constants and functions in terms, with places.
         constants: Values of ``#const`` statements by name, as written.
         constant_sources: Places of ``#const`` statements by name.
-        special: Types of statements and atoms other than plain rules, with places.
+        special: Types of the statements and atoms that a constraint may not have, with places.
         assigns: Whether a variable may get its value from an aggregate (``N = #count {...}``).
         text: All statements as clingo prints them.
         statements: All statements, in order.
@@ -101,16 +102,18 @@ class Encoding:
     def first_argument_names(self, signatures: Collection[Signature]) -> Iterator[tuple[str, str]]:
         """Yield the predicate and the first argument of each atom over some signatures.
 
-        The argument is empty if it is not a name, such as a variable or a number.
+        The argument is empty if it is no name, but a variable, for example.
         """
         symbols = (
             node.symbol for statement in self.statements for node in nodes(statement) if _is_atom(node)
         )
         for symbol in symbols:
             if (symbol.name, len(symbol.arguments)) in signatures:
-                first = symbol.arguments[0]
-                named = first.ast_type == ASTType.SymbolicTerm and first.symbol.type is SymbolType.Function
-                yield symbol.name, first.symbol.name if named else ""
+                argument = symbol.arguments[0]
+                is_name = (
+                    argument.ast_type == ASTType.SymbolicTerm and argument.symbol.type is SymbolType.Function
+                )
+                yield symbol.name, argument.symbol.name if is_name else ""
 
     @property
     def definitions(self) -> list[AST]:
@@ -147,11 +150,11 @@ def read_encoding(rules: Loaded) -> Encoding:
     included: set[str] = set()
     kinds: set[ASTType] = set()
 
-    def statement(statement: AST) -> None:
+    def collect(statement: AST) -> None:
         """Collect a statement; record its file and kind."""
         included.add(statement.location.begin.filename)
         kinds.add(statement.ast_type)
-        collector.statement(statement)
+        collector.collect(statement)
 
     if isinstance(rules, Stated):
         check_text(rules.text, rules.place)
@@ -162,16 +165,16 @@ def read_encoding(rules: Loaded) -> Encoding:
         raise UserError(f"{rules}: no such file; expected an encoding (.lp)")
     messages: list[str] = []
     try:
-        parse(rules, statement, listener(messages))
+        parse(rules, collect, listener(messages))
     except RuntimeError as error:
         raise program_fault(messages, str(error), [rules]) from None
     if isinstance(rules, Stated):
         if not kinds - {ASTType.Program, ASTType.Comment}:
             raise UserError(f"{rules.place}: found {rules.text!r}, expected a rule such as {_EXAMPLE}")
         return encoding
-    others = sorted(file for file in included if Path(file).resolve() not in checked)
-    if others:
-        raise UserError(f"{rules} includes {others[0]}, which was not checked: leave that out")
+    unchecked_files = sorted(file for file in included if Path(file).resolve() not in checked)
+    if unchecked_files:
+        raise UserError(f"{rules} includes {unchecked_files[0]}, which was not checked: leave that out")
     return encoding
 
 
@@ -182,7 +185,7 @@ class _Collector(Transformer):
         self.encoding = encoding
         self._in_head = False
 
-    def statement(self, statement: AST) -> None:
+    def collect(self, statement: AST) -> None:
         """Record a statement: its text, and the predicates and constants that it defines and uses."""
         encoding = self.encoding
         encoding.text += f"{statement}\n"
@@ -237,12 +240,12 @@ class _Collector(Transformer):
         if symbol.ast_type == ASTType.UnaryOperation:  # classical negation: -p(X)
             self._record_atom(symbol.argument, "" if sign else "-")
         elif symbol.ast_type == ASTType.Pool:  # p(1;2)
-            for one in symbol.arguments:
-                self._record_atom(one, sign)
+            for argument in symbol.arguments:
+                self._record_atom(argument, sign)
         else:
             signature = sign + symbol.name, len(symbol.arguments)
-            noted = self.encoding.defined if self._in_head else self.encoding.used
-            noted.setdefault(signature, _source(symbol.location))
+            first_places = self.encoding.defined if self._in_head else self.encoding.used
+            first_places.setdefault(signature, _source(symbol.location))
             self.visit_sequence(symbol.arguments)
 
     def visit_Function(self, function: AST) -> AST:  # noqa: N802
@@ -400,8 +403,8 @@ def _reserved_name_errors(encoding: Encoding) -> list[Diagnostic]:
     """Return errors for reserved names in bodies, ``#defined`` and terms of a constraint."""
     atoms = [
         (f"{name}/{arity}", source)
-        for noted in (encoding.used, encoding.declared)
-        for (name, arity), source in noted.items()
+        for sources in (encoding.used, encoding.declared)
+        for (name, arity), source in sources.items()
         if _is_reserved(name) and (name, arity) not in _LOOKED_AT
     ]
     terms = [(name, source) for name, source in encoding.names.items() if _is_reserved(name)]
@@ -466,13 +469,15 @@ def undefined_message(signature: Signature, defined: set[Signature]) -> str:
     """Return the message that a predicate is undefined, with the similar one that may be meant."""
     name, arity = signature
     message = f"no rule or fact defines {name}/{arity}, so it never holds"
-    same_name = sorted(n for other, n in defined if other == name)
+    same_name = sorted(n for defined_name, n in defined if defined_name == name)
     if same_name:
         return message + f"; did you mean {name}/{same_name[0]}?"
-    nearest = difflib.get_close_matches(name, sorted({other for other, _ in defined}), n=1, cutoff=0.5)
+    nearest = difflib.get_close_matches(
+        name, sorted({defined_name for defined_name, _ in defined}), n=1, cutoff=0.5
+    )
     if not nearest:
         return message + "; the predicates are listed in encodings/README.md"
-    arities = {n for other, n in defined if other == nearest[0]}
+    arities = {n for defined_name, n in defined if defined_name == nearest[0]}
     return message + f"; did you mean {nearest[0]}/{min(arities, key=lambda n: (abs(n - arity), n))}?"
 
 
@@ -533,12 +538,17 @@ def unset_constant_warnings(added: Sequence[Encoding], constants: Sequence[str])
     warnings = []
     for encoding in added:
         rules = encoding.rules
-        others = {signature for other in added if other is not encoding for signature in other.defined}
+        defined_elsewhere = {
+            signature
+            for other_encoding in added
+            if other_encoding is not encoding
+            for signature in other_encoding.defined
+        }
         for name, value in encoding.constants.items():
             if (
                 value not in {'""', "#sup", "#inf"}
                 or name in settings_given
-                or encoding.predicates_with_argument(name) & others
+                or encoding.predicates_with_argument(name) & defined_elsewhere
             ):
                 continue
             if isinstance(rules, Stated) and rules.file is not None:
@@ -573,25 +583,25 @@ def program_fault(
 ) -> InputError | UserError:
     """Return clingo's messages about a program as one error with places and source lines.
 
-    ``files`` are the files and texts of the program. A source line of a text is found only there.
-    ``otherwise`` is the message of the error if clingo has given none.
+    ``files`` are the files and texts of the program; the lines of a text are looked up there. ``otherwise``
+    is the message of the error if clingo has given none.
     """
     errors: dict[Source, Diagnostic] = {}
     for message in messages:
-        first, *notes = (_MESSAGE.match(line) for line in message.strip().split("\n"))
-        if first is None:
+        main_match, *note_matches = (_MESSAGE.match(line) for line in message.strip().split("\n"))
+        if main_match is None:
             continue
-        matches = [first]
+        matches = [main_match]
         details = [line.strip() for line in message.strip().split("\n")[1:]]
-        if first["text"].startswith("unsafe variables"):
-            matches = list(filter(None, notes))
+        if main_match["text"].startswith("unsafe variables"):
+            matches = list(filter(None, note_matches))
         for match in matches:
-            if match is not first:
+            if match is not main_match:
                 text = f"the variable {match['text'].split()[0]} is unsafe: no literal of the body binds it"
-            elif first["kind"] == "error":
-                text = " ".join([first["text"], *details])
+            elif main_match["kind"] == "error":
+                text = " ".join([main_match["text"], *details])
             else:
-                text = _dropped_message(first["text"].rstrip(":"), " ".join(details))
+                text = _dropped_message(main_match["text"].rstrip(":"), " ".join(details))
             source = Source(match["file"], int(match["line"]), int(match["column"]))
             errors.setdefault(source, located_diagnostic(Severity.ERROR, "clingo", text, source, files))
     if errors:

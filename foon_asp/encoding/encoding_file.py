@@ -72,10 +72,10 @@ class _Token(NamedTuple):
 
 
 def check_text(text: str, origin: str) -> None:
-    """Raise :class:`InputError` for rules without a file that break the rules of :func:`included_files`.
+    """Raise :class:`InputError` for rules without a file that clingo must not read.
 
-    ``origin`` is their name in messages. They may include nothing. Raises :class:`UserError` for a text that
-    is not UTF-8.
+    They have ``#include``, or what :func:`included_files` refuses. ``origin`` is their name in messages.
+    Raises :class:`UserError` for a text that is not UTF-8.
     """
     errors: list[Diagnostic] = []
     if any("\ud800" <= letter <= "\udfff" for letter in text):
@@ -101,9 +101,9 @@ def _check_file(file: Path, errors: list[Diagnostic]) -> list[Path]:
         line = content.count(b"\n", 0, fault.start) + 1
         column = fault.start - content.rfind(b"\n", 0, fault.start)
         message = f"found the byte {content[fault.start]:#04x}, expected text in UTF-8"
-        shown = content.split(b"\n")[line - 1].decode("utf-8", "replace").rstrip("\r")
+        line_text = content.split(b"\n")[line - 1].decode("utf-8", "replace").rstrip("\r")
         source = Source(str(file), line, column)
-        errors.append(Diagnostic(Severity.ERROR, "not-utf-8", message, source, shown))
+        errors.append(Diagnostic(Severity.ERROR, "not-utf-8", message, source, line_text))
         return []
     return _check_content(text, str(file), file, errors)
 
@@ -119,8 +119,8 @@ def _check_content(text: str, origin: str, file: Path | None, errors: list[Diagn
         """Append an error at an offset of the text (``start``), with its line."""
         line = text.count("\n", 0, start) + 1
         column = start - text.rfind("\n", 0, start)
-        shown = lines[line - 1].rstrip("\r")
-        errors.append(Diagnostic(Severity.ERROR, code, message, Source(origin, line, column), shown))
+        line_text = lines[line - 1].rstrip("\r")
+        errors.append(Diagnostic(Severity.ERROR, code, message, Source(origin, line, column), line_text))
 
     if "\0" in text:  # clingo ends a text there, even within a comment
         error("letter", "found U+0000, which no rule can have", text.index("\0"))
@@ -132,9 +132,13 @@ def _check_content(text: str, origin: str, file: Path | None, errors: list[Diagn
             error("large-number", f"found the number {token.text}, expected at most {LARGEST}", token.start)
         elif token.kind == "sign" and not (token.text.isascii() and token.text.isprintable()):
             letter = f"U+{ord(token.text):04X}"
-            shown = f"{token.text!r} ({letter})" if token.text.isprintable() else letter
+            letter_text = f"{token.text!r} ({letter})" if token.text.isprintable() else letter
             advice = "; clingo's quotation mark is \"" if token.text in "“”„«»‘’" else ""
-            error("letter", f"found {shown}, which no rule can have outside of quotes{advice}", token.start)
+            error(
+                "letter",
+                f"found {letter_text}, which no rule can have outside of quotes{advice}",
+                token.start,
+            )
         elif token.kind == "call":
             name = "".join(token.text[:-1].split())
             error("function", f"found {name}(...), expected no function: rules run no code", token.start)
@@ -142,17 +146,19 @@ def _check_content(text: str, origin: str, file: Path | None, errors: list[Diagn
             error("script", "found #script, expected rules: scripts in encodings are not run", token.start)
             break
         elif token.text == "#include":
-            named = next(tokens, None)
+            target_token = next(tokens, None)
             if file is None:
                 error("include", "found #include, expected rules: only a file includes others", token.start)
-            elif named is not None and named.kind == "string":
-                target = _ESCAPED.sub(lambda match: "\n" if match[1] == "n" else match[1], named.text[1:-1])
+            elif target_token is not None and target_token.kind == "string":
+                target = _ESCAPED.sub(
+                    lambda match: "\n" if match[1] == "n" else match[1], target_token.text[1:-1]
+                )
                 problem = _include_refusal(file, target)
                 if problem:
-                    error("include", f"found #include of {named.text}, {problem}", token.start)
+                    error("include", f"found #include of {target_token.text}, {problem}", token.start)
                 else:
                     included.append(file.parent / target)
-            elif named is not None and named.text == "<":
+            elif target_token is not None and target_token.text == "<":
                 error(
                     "include", "found #include <...>, expected a file: nothing else is included", token.start
                 )

@@ -117,8 +117,8 @@ def _weight(rate: Fraction, scale: int) -> int:
     digits = 40  # doubled until the floor is settled
     while math.floor(low) < math.floor(high):
         value = scale * Fraction(_minus_log(rate, digits))
-        off = value / 10**digits
-        low, high = value - off, value + off
+        error = value / 10**digits
+        low, high = value - error, value + error
         digits *= 2
     return math.floor(low)
 
@@ -129,6 +129,8 @@ def _exponents(rates: Collection[Fraction]) -> dict[Fraction, dict[int, int]]:
     numbers = {factor: number for number, factor in enumerate(base)}
     exponents: dict[Fraction, dict[int, int]] = {}
     for rate in rates:
-        up, down = (powers(number, base) for number in rate.as_integer_ratio())  # no factor is in both
-        exponents[rate] = {numbers[f]: e for f, e in up.items()} | {numbers[f]: -e for f, e in down.items()}
+        # no factor is in both
+        of_numerator, of_denominator = (powers(number, base) for number in rate.as_integer_ratio())
+        exponents[rate] = {numbers[factor]: e for factor, e in of_numerator.items()}
+        exponents[rate] |= {numbers[factor]: -e for factor, e in of_denominator.items()}
     return exponents

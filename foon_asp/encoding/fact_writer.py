@@ -112,7 +112,7 @@ def write_facts_read(
     Without ``scales``, ``risk/2`` and ``cost/3`` are omitted. Raises :class:`UserError` where prices are read
     and a price is no whole number of hundredths.
     """
-    seen = problem.as_seen or problem
+    problem_seen = problem.as_seen or problem
     name = problem.network.object_number
     names = {predicate for predicate, _ in read}
     nodes = described_nodes(problem, units)
@@ -123,16 +123,16 @@ def write_facts_read(
 
     def add(atoms: Iterable[_Atom]) -> None:
         """Add a line with the atoms whose predicates are read, if there are any."""
-        wanted = [_atom_text(atom) for atom in atoms if (atom[0], FACT_PREDICATES[atom[0]]) in read]
-        if wanted:
-            lines.append(". ".join(wanted) + ".")
+        texts = [_atom_text(atom) for atom in atoms if (atom[0], FACT_PREDICATES[atom[0]]) in read]
+        if texts:
+            lines.append(". ".join(texts) + ".")
 
     for unit in units:
         atoms = [("unit", f"{_check_int32(problem.network.unit_number(unit))}")]
         atoms += _unit_atoms(problem, unit, scales, prices, names)
         if "rate" in names and problem.rates is not None and not (scales and scales.rates):
             number = problem.network.unit_number(unit)
-            atoms.append(("rate", f"{number},{millionths(seen.rate(unit))}"))
+            atoms.append(("rate", f"{number},{millionths(problem_seen.rate(unit))}"))
         add(atoms)
     for o in nodes if of_objects or not names.isdisjoint(("object", "kitchen")) else ():
         atoms = [("object", f"{_check_int32(name(o))}")]
@@ -162,10 +162,11 @@ def _other_lines(problem: Problem, nodes: Sequence[int]) -> Iterator[str]:
 def write_worlds(
     problem: Problem, units: Iterable[int], predicates: Collection[str], world: str
 ) -> Iterator[str]:
-    """Yield facts about units and their object nodes by predicates, each unit in a separate world.
+    """Yield a line with the facts about each unit and its object nodes, in a world of the unit.
 
-    In a separate world, rules see no other unit. ``world`` is the predicate of worlds. Other predicates begin
-    with ``_``, and have the number of the unit, which stands for its world, as first argument.
+    In a world, rules see no other unit. ``predicates`` are the names of the predicates to write, and
+    ``world`` is that of worlds. A predicate ``p`` becomes ``_p``, with the number of the unit as first
+    argument, which stands for the world.
     """
     network = problem.network
     sees_nodes = not OBJECT_FACTS.isdisjoint(predicates)
@@ -214,8 +215,8 @@ def _unit_atoms(
 ) -> list[_Atom]:
     """Return the facts about a unit, except ``unit/1``.
 
-    ``read`` are the predicates to write; a few others may be written, too. With ``prices``, the facts that
-    only user rules read are included.
+    ``read`` has the names of predicates to write; a few others may be written, too. Unless ``prices`` is
+    ``None``, facts about sources, videos and prices are among them.
     """
     network = problem.network
     inputs, name = network.inputs[unit], network.object_number
@@ -230,8 +231,8 @@ def _unit_atoms(
         if predicate in read:
             atoms += [(predicate, f"{u},{name(o)}") for o in nodes]
     if problem.items is not None:
-        gone = problem.flows[unit].uses
-        atoms += [("uses_up" if o in gone else "stays", f"{u},{name(o)}") for o in problem.needs[unit]]
+        used_up = problem.flows[unit].uses
+        atoms += [("uses_up" if o in used_up else "stays", f"{u},{name(o)}") for o in problem.needs[unit]]
     if "inputs" in read:
         atoms.append(("inputs", f"{u},{len(inputs)}"))
     if "ingredients" in read:
@@ -239,8 +240,8 @@ def _unit_atoms(
         atoms.append(("ingredients", f"{u},{_check_int32(ingredients)}"))
     if scales and scales.rates:
         weight = scales.rates.weights[problem.rate(unit)]
-        seen = (problem.as_seen or problem).rate(unit)
-        atoms += [("rate", f"{u},{millionths(seen)}"), ("risk", f"{u},{_check_int32(weight)}")]
+        rate_seen = (problem.as_seen or problem).rate(unit)
+        atoms += [("rate", f"{u},{millionths(rate_seen)}"), ("risk", f"{u},{_check_int32(weight)}")]
     if scales:
         weights = ((objective.row.term, scales.weight(objective, [unit])) for objective in scales.facts)
         atoms += [("cost", f"{term},{u},{_check_int32(weight)}") for term, weight in weights]
@@ -303,7 +304,8 @@ def _object_atoms(problem: Problem, o: int) -> list[_Atom]:
 def object_facts(node: ObjectNode, predicates: Collection[str] = OBJECT_FACTS) -> list[_Atom]:
     """Return the facts about an object node by ``predicates``, without its number as first argument.
 
-    ``object/1`` is not among them.
+    ``object/1`` is not among them. Each fact is a predicate with its arguments as text: ``("state",
+    '"sliced"')``.
     """
     atoms = [("label", quote(node.label))] if "label" in predicates else []
     if "state" in predicates:
@@ -344,10 +346,7 @@ def write_objectives(objectives: Sequence[Objective]) -> str:
 
 
 def write_exponents(problem: Problem, scales: Scales) -> str:
-    """Return facts ``_exponent(U,F,E)``: the :meth:`Scales.vector` of each unit, by index.
-
-    The objective is the one that is rounded.
-    """
+    """Return facts ``_exponent(U,F,E)``: entry F of the :meth:`Scales.unit_vector` of unit U is E."""
     return "".join(
         f"_exponent({problem.network.unit_number(unit)},{factor},{_check_int32(number)}).\n"
         for unit, vector in scales.unit_vectors().items()
@@ -406,9 +405,9 @@ def write_constraints(weights: Mapping[int, int], kept: Iterable[int]) -> str:
 
 
 def write_corrections(corrections: Iterable[Iterable[int]]) -> str:
-    """Return facts ``_correction(K,C)``: constraint C is in set number K.
+    """Return facts ``_correction(K,C)``: constraint C is in correction set number K.
 
-    Without the constraints of a set, given as numbers, there is a tree.
+    Without the constraints of a correction set, there is a tree. Constraints are numbers.
     """
     return "".join(
         f"_correction({index},{number}).\n"
@@ -446,7 +445,7 @@ def write_at_most(number: int, bounds: Mapping[Objective, int]) -> str:
 
 
 def write_below(below: Iterable[Mapping[Objective, int | Fraction]], scales: Scales) -> str:
-    """Return facts ``_at_most(K,Objective,N)``: at least one cost of each set has to be undercut.
+    """Return facts ``_at_most(K,Objective,N)``: a tree has to undercut at least one cost of each set.
 
     Raises :class:`UserError` for an objective that is rounded.
     """
@@ -549,9 +548,10 @@ def write_distances(trees: Sequence[Collection[Hashable]], chosen: int) -> str:
     """
     sets = list(map(frozenset, trees))
     facts = [f"_chosen_trees({chosen}).", *(f"_tree({number})." for number in range(len(sets)))]
-    for number, one in enumerate(sets):
+    for number, tree in enumerate(sets):
         facts += [
-            f"_distance({number},{other},{len(one ^ sets[other])})." for other in range(number + 1, len(sets))
+            f"_distance({number},{other_number},{len(tree ^ sets[other_number])})."
+            for other_number in range(number + 1, len(sets))
         ]
     return "\n".join(facts) + "\n"
 
@@ -563,6 +563,8 @@ def write_tool_order(
     may_lack: bool,
 ) -> str:
     """Return facts of tools, their uses, and the order of steps; kinds of tools and steps are numbers.
+
+    They are ``_tools(K,N)``, ``_may_lack(K)``, ``_tool_use(I,K)``, ``_in_use(I,S)`` and ``_waits(S,R)``.
 
     Parameters:
         tools: The number of tools of each kind.

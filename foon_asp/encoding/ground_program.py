@@ -55,7 +55,7 @@ class GroundProgram:
                 self._control.load(file)
 
     def _ground(self, parts: Sequence[tuple[str, Sequence[Symbol]]]) -> None:
-        """Ground parts of the program; add messages about overflows to the others."""
+        """Ground parts of the program; messages about overflows are added to ``_messages``."""
         try:
             self._control.ground(parts, Exact())
         finally:
@@ -172,7 +172,10 @@ def _used(model: Model) -> frozenset[int]:
 
 
 def _rows_of_numbers(model: Model, name: str, arity: int) -> frozenset[tuple[int, ...]]:
-    """Return the arguments of the atoms of a predicate in an answer, of those with numbers alone."""
+    """Return the arguments of the atoms of a predicate in an answer.
+
+    Atoms with an argument that is no number are left out.
+    """
     atoms = (symbol.arguments for symbol in model.symbols(atoms=True) if symbol.match(name, arity))
     return frozenset(
         tuple(argument.number for argument in arguments)

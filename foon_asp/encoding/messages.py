@@ -22,14 +22,14 @@ def listener(messages: list[str], max_kept: int = 1000) -> Callable[[MessageCode
     After ``max_kept`` messages, it adds only those about statements.
     """
 
-    def hear(code: MessageCode, text: str) -> None:
-        """Keep a message if it is about something dropped."""
+    def log(code: MessageCode, text: str) -> None:
+        """Add a message if it is about something dropped."""
         if text.startswith(f"{CHECKS_FILE}:") and code is MessageCode.OperationUndefined:
             return  # the checked rule causes the same message
         if code not in _HARMLESS and (code is MessageCode.RuntimeError or len(messages) < max_kept):
             messages.append(text)
 
-    return hear
+    return log
 
 
 @contextmanager

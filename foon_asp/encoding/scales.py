@@ -14,8 +14,9 @@ from foon_asp.problem.number import INT32_MAX
 class CostScale(NamedTuple):
     """Integer weights for the costs of units by an objective whose costs are fractions and add up.
 
-    ``weights[c]`` is ``floor(scale * c)``. ``exact``: no cost is rounded. ``places[c]`` is the index of a
-    cost in the vectors of :meth:`Scales.vector`. ``total`` is the weight of all units.
+    ``weights[c]`` is ``floor(scale * c)``.
+    ``exact``: no cost is rounded. ``places[c]`` is the index of a cost in the vectors of
+    :meth:`Scales.vector`. ``total`` is the weight of all units.
     """
 
     scale: Fraction
@@ -144,10 +145,10 @@ class Scales:
         return sum(scale * cost != weights[Fraction(cost)] for cost in costs)
 
     def vector(self, units: Iterable[int]) -> dict[int, int]:
-        """Return a vector, by index, from which the exact total by the rounded objective follows.
+        """Return a vector of units from which their exact total by the rounded objective follows.
 
-        For success rates, it has the exponents of coprime factors; otherwise, the number of units of each
-        cost.
+        For success rates, it has the exponents by number of a coprime factor. For other objectives, it has
+        the number of units of each cost, by the index of the cost.
         """
         assert self.rounded is not None
         if multiplies(self.rounded):
@@ -174,7 +175,7 @@ class Scales:
     def bound(self, objective: Objective, weight: int) -> int | Fraction:
         """Return the bound on the cost by an objective that follows from a lower bound on weights.
 
-        For success, it is an upper bound.
+        It is an upper bound for success, and a lower one for objectives that add up.
         """
         if multiplies(objective):
             return Fraction(1) if self.rates is None else self.rates.success_bound(weight)
@@ -183,7 +184,7 @@ class Scales:
     def allows(self, objective: Objective, weight: int, figure: int | Fraction) -> bool:
         """Return whether units of a total ``weight`` can have the cost ``figure`` by an objective.
 
-        Without rounding, only one cost has that weight.
+        Unless the objective is rounded, only one cost has that weight.
         """
         bound = self.bound(objective, weight)
         if objective is not self.rounded:

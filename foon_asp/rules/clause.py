@@ -197,9 +197,9 @@ def _has_no_operation(term: AST) -> bool:
 
 
 def value(term: AST, constants: Constants) -> Symbol | None:
-    """Return the value of a number, text or word, also after a minus; ``None`` for any other term.
+    """Return the value of a number, text, word or constant; ``None`` for any other term.
 
-    A word that names a constant has the value of the constant, which is ``None`` if it is unknown.
+    A number may stand after a minus. A constant whose value is unknown has the value ``None``.
     """
     if term.ast_type == ASTType.SymbolicTerm:
         symbol: Symbol = term.symbol
@@ -304,7 +304,7 @@ class _Reader:
         return tuple(map(self.conjunct, body))
 
     def conjunct(self, node: AST) -> Conjunct:
-        """Return a node of a body as a conjunct of the class that fits."""
+        """Return a node of a body as a conjunct: an aggregate, a conditional literal, or another one."""
         if node.ast_type == ASTType.ConditionalLiteral:
             literal = self.literal(node.literal)
             return Conditional(literal, self.conjuncts(node.condition), str(node))

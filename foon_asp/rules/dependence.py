@@ -324,8 +324,8 @@ def _closure(start: Signature, reads: Mapping[Signature, set[Signature]]) -> set
     """Return a predicate and all predicates that it is derived from, directly or through others."""
     closure, stack = {start}, [start]
     while stack:
-        for read in reads.get(stack.pop(), ()):
-            if read not in closure:
-                closure.add(read)
-                stack.append(read)
+        for source in reads.get(stack.pop(), ()):
+            if source not in closure:
+                closure.add(source)
+                stack.append(source)
     return closure

@@ -181,10 +181,10 @@ class FactValues:
 
     def _may_have_fact_outside_memory(self, name: str, wanted: Mapping[int, Value]) -> bool:
         """Whether the part of a store that is not in memory may have a fact with the ``wanted`` texts."""
-        whole = self._whole_network
-        if whole is None or self._has_fact(name, wanted, whole):
+        network = self._whole_network
+        if network is None or self._has_fact(name, wanted, network):
             return True
-        is_cut = _is_read_one_by_one(whole) and max(len(whole), len(whole.objects)) > self.max_read
+        is_cut = _is_read_one_by_one(network) and max(len(network), len(network.objects)) > self.max_read
         return is_cut and name not in {"motion", "utensil"}
 
 

@@ -69,10 +69,10 @@ class Locality:
         return lacking.nonlocality if lacking else None
 
     def _find_leads_to(self) -> dict[Signature, dict[int, set[Subject]]]:
-        """Return what the arguments of auxiliary predicates always stand for in the tree.
+        """Find the arguments of auxiliary predicates that are in the tree whenever an atom holds.
 
-        The result has the subjects by predicate and argument position. It is the greatest fixpoint over the
-        rules, and is also set as ``_leads_to``.
+        Return the subjects that each argument stands for then, by predicate and position. They are the
+        greatest fixpoint over the rules. The result is also set as ``_leads_to``.
         """
         leads = {
             signature: {position: set(Subject) for position in range(signature[1])}
@@ -124,7 +124,7 @@ class Locality:
     def _add_about_arguments(self, clause: Clause, head: Literal) -> bool:
         """Add the head arguments to ``_about`` that have to be in the tree so that a rule is local.
 
-        If none can make it local, mark the predicate as not local. Return whether anything changed.
+        If that cannot make the rule local, mark its predicate as not local. Return whether anything changed.
         """
         changed = False
         while head.signature not in self._nonlocal:

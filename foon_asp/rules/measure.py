@@ -59,12 +59,12 @@ class Measure:
         from foon_asp.rules.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)
 
         rules = read_rules(self.text, self.place)
-        seen = problem.as_seen or problem
+        problem_seen = problem.as_seen or problem
         key: list[Hashable] = [self]
         if "rate" in rules.reads:
-            if seen.rates is None:
+            if problem_seen.rates is None:
                 raise UserError(f"{self.place}: the rules read rate/2: give a rates file, with --rates FILE")
-            key += [frozenset(seen.rates.items()), frozenset(seen.own_rates.items())]
+            key += [frozenset(problem_seen.rates.items()), frozenset(problem_seen.own_rates.items())]
         if not rules.reads.isdisjoint(("needs", "gives", "utensil")):
             key += [problem.containers, problem.utensils]
         costs_by_key = _costs_by_network.setdefault(problem.network, {})
@@ -110,16 +110,16 @@ class _Evaluation:
     def costs(self) -> Sequence[Cost]:
         """Return the cost of each unit, by id. Only one of several units with the same facts is evaluated."""
         units = range(len(self._problem.network))
-        alike = self._fact_keys()
-        if alike is None:
+        fact_keys = self._fact_keys()
+        if fact_keys is None:
             cost_by_number = self.cost_by_number(units)
             return [cost_by_number.get(self._number(unit), 0) for unit in units]
-        first: dict[Hashable, int] = {}
-        for unit, key in enumerate(alike):
-            first.setdefault(key, unit)
-        cost_by_number = self.cost_by_number(first.values())
-        by_key = {key: cost_by_number.get(self._number(unit), 0) for key, unit in first.items()}
-        return list(map(by_key.__getitem__, alike))
+        first_unit: dict[Hashable, int] = {}
+        for unit, key in enumerate(fact_keys):
+            first_unit.setdefault(key, unit)
+        cost_by_number = self.cost_by_number(first_unit.values())
+        by_key = {key: cost_by_number.get(self._number(unit), 0) for key, unit in first_unit.items()}
+        return list(map(by_key.__getitem__, fact_keys))
 
     def _fact_keys(self) -> Sequence[Hashable] | None:
         """Return a key for each unit, by id.
@@ -131,7 +131,7 @@ class _Evaluation:
             return None
         problem, network = self._problem, self._problem.network
         objects = network.objects
-        looks: dict[str, Callable[[], Iterable[Hashable]]] = {
+        unit_columns: dict[str, Callable[[], Iterable[Hashable]]] = {
             "unit": lambda: (),
             "utensil": lambda: (),
             "motion": lambda: network.motions,
@@ -142,22 +142,24 @@ class _Evaluation:
             "rate": lambda: map((problem.as_seen or problem).rate, range(len(network))),
         }
         reads = self._rules.reads
-        nodes = reads.intersection(OBJECT_FACTS)
+        object_facts_read = reads.intersection(OBJECT_FACTS)
         objects_of = {
             "input": network.inputs,
             "output": network.outputs,
             "needs": problem.needs,
             "gives": problem.gives,
         }
-        if not reads <= looks.keys() | OBJECT_FACTS | objects_of.keys():
+        if not reads <= unit_columns.keys() | OBJECT_FACTS | objects_of.keys():
             return None
-        columns = [tuple(looks[name]()) for name in sorted(reads & looks.keys())]
-        if nodes or not reads.isdisjoint(objects_of):
+        columns = [tuple(unit_columns[name]()) for name in sorted(reads & unit_columns.keys())]
+        if object_facts_read or not reads.isdisjoint(objects_of):
             numbers: dict[Hashable, int] = {}
-            fact_rows = (tuple(object_facts(node, nodes)) for node in objects)
+            fact_rows = (tuple(object_facts(node, object_facts_read)) for node in objects)
             kinds = [numbers.setdefault(facts, len(numbers)) for facts in fact_rows]
-            chosen = [objects_of[name] for name in sorted(reads & objects_of.keys())]
-            columns.append(tuple(_nodes_key(network, unit, chosen, kinds) for unit in range(len(network))))
+            object_lists = [objects_of[name] for name in sorted(reads & objects_of.keys())]
+            columns.append(
+                tuple(_nodes_key(network, unit, object_lists, kinds) for unit in range(len(network)))
+            )
         columns = [column for column in columns if column]
         return list(zip(*columns, strict=True)) if columns else [()] * len(network)
 
@@ -231,32 +233,38 @@ class _Evaluation:
         from foon_asp.rules.measure_rules import BEYOND  # noqa: PLC0415 (takes clingo along)
 
         network, number = self._problem.network, self._number(unit)
-        who = f"the unit {network.motions[unit]!r} ({number}, {network.sources[unit][0]})"
-        stated: dict[tuple[Value, Value], Source] = {}
+        unit_text = f"the unit {network.motions[unit]!r} ({number}, {network.sources[unit][0]})"
+        source_by_cost: dict[tuple[Value, Value], Source] = {}
         statements = self._rules.statements
         for rule in (statement for statement in statements if statement.is_cost):
             alone = [statement for statement in statements if statement is rule or not statement.is_cost]
             for _, name, subject, value in self._derive_costs([unit], alone):
                 if name == (self._measure.name,):
-                    stated.setdefault((subject, value), rule.source)
-        large = {cost: source for cost, source in stated.items() if _value_text(cost[1]) == BEYOND}
+                    source_by_cost.setdefault((subject, value), rule.source)
+        large = {cost: source for cost, source in source_by_cost.items() if _value_text(cost[1]) == BEYOND}
         errors = []
-        for (subject, value), source in (large or stated).items():
+        for (subject, value), source in (large or source_by_cost).items():
             if large:
-                what = (
-                    f"found a number of more than 32 bits in the cost of {who}, and clingo has none such; "
+                message = (
+                    f"found a number of more than 32 bits in the cost of {unit_text}, "
+                    "and clingo has none such; "
                     'a large cost is given in a table, as text: "5000000000"'
                 )
             elif subject != number:
-                what = (
-                    f"found a cost of {_value_text(subject)} among the facts of {who}: "
+                message = (
+                    f"found a cost of {_value_text(subject)} among the facts of {unit_text}: "
                     "a rule is about one unit"
                 )
             elif _exact_cost(value) is None:
-                what = f'found the cost {_value_text(value)} of {who}, expected a number from 0: 5, or "2.50"'
+                message = (
+                    f"found the cost {_value_text(value)} of {unit_text}, "
+                    'expected a number from 0: 5, or "2.50"'
+                )
             else:
-                what = f"found the cost {_value_text(value)} of {who}, expected one value for each unit"
-            errors.append(self._error_at("cost", what, source))
+                message = (
+                    f"found the cost {_value_text(value)} of {unit_text}, expected one value for each unit"
+                )
+            errors.append(self._error_at("cost", message, source))
         raise InputError(errors)
 
 
@@ -265,7 +273,8 @@ def _nodes_key(
 ) -> Hashable:
     """Return a key for the object nodes of a unit that does not depend on their numbers.
 
-    The key has the kind of each node, and the positions of the nodes in each of ``object_lists``.
+    The key has the kind of each node, and the positions of the nodes in each of ``object_lists``. ``kinds``
+    has the same number for nodes with the same facts.
     """
     nodes = dict.fromkeys((*network.inputs[unit], *network.outputs[unit]))
     positions = {o: position for position, o in enumerate(nodes)}

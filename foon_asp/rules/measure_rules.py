@@ -155,14 +155,14 @@ class _MeasureReader:
         self._raise_errors()
         dependent = self._dependent_predicates()
         world = unused_variable(self._stated.text, "W")
-        written = [_WorldWriter(dependent, world).write(rule, self._source(rule)) for rule in self._rules]
-        written += self._overflow_rules(names, dependent, world)
+        statements = [_WorldWriter(dependent, world).write(rule, self._source(rule)) for rule in self._rules]
+        statements += self._overflow_rules(names, dependent, world)
         constants = [
             Statement(f"{definition}", self._source(definition), False) for definition in self._constants
         ]
         return MeasureRules(
             names,
-            (*constants, *written),
+            (*constants, *statements),
             frozenset(name for name, _ in self._facts_read()),
             _is_nameless(self._atoms),
             all(self._has_small_grounding(atoms, dependent) for atoms in self._atoms),
@@ -228,13 +228,15 @@ class _MeasureReader:
             if atom.name.startswith("_"):
                 message = f"found {atom.name}, but names that begin with '_' are reserved: take another"
                 self._add_error_at("reserved-name", message, atom)
-        defined = {_signature(atom) for other in self._atoms for atom in other.heads} | self._declared
+        defined = {
+            _signature(atom) for rule_atoms in self._atoms for atom in rule_atoms.heads
+        } | self._declared
         readable = {(name, arity) for name, arity in FACT_PREDICATES.items()} - _REFUSED.keys()
         for atom in atoms.used:
             signature = _signature(atom)
-            shown = "{}/{}".format(*signature)
+            predicate = "{}/{}".format(*signature)
             if signature in _REFUSED:
-                self._add_error_at("not-of-a-unit", f"found {shown}, which {_REFUSED[signature]}", atom)
+                self._add_error_at("not-of-a-unit", f"found {predicate}, which {_REFUSED[signature]}", atom)
             elif signature not in defined | readable and not atom.name.startswith("_"):
                 self._add_error_at("undefined-atom", undefined_message(signature, defined | readable), atom)
 
@@ -290,7 +292,7 @@ class _MeasureReader:
 
     def _facts_read(self) -> Iterator[Signature]:
         """Yield the predicates of facts that the rules read; one may be repeated."""
-        derived = {_signature(atom) for other in self._atoms for atom in other.heads}
+        derived = {_signature(atom) for rule_atoms in self._atoms for atom in rule_atoms.heads}
         for atoms in self._atoms:
             for signature in map(_signature, atoms.used):
                 if FACT_PREDICATES.get(signature[0]) == signature[1] and signature not in derived:

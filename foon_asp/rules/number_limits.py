@@ -56,10 +56,11 @@ def _overflow_atom(term: AST) -> str:
 
 
 def overflow_checks(statements: Iterable[AST], head: Head) -> Iterator[tuple[AST, str]]:
-    """Yield check rules, which derive ``head`` where a term overflows, each with the statement of the term.
+    """Yield pairs of a statement and a check rule, which holds where a term of the statement overflows.
 
-    The body of a check has the conditions of the statement that bind variables or have no arithmetic. The
-    check evaluates the term again only if a value in it is large enough for an overflow.
+    ``head`` returns the head of the rule. Its body has the conditions of the statement that bind variables or
+    have no arithmetic. The check evaluates the term again only if a value in it is large enough for an
+    overflow.
     """
     for statement in statements:
         if not _CALCULATES.search(str(statement)):
@@ -80,9 +81,10 @@ def overflow_checks(statements: Iterable[AST], head: Head) -> Iterator[tuple[AST
 
 
 def _term_checks(node: AST, conditions: Sequence[AST], head: Head) -> Iterator[str]:
-    """Yield check rules for the terms in a node, where an overflow is possible.
+    """Yield the check rules for the terms in a node that can overflow.
 
-    ``conditions`` are the bodies of the rules; their heads are ``head`` of the term.
+    The head of a rule is ``head`` of the term. Its body has ``conditions``, perhaps a test for a large value,
+    and a call of ``@_exact``.
     """
     for term in _arithmetic_terms(node):
         leaves: dict[str, AST] = {}
@@ -119,7 +121,7 @@ def _postfix(term: AST, leaves: dict[str, AST]) -> Iterator[str]:
 
 
 def _safe_magnitude(term: AST) -> int:
-    """Return the magnitude up to which values in a term cannot make the term overflow; -1 without one."""
+    """Return a magnitude; a term cannot overflow if no value in it is larger. -1 if there is none."""
     return next(
         (limit for limit in (LARGEST >> n for n in range(32)) if _max_magnitude(term, limit) <= LARGEST), -1
     )
@@ -263,11 +265,11 @@ def _conditions_without(node: AST, conditions: Sequence[AST]) -> Sequence[AST]:
     Clingo drops an instance in which an equation overflows. A check with this equation would be dropped, too.
     Without the node, conditions with variables that nothing else binds are left out as well.
     """
-    others = [condition for condition in conditions if condition != node]
-    bound = _bound_variables(others)
+    other_conditions = [condition for condition in conditions if condition != node]
+    bound = _bound_variables(other_conditions)
     inside = {name for term in _arithmetic_terms(node) for name in variables(term)}
     return (
-        [condition for condition in others if bound.issuperset(variables(condition))]
+        [condition for condition in other_conditions if bound.issuperset(variables(condition))]
         if inside <= bound
         else conditions
     )
@@ -282,9 +284,9 @@ def _bound_variables(conditions: Sequence[AST]) -> set[str]:
             bound.update(variables(condition))
             continue
         terms = [condition.atom.term, *(guard.term for guard in condition.atom.guards)]
-        for guard, first, second in zip(condition.atom.guards, terms, terms[1:], strict=False):
+        for guard, left_term, right_term in zip(condition.atom.guards, terms, terms[1:], strict=False):
             if guard.comparison == ComparisonOperator.Equal:
-                comparisons += [(first, second), (second, first)]
+                comparisons += [(left_term, right_term), (right_term, left_term)]
     before = -1
     while before < len(bound):
         before = len(bound)

@@ -59,16 +59,16 @@ class LibraryUse(NamedTuple):
                 raise UserError(f"found two values of {constant} in {self.written!r}, expected one")
             quoted = _QUOTED.match(remaining)
             end = quoted.end() if quoted else (remaining + ",").index(",")
-            values[constant], after, remaining = (
+            values[constant], separator, remaining = (
                 remaining[:end],
                 remaining[end : end + 1],
                 remaining[end + 1 :],
             )
-            if not after:
+            if not separator:
                 return values
-            if after != ",":
+            if separator != ",":
                 raise UserError(
-                    f"found {after}{remaining[:40]} after {values[constant]} in {self.written!r}, "
+                    f"found {separator}{remaining[:40]} after {values[constant]} in {self.written!r}, "
                     "expected a comma"
                 )
 

@@ -41,7 +41,8 @@ _REQUIRING_PREFIX = "require_"  # prefix of the names of constraints that requir
 class ReadyMade:
     """Ready-made constraints of one question, which are evaluated without clingo.
 
-    They are local. A tree needs redundant units for them only as members of required sets.
+    ``local``: the constraints read facts about the tree alone.
+    ``redundant``: ``False``, as a tree needs redundant units only where a required set demands them.
     ``unsettled``: some constraints do more than to remove and require units; these are antimonotone.
     ``shrinking``: all constraints are antimonotone: if a tree keeps to them, so does every subtree.
     ``constants``: the constants by name, as terms of clingo. ``files``: the files of the constraints.
@@ -96,7 +97,7 @@ class ReadyMade:
         return Restriction(removed.__contains__, required)
 
     def upper_limits(self, problem: Problem, deadline: Deadline) -> Iterator[LinearRow]:
-        """Yield the upper limits on sums over units, where each summand belongs to one unit."""
+        """Yield the upper limits on sums of amounts of single units."""
         for rule_meaning in self._meanings(problem)[0]:
             if rule_meaning.max_sum is not None and all(len(units) == 1 for units, _ in rule_meaning.things):
                 amounts = {unit: int(amount) for units, amount in rule_meaning.things for unit in units}
@@ -156,11 +157,11 @@ def _rules_with_values(
     rules: list[dict[str, Any]] = []
     for name, constants_given in uses:
         rule: dict[str, Any] = {"rule": name}
-        read = {LISTED.get(value, value): (value, kind) for value, kind in LIBRARY[name].values.items()}
-        read.pop("", None)
-        if constants_given is not shared and constants_given.keys() != read.keys():
+        parameters = {LISTED.get(value, value): (value, kind) for value, kind in LIBRARY[name].values.items()}
+        parameters.pop("", None)
+        if constants_given is not shared and constants_given.keys() != parameters.keys():
             return None
-        for constant, (value, kind) in read.items():
+        for constant, (value, kind) in parameters.items():
             written = constants_given.get(constant, "")
             match = _INTEGER.fullmatch(written) if kind is int else _QUOTED_TEXT.fullmatch(written)
             if match is None or not written.isprintable() or (kind is int and abs(int(written)) > LARGEST):
@@ -184,14 +185,14 @@ def _rules_with_values(
 
 
 def question_of(problem: Problem) -> Question:
-    """Return what the meanings of constraints read of a problem: its network, kitchen, goals and rates."""
-    seen = problem.as_seen or problem
+    """Return the parts of a problem that constraints read: its network, kitchen, goals, rates and prices."""
+    problem_seen = problem.as_seen or problem
     return Question(
         problem.network,
         problem.kitchen,
         problem.goals,
         problem.utensils,
-        lambda unit: None if seen.rates is None else seen.rate(unit),
+        lambda unit: None if problem_seen.rates is None else problem_seen.rate(unit),
         problem.prices.__getitem__,
         lambda unit: frozenset(problem.needs[unit]),
         lambda unit: frozenset(problem.gives[unit]),

@@ -254,9 +254,9 @@ class Analysis:
         if rule.kind is not Kind.FACT and len(live) == 1 and (row := self.translator.row(live[0])):
             self.rows[number] = row
         if rule.kind is Kind.REQUIRING:
-            readings = [self.translator.at_least_one(clause) for clause in live]
-            at_least_ones = tuple(one for one in readings if one is not None)
-            if len(at_least_ones) < len(readings):
+            translations = [self.translator.at_least_one(clause) for clause in live]
+            at_least_ones = tuple(translation for translation in translations if translation is not None)
+            if len(at_least_ones) < len(translations):
                 return rule
             self.at_least_ones[number] = at_least_ones
             return rule._replace(one_of=True)

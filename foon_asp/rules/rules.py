@@ -40,9 +40,11 @@ class ShownRule(NamedTuple):
 class Together(StrEnum):
     """The reductions that stay valid under rules.
 
-    ``REDUCED``: all, since the rules only remove units. ``REQUIRED``: all, with the required sets as further
-    goals. ``CUT``: exclusion of units that cannot matter for the goals, or that bounds exclude. ``BOUNDED``:
-    only exclusion by bounds. ``PLAIN``: none.
+    ``REDUCED``: all, since the rules only remove units.
+    ``REQUIRED``: all, with the required sets as further goals.
+    ``CUT``: exclusion of units that cannot matter for the goals, or that bounds exclude.
+    ``BOUNDED``: only exclusion by bounds.
+    ``PLAIN``: none.
     """
 
     REDUCED = "reduced"
@@ -97,7 +99,7 @@ class Rules:
             texts.update((id(statement), statement_text(original, file)) for statement, original in pairs)
 
         def source_in_file(source: Source | None) -> Source | None:
-            """Return a place, of a ready-made constraint with its file instead of the name of its use."""
+            """Return a place; in a ready-made constraint, with its file instead of the name of its use."""
             use = None if source is None else uses.get(source.file)
             return source if source is None or use is None else source._replace(file=str(use.file))
 
@@ -158,12 +160,12 @@ class Rules:
         """
         if not self.local or self.unsettled:
             return None
-        return [one.wanted for one in self._at_least_ones]
+        return [constraint.wanted for constraint in self._at_least_ones]
 
     @property
     def _at_least_ones(self) -> list[AtLeastOne]:
         """The at-least-one constraints of all rules."""
-        return [one for of_rule in self._analysis.at_least_ones.values() for one in of_rule]
+        return [constraint for of_rule in self._analysis.at_least_ones.values() for constraint in of_rule]
 
     @property
     def only_limits(self) -> bool:
@@ -253,9 +255,9 @@ class Rules:
         """
         network = problem.network
         if len(network) > TUNING.evaluated_units and not (self._analysis.removals or self._analysis.rows):
-            named = candidate_units(network, (one.wanted for one in self._at_least_ones))
-            if named is not None:
-                return named
+            named_units = candidate_units(network, (constraint.wanted for constraint in self._at_least_ones))
+            if named_units is not None:
+                return named_units
         return reach(problem).units
 
 

@@ -14,7 +14,7 @@ from foon_asp.rules.passed_constraint import Constraint, LibraryUse, RuleText
 
 
 def load_constraints(constraints: Sequence[Constraint]) -> dict[Constraint, Loaded]:
-    """Return the file or text that clingo loads for each constraint.
+    """Return what clingo loads for each constraint: a file or a text.
 
     Rules given as text are called ``rule 1``, ``rule 2`` and so on; ready-made constraints with constants of
     their own ``use 1``, ``use 2``. Raises :class:`UserError` for constants that a ready-made constraint does
@@ -75,7 +75,10 @@ def _parse_term(text: str) -> AST:
 
 
 class _Renamer(Transformer):
-    """Rewriter that gives some predicates and constants a name with a number: ``_tainted_1``."""
+    """Rewriter that renames some predicates and constants: ``tainted`` becomes ``_tainted_1``.
+
+    ``number`` is the number at the end of new names.
+    """
 
     def __init__(self, predicates: Collection[Signature], constants: Collection[str], number: int) -> None:
         self._predicates, self._constants, self._number = predicates, constants, number

@@ -59,9 +59,10 @@ class Removes(NamedTuple):
 class AtLeastOne(NamedTuple):
     """A rule that requires a unit of each of several sets.
 
-    Its program derives ``asks`` of a term for each set, and ``meets`` of this term in the world of each unit
-    in the set. If it derives ``meets`` in the world ``NOTHING``, no unit of the set is needed. ``wanted`` are
-    traits of the units in the sets.
+    Its program derives an atom ``asks`` with a term for each set. It derives ``meets`` with this term in the
+    world of each unit of the set. If it derives ``meets`` in the world ``NOTHING``, no unit of the set is
+    needed.
+    ``wanted``: the traits of the units in the sets.
     """
 
     program: tuple[str, ...]
@@ -69,7 +70,7 @@ class AtLeastOne(NamedTuple):
 
 
 class Row(NamedTuple):
-    """A rule that bounds a sum of weights of units, which its program derives in atoms ``weighs``.
+    """A rule that bounds a sum of weights of units. Its program derives the weights in atoms ``weighs``.
 
     ``number``: the first argument of the atoms. Different weights of a unit add up.
     ``bound``: an upper bound on the sum; with ``at_least``, a lower bound.
@@ -120,7 +121,7 @@ class Translator:
         self._units_read_by_predicate: dict[Signature, int] = {}
 
     def removal(self, clauses: Sequence[Clause]) -> Removes | None:
-        """Return the rule that consists of ``clauses`` as a removal of units; ``None`` for another rule."""
+        """Return a removal of units for the rule that consists of ``clauses``; ``None`` for another rule."""
         if not all(self._has_no_calculation(clause.body) for clause in clauses):
             return None
         if any(self._count_units_read(clause.body) > 1 for clause in clauses):
@@ -228,9 +229,9 @@ class Translator:
     def _weight_rule(self, element: Element, condition: Sequence[AST]) -> tuple[str, Signature] | None:
         """Return a rule that derives the weight of one execution, and the predicate that states executions.
 
-        The predicate is ``use/1`` or ``times/2``. Nothing else reads the number of executions, so the weight
-        of n executions is n times this weight. ``None`` if the element has another form. ``condition`` has
-        the syntax trees of its condition.
+        The predicate is ``use/1`` or ``times/2``. The weight of n executions of a unit is n times this
+        weight, since nothing else reads n. ``condition`` has the syntax trees of the element's condition.
+        ``None`` if the element has another form.
         """
         executions = _execution_arguments(element.condition)
         if executions is None or not self._has_no_calculation(element.condition):
@@ -238,21 +239,23 @@ class Translator:
         unit, *count = executions
         if str(unit) == "_" or any(term.ast_type != ASTType.Variable for term in count):
             return None
-        *product, last = (factor for term in element.terms for factor in factors(term))
-        written = [str(factor) for factor in product]
-        position = next(n for n, one in enumerate(element.condition) if _states_executions(one))
-        others = [one for n, one in enumerate(element.condition) if n != position]
+        *product, last_term = (factor for term in element.terms for factor in factors(term))
+        factor_texts = [str(factor) for factor in product]
+        position = next(n for n, conjunct in enumerate(element.condition) if _states_executions(conjunct))
+        others = [conjunct for n, conjunct in enumerate(element.condition) if n != position]
         for factor in map(str, count):
-            other_names = [name for one in others for name in variables(*_terms_of(one))]
-            if written.count(factor) != 1 or factor in {*other_names, str(unit), "_"}:
+            other_names = [name for conjunct in others for name in variables(*_terms_of(conjunct))]
+            if factor_texts.count(factor) != 1 or factor in {*other_names, str(unit), "_"}:
                 return None
-            written.remove(factor)
-        if len(written) > 1 or str(last) != str(unit) or self._count_units_read(others):
+            factor_texts.remove(factor)
+        if len(factor_texts) > 1 or str(last_term) != str(unit) or self._count_units_read(others):
             return None
-        if written and not self._is_variable_or_value(next(one for one in product if str(one) == written[0])):
+        if factor_texts and not self._is_variable_or_value(
+            next(factor for factor in product if str(factor) == factor_texts[0])
+        ):
             return None
         body = [f"unit({unit})", *(str(node) for n, node in enumerate(condition) if n != position)]
-        weight = written[0] if written else "1"
+        weight = factor_texts[0] if factor_texts else "1"
         signature = element.condition[position]
         assert isinstance(signature, Literal)
         return f"{self._answer_head('weighs', weight, unit)} :- {'; '.join(body)}.", signature.signature
@@ -260,9 +263,7 @@ class Translator:
     def _remaining_bound(self, comparison: int, term: AST) -> tuple[bool, int] | None:
         """Return the bound that forbids a comparison: whether it is a lower bound, and its number.
 
-        For ``> 9`` it is ``(False, 9)``.
-
-        ``None`` if the term is no number, and for ``=`` and ``!=``.
+        For ``> 9`` it is ``(False, 9)``. ``None`` if the term is no number, and for ``=`` and ``!=``.
         """
         number, allowed = value(term, self._constants), _ALLOWED.get(ComparisonOperator(comparison))
         if number is None or number.type is not SymbolType.Number or allowed is None:
@@ -300,16 +301,17 @@ class Translator:
         if any(self._count_units_read(conjuncts) != 1 for conjuncts, _ in pairs):
             return None
         return [
-            ([str(self._worlds.visit(one)) for one in written], conjuncts) for conjuncts, written in pairs
+            ([str(self._worlds.visit(condition_node)) for condition_node in condition_nodes], conjuncts)
+            for conjuncts, condition_nodes in pairs
         ]
 
     def _new_answer_head(self, what: str, of: object) -> str:
-        """Return a head ``_of_unit`` with a new number, in the world that is a variable."""
+        """Return a head ``_of_unit(NUMBER,"what",of,World)`` with a new number and a variable world."""
         self._numbers += 1
         return self._answer_head(what, of, self._world)
 
     def _answer_head(self, what: str, of: object, world: object) -> str:
-        """Return a head ``_of_unit`` with the number of the last translation."""
+        """Return a head ``_of_unit(NUMBER,"what",of,world)`` with the number of the last translation."""
         return f'{ANSWER[0]}({self._numbers},"{what}",{of},{world})'
 
     def _rule_text(self, head: str, clause: Clause) -> str:
@@ -319,25 +321,25 @@ class Translator:
         """
         body = [str(self._worlds.visit(node)) for node in clause.ast.body]
         if self._world in head:
-            where = (
+            world_condition = (
                 f"__world({self._world})"
                 if self._count_units_read(clause.body)
                 else f"{self._world} = {_WORLD_OF_NOTHING}"
             )
-            body.append(where)
+            body.append(world_condition)
         return f"{head} :- {'; '.join(body) or '#true'}."
 
     def _count_units_read(self, body: Iterable[Conjunct]) -> int:
         """Return on how many units of the tree a conjunction depends; 2 stands for more than one."""
-        looks = 0
+        unit_count = 0
         for conjunct in body:
             if isinstance(conjunct, Literal):
-                looks += self._count_units_read_by_atom(conjunct.signature) << (conjunct.negations > 0)
+                unit_count += self._count_units_read_by_atom(conjunct.signature) << (conjunct.negations > 0)
             else:
-                looks += 2 * any(
-                    self._count_units_read_by_atom(one.signature) for one in literals([conjunct])
+                unit_count += 2 * any(
+                    self._count_units_read_by_atom(literal.signature) for literal in literals([conjunct])
                 )
-        return min(looks, 2)
+        return min(unit_count, 2)
 
     def _count_units_read_by_atom(self, signature: Signature) -> int:
         """Return on how many units of the tree an atom depends; 2 stands for more than one.
@@ -360,18 +362,19 @@ class Translator:
     def _requires_unit(self, body: Iterable[Conjunct]) -> bool:
         """Whether a conjunction about one unit is false in the world without units."""
         return any(
-            isinstance(one, Literal)
+            isinstance(conjunct, Literal)
             and (
-                one.signature == USE
+                conjunct.signature == USE
                 or (
-                    one.signature != AVAILABLE
-                    and self._count_units_read_by_atom(one.signature) == 1
+                    conjunct.signature != AVAILABLE
+                    and self._count_units_read_by_atom(conjunct.signature) == 1
                     and all(
-                        self._requires_unit(clause.body) for clause in self._clauses.get(one.signature, ())
+                        self._requires_unit(clause.body)
+                        for clause in self._clauses.get(conjunct.signature, ())
                     )
                 )
             )
-            for one in body
+            for conjunct in body
         )
 
     def _has_no_calculation(
@@ -382,8 +385,8 @@ class Translator:
         ``above`` has the predicates whose rules are being checked.
         """
         conjuncts = tuple(body)
-        terms = [term for one in conjuncts for term in _terms_of(one)]
-        inner = [literal for one in conjuncts for literal in literals([one])]
+        terms = [term for conjunct in conjuncts for term in _terms_of(conjunct)]
+        inner = [literal for conjunct in conjuncts for literal in literals([conjunct])]
         if any(map(_has_unknown_part, conjuncts)) or not all(map(self._is_variable_or_value, terms)):
             return False
         read = {literal.signature for literal in inner} - above
@@ -412,14 +415,14 @@ def _terms_of(conjunct: Conjunct) -> Iterator[AST]:
             yield conjunct.ast.atom.term
             yield from (guard.term for guard in conjunct.ast.atom.guards)
     elif isinstance(conjunct, Conditional):
-        for one in (conjunct.literal, *conjunct.condition):
-            yield from _terms_of(one)
+        for inner in (conjunct.literal, *conjunct.condition):
+            yield from _terms_of(inner)
     elif isinstance(conjunct, Aggregate):
         yield from (guard.term for guard in conjunct.guards)
         for element in conjunct.elements:
             yield from element.terms
-            for one in element.condition:
-                yield from _terms_of(one)
+            for inner in element.condition:
+                yield from _terms_of(inner)
 
 
 def _has_unknown_part(conjunct: Conjunct) -> bool:
@@ -428,7 +431,9 @@ def _has_unknown_part(conjunct: Conjunct) -> bool:
         return any(map(_has_unknown_part, (conjunct.literal, *conjunct.condition)))
     if isinstance(conjunct, Aggregate):
         counts = conjunct.function is AggregateFunction.Count
-        return not counts or any(_has_unknown_part(one) for e in conjunct.elements for one in e.condition)
+        return not counts or any(
+            _has_unknown_part(inner) for element in conjunct.elements for inner in element.condition
+        )
     return isinstance(conjunct, UnknownConjunct)
 
 
@@ -447,8 +452,10 @@ def _states_executions(conjunct: Conjunct) -> bool:
 
 def _execution_arguments(condition: Iterable[Conjunct]) -> tuple[AST, ...] | None:
     """Return the arguments of the only ``use(U)`` or ``times(U,N)`` in a condition, else ``None``."""
-    literals = [one for one in condition if _states_executions(one)]
-    return literals[0].arguments if len(literals) == 1 and isinstance(literals[0], Literal) else None
+    execution_literals = [conjunct for conjunct in condition if _states_executions(conjunct)]
+    if len(execution_literals) == 1 and isinstance(execution_literals[0], Literal):
+        return execution_literals[0].arguments
+    return None
 
 
 def _states_count(condition: Iterable[Conjunct], count: AST) -> bool:

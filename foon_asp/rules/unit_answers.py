@@ -56,12 +56,12 @@ def ask_units(
 
 
 def candidate_units(network: Network, wanted: Iterable[Wanted]) -> set[int] | None:
-    """Return all units with a name that the traits ask for, a superset of the units that rules require.
+    """Return the ids of units that may have the traits in ``wanted``, among them all that rules require.
 
-    ``None`` if a rule requires units without saying a name.
+    Only the first trait of each row is looked up. ``None`` if a row has no trait.
     """
     units: set[int] = set()
-    for row in (row for one in wanted for row in one.rows):
+    for row in (row for requirement in wanted for row in requirement.rows):
         if not row:
             return None
         having, word = row[0]

@@ -245,9 +245,9 @@ class _Search:
             }
             meant = self._values.nearest(name, columns, texts) if texts else None
             if meant is not None:
-                put = {position: quote(word) for position, word in meant.items()}
-                shown = {position: constant.get(position, "") for position in constant} | put
-                return f"{text}; did you mean {_literal_text(literal, shown)}?"
+                suggested = {position: quote(word) for position, word in meant.items()}
+                arguments = {position: constant.get(position, "") for position in constant} | suggested
+                return f"{text}; did you mean {_literal_text(literal, arguments)}?"
         if any(
             row[position].type is not SymbolType.String
             for row in rows
@@ -274,7 +274,9 @@ def _unlisted_warnings(
                 listed[clause.head.signature].append((clause, _symbol_text(symbol)))
     return [
         (clause, unknown_text_message(facts, word, nearest_text(facts, word, values)))
-        for facts, words in ((LISTED_FACTS[signature], named) for signature, named in listed.items())
+        for facts, words in (
+            (LISTED_FACTS[signature], named_facts) for signature, named_facts in listed.items()
+        )
         if not any(has_text(facts, word, values) for _, word in words)
         for clause, word in words
     ]

@@ -24,7 +24,7 @@ class Worlds(Transformer):
     def _add_world(self, symbol: AST) -> AST:
         """Return a symbol with a world, if its predicate differs from world to world."""
         if symbol.ast_type is ASTType.Pool:
-            return symbol.update(arguments=[self._add_world(one) for one in symbol.arguments])
+            return symbol.update(arguments=[self._add_world(argument) for argument in symbol.arguments])
         if symbol.ast_type is ASTType.UnaryOperation:
             return symbol
         if (symbol.name, len(symbol.arguments)) not in self._dependent:
@@ -34,7 +34,7 @@ class Worlds(Transformer):
 
 
 def unused_variable(text: str, name: str) -> str:
-    """Return ``name``, with as many ``_`` after it as it takes that a text of rules does not have it."""
+    """Return a variable that a text of rules does not have: ``name``, with ``_`` added as often as needed."""
     while name in text:
         name += "_"
     return name
