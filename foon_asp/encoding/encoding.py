@@ -182,6 +182,7 @@ class _Collector(Transformer):
     """Visitor that records in ``encoding`` what statements define and use: atoms, names and constants."""
 
     def __init__(self, encoding: Encoding) -> None:
+        """Begin outside heads."""
         self.encoding = encoding
         self._in_head = False
 
@@ -211,11 +212,13 @@ class _Collector(Transformer):
             self.visit(statement)
 
     def visit_Rule(self, rule: AST) -> AST:  # noqa: N802 (the name clingo looks for)
+        """Visit a rule; the atoms in its head are recorded as defined, those in its body as used."""
         self._visit_head(rule.head)
         self.visit_sequence(rule.body)
         return rule
 
     def visit_External(self, external: AST) -> AST:  # noqa: N802
+        """Visit ``#external``; its atom is recorded as defined, those in its body as used."""
         self._visit_head(external.atom)
         self.visit_sequence(external.body)
         return external
@@ -229,6 +232,7 @@ class _Collector(Transformer):
         return literal
 
     def visit_SymbolicAtom(self, atom: AST) -> AST:  # noqa: N802
+        """Record the signature of an atom."""
         self._record_atom(atom.symbol, "")
         return atom
 
@@ -249,24 +253,29 @@ class _Collector(Transformer):
             self.visit_sequence(symbol.arguments)
 
     def visit_Function(self, function: AST) -> AST:  # noqa: N802
+        """Record the name of a function in a term, and visit its arguments."""
         self.encoding.names.setdefault(function.name, _source(function.location))
         self.visit_sequence(function.arguments)
         return function
 
     def visit_SymbolicTerm(self, term: AST) -> AST:  # noqa: N802
+        """Record a term that is a word."""
         if term.symbol.type is SymbolType.Function:
             self.encoding.names.setdefault(term.symbol.name, _source(term.location))
         return term
 
     def visit_TheoryAtom(self, atom: AST) -> AST:  # noqa: N802
+        """Record a theory atom as special, and do not visit it."""
         self.encoding.special.append((ASTType.TheoryAtom, _source(atom.location)))
         return atom
 
     def visit_BodyAggregate(self, aggregate: AST) -> AST:  # noqa: N802
+        """Visit an aggregate, and record whether it may give a variable its value."""
         self._record_assignment(aggregate)
         return aggregate.update(**self.visit_children(aggregate))
 
     def visit_Aggregate(self, aggregate: AST) -> AST:  # noqa: N802
+        """Visit an aggregate, and record for one in a body whether it may give a variable its value."""
         if not self._in_head:
             self._record_assignment(aggregate)
         return aggregate.update(**self.visit_children(aggregate))
@@ -339,7 +348,7 @@ def check_encodings(
 
 
 def non_numeric_terms(statements: Iterable[AST], constants: Collection[str]) -> Iterator[tuple[AST, str]]:
-    """Yield the terms that are compared with numbers and are none, each with a message.
+    """Yield the terms that are compared with numbers but are no numbers, each with a message.
 
     Such a term is above every number. It is a name that no ``#const`` sets, or a text as guard of a count or
     sum.

@@ -41,7 +41,7 @@ def exact_success() -> Path:
 
 
 def digest(file: Path) -> str:
-    """Return the SHA-256 digest of a text file with the line ends of Unix.
+    """Return the SHA-256 digest of a text file, as if it had the line ends of Unix.
 
     It is cached until the file changes.
     """

@@ -21,12 +21,12 @@ def parse(rules: Loaded, add: Callable[[AST], None], logger: Callable[[MessageCo
     place = rules.place
 
     def placed(statement: AST) -> None:
-        """Pass on a statement with the name of the rules in its places."""
+        """Set the name of the rules as file name in a statement, and add the statement."""
         _replace_file_name(statement, place)
         add(statement)
 
     def logged(code: MessageCode, message: str) -> None:
-        """Pass on a message with the name of the rules in its place."""
+        """Put the name of the rules as file name into a message, and log the message."""
         logger(code, place + message.removeprefix(_TEXT) if message.startswith(_TEXT) else message)
 
     parse_string(rules.text, placed, logger=logged)

@@ -14,6 +14,7 @@ class ProgramError(Exception):
     """
 
     def __init__(self, messages: Sequence[str], otherwise: str) -> None:
+        """Keep the messages, and the text of clingo's exception."""
         super().__init__(otherwise)
         self.messages, self.otherwise = list(messages), otherwise
 

@@ -115,7 +115,7 @@ class Scales:
         return int(sum(problem.figure(objective, unit) for unit in units)) + objective.row.item * len(items)
 
     def cost_weight(self, objective: Objective, cost: int | Fraction) -> int:
-        """Return the weight in clingo of an upper bound on the cost by an objective.
+        """Return an upper bound on the cost by an objective as a weight in clingo.
 
         Raises :class:`UserError` for an objective that is rounded, and where the weight of all units
         overflows, since clingo ignores the bound then.

@@ -297,6 +297,7 @@ class _Reader:
     """
 
     def __init__(self, constants: Constants) -> None:
+        """Keep the values of constants."""
         self._constants = constants
 
     def conjuncts(self, body: Iterable[AST]) -> tuple[Conjunct, ...]:

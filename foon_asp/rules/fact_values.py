@@ -107,6 +107,7 @@ class FactValues:
     max_read: ClassVar[int] = 200_000
 
     def __init__(self, problem: Problem) -> None:
+        """Prepare a search in the facts of a problem; nothing is read yet."""
         self._problem = problem
         self._lookups_left = 20
 

@@ -156,7 +156,7 @@ class Locality:
     def _tree_terms(
         self, conjuncts: Iterable[Conjunct], before: Mapping[str, set[Subject]] | None = None
     ) -> _TreeTerms:
-        """Return the terms that are in the tree wherever the conjuncts hold, as text, with their subjects.
+        """Return what terms stand for in the tree wherever the conjuncts hold: subjects by term, as text.
 
         ``before`` has terms that are known to be in the tree; they are in the result, too.
         """
@@ -174,7 +174,7 @@ class Locality:
         return tree_terms
 
     def _led_arguments(self, literal: Literal, tree_terms: _TreeTerms) -> list[tuple[int, Subject]]:
-        """Return the arguments that are in the tree if a literal holds, as positions with subjects.
+        """Return the arguments of a literal that are in the tree if it holds: positions with subjects.
 
         ``tree_terms`` has the terms that are known to be in the tree.
         """

@@ -104,6 +104,7 @@ class _Evaluation:
     """Evaluation of a measure over the units of a problem."""
 
     def __init__(self, measure: Measure, rules: "MeasureRules", problem: Problem, deadline: Deadline) -> None:
+        """Prepare the evaluation of a measure; ``rules`` are its parsed rules."""
         self._measure, self._rules, self._problem, self._deadline = measure, rules, problem, deadline
         self._number = problem.network.unit_number
 

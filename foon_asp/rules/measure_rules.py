@@ -368,6 +368,7 @@ class _Atoms(Transformer):
         self.visit_sequence(rule.body)
 
     def visit_SymbolicAtom(self, atom: AST) -> AST:  # noqa: N802 (the name clingo looks for)
+        """Collect an atom, and return it unchanged."""
         self._collect_atom(atom.symbol)
         return atom
 
@@ -402,15 +403,18 @@ class _Atoms(Transformer):
         return aggregate
 
     def visit_Variable(self, variable: AST) -> AST:  # noqa: N802
+        """Add a variable to ``compared``."""
         self.compared.add(variable.name)
         return variable
 
     def visit_BinaryOperation(self, term: AST) -> AST:  # noqa: N802
+        """Set ``divides`` for a division or remainder; visit the operands."""
         self.divides |= term.operator_type in {BinaryOperator.Division, BinaryOperator.Modulo}
         self.visit_children(term)
         return term
 
     def visit_Interval(self, interval: AST) -> AST:  # noqa: N802
+        """Set ``has_interval``, and visit the bounds."""
         self.has_interval = True
         self.visit_children(interval)
         return interval
@@ -456,12 +460,13 @@ def _is_nameless(rules: Sequence[_Atoms]) -> bool:
 
 
 class _WorldWriter:
-    """Writer of rules with a world as first argument of the predicates that depend on facts.
+    """Writer of rules that adds a world as first argument to the predicates that depend on facts.
 
-    ``world`` is a name of a variable that no rule has.
+    ``dependent`` are these predicates. ``world`` is a name of a variable that no rule has.
     """
 
     def __init__(self, dependent: frozenset[Signature], world: str) -> None:
+        """Keep the predicates and the variable."""
         self._dependent_predicates, self._world = dependent, world
 
     def write(self, rule: AST, source: Source) -> Statement:

@@ -337,6 +337,7 @@ class _AnonymousVariableNamer(Transformer):
     """Rewriter that names each ``_`` in a term with arithmetic, so that a check can refer to it."""
 
     def __init__(self) -> None:
+        """Begin with the name ``_Any1``."""
         self._number = count(1)
         self._in_term = False
 

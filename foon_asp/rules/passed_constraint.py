@@ -23,6 +23,7 @@ class RuleText(NamedTuple):
         return "rule"
 
     def __str__(self) -> str:
+        """Return the rules."""
         return self.text
 
 
@@ -41,6 +42,7 @@ class LibraryUse(NamedTuple):
         return self.written
 
     def __str__(self) -> str:
+        """Return the text of the option."""
         return self.written
 
     @property

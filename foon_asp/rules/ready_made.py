@@ -52,6 +52,10 @@ class ReadyMade:
     redundant: Final = False
 
     def __init__(self, rules: Sequence[Rule], constants: Mapping[str, str], files: Sequence[Path]) -> None:
+        """Find out from the names of the constraints whether they are unsettled or shrinking.
+
+        ``rules`` are the constraints with the values of their constants, as in certificates.
+        """
         self.rules, self.constants, self.files = tuple(rules), constants, tuple(files)
         names = [rule["rule"] for rule in rules]
         self.unsettled = not _WITH_UNSETTLED.isdisjoint(names)

@@ -28,6 +28,7 @@ class TraitReader:
     """
 
     def __init__(self, clauses: Mapping[Signature, Sequence[Clause]], constants: Constants) -> None:
+        """Keep the rules and the values of constants."""
         self._clauses, self._constants = clauses, constants
         self._fresh = count()
 

@@ -32,7 +32,7 @@ from foon_asp.rules.clause import (
 from foon_asp.rules.dependence import Dependence, Doubt, Monotonicity
 from foon_asp.rules.fact_values import COLUMNS, position_of_wrong_type
 from foon_asp.rules.locality import Locality
-from foon_asp.rules.understood import AtLeastOne, Removes, Row, Translator
+from foon_asp.rules.understood import AtLeastOne, Removal, Row, Translator
 
 
 class Kind(StrEnum):
@@ -104,9 +104,9 @@ class Analysis:
     """The rules of one question as clauses, each with its kind.
 
     ``rules``: the rules, in the order of the files.
-    ``live``: the clauses that can have an effect, which excludes those with a condition that never holds.
-    ``of_rule``: the live clauses of each rule, by its index in ``rules``.
-    ``removals``, ``at_least_ones``, ``rows``: the rules that ``translator`` could translate, by the same
+    ``live_clauses``: the clauses of rules and built-in rules, except those with a condition that never holds.
+    ``clauses_of_rule``: the live clauses of each rule, by its index in ``rules``.
+    ``removals``, ``at_least_ones``, ``rows``: the translations of rules, where there is one, by the same
     index.
     ``constant_texts``: ``#const`` statements for the constants in these translations.
     """
@@ -129,22 +129,24 @@ class Analysis:
             list(clauses(statement, number, self.constants)) if statement.ast_type == ASTType.Rule else []
             for number, statement in enumerate(self.statements)
         ]
-        self.of_rule = [
+        self.clauses_of_rule = [
             [clause for clause in rule_clauses if self._why_never(clause.body) is None]
             for rule_clauses in clauses_by_rule
         ]
-        self.live = [
-            clause for rule_clauses in (*self.of_rule, _implied_clauses()) for clause in rule_clauses
+        self.live_clauses = [
+            clause for rule_clauses in (*self.clauses_of_rule, _implied_clauses()) for clause in rule_clauses
         ]
-        self.dependence = Dependence(self.live, self.constants, varied)
-        self._locality = Locality(self.live, self.dependence)
-        self.translator = Translator(self.live, self.constants, self.dependence)
-        self.removals: dict[int, Removes] = {}
+        self.dependence = Dependence(self.live_clauses, self.constants, varied)
+        self._locality = Locality(self.live_clauses, self.dependence)
+        self.translator = Translator(self.live_clauses, self.constants, self.dependence)
+        self.removals: dict[int, Removal] = {}
         self.at_least_ones: dict[int, tuple[AtLeastOne, ...]] = {}
         self.rows: dict[int, Row] = {}
         self.rules = tuple(
             self._translate_rule(number, self._classify_statement(statement, live))
-            for number, (statement, live) in enumerate(zip(self.statements, self.of_rule, strict=True))
+            for number, (statement, live) in enumerate(
+                zip(self.statements, self.clauses_of_rule, strict=True)
+            )
         )
 
     def kind(self, clause: Clause) -> tuple[Kind, Doubt | None]:
@@ -174,7 +176,9 @@ class Analysis:
     def reads(self, signature: Signature) -> bool:
         """Whether the body of some rule has a predicate."""
         return any(
-            literal.signature == signature for clause in self.live for literal in literals(clause.body)
+            literal.signature == signature
+            for clause in self.live_clauses
+            for literal in literals(clause.body)
         )
 
     def _why_never(self, body: Iterable[Conjunct]) -> str | None:
@@ -248,7 +252,7 @@ class Analysis:
         The translations are added to ``removals``, ``at_least_ones`` and ``rows``, under the index of the
         rule (``number``).
         """
-        live = self.of_rule[number]
+        live = self.clauses_of_rule[number]
         if not rule.local or rule.kind in {Kind.HELPER, Kind.OTHER}:
             return rule
         if rule.kind is not Kind.FACT and len(live) == 1 and (row := self.translator.row(live[0])):

@@ -173,7 +173,7 @@ class Rules:
         at_most = {number for number, bound in self._analysis.rows.items() if not bound.at_least}
         others = (
             clause
-            for number, rule_clauses in enumerate(self._analysis.of_rule)
+            for number, rule_clauses in enumerate(self._analysis.clauses_of_rule)
             if number not in at_most
             for clause in rule_clauses
         )
@@ -232,7 +232,7 @@ class Rules:
             answers: UnitAnswers | None = UnitAnswers(Restriction(lambda _: False), {})
             if understood:
                 numbers = analysis.removals.keys() | analysis.at_least_ones.keys() | analysis.rows.keys()
-                clauses = [clause for number in numbers for clause in analysis.of_rule[number]]
+                clauses = [clause for number in numbers for clause in analysis.clauses_of_rule[number]]
                 programs = [line for rule in understood for line in rule.program]
                 rules, read = analysis.translator.complete_program(programs, clauses)
                 plain = problem if problem.restriction is None else replace(problem, restriction=None)

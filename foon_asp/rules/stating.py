@@ -81,6 +81,7 @@ class _Renamer(Transformer):
     """
 
     def __init__(self, predicates: Collection[Signature], constants: Collection[str], number: int) -> None:
+        """Keep the predicates and constants to rename."""
         self._predicates, self._constants, self._number = predicates, constants, number
 
     def name(self, name: str) -> str:
@@ -88,6 +89,7 @@ class _Renamer(Transformer):
         return f"_{name.lstrip('_')}_{self._number}"
 
     def visit_SymbolicAtom(self, atom: AST) -> AST:  # noqa: N802 (the name clingo looks for)
+        """Return an atom, with the new name of its predicate if it has one."""
         return atom.update(symbol=self._rename_symbol(atom.symbol))
 
     def _rename_symbol(self, symbol: AST) -> AST:
@@ -101,18 +103,22 @@ class _Renamer(Transformer):
         return symbol.update(name=name, arguments=self.visit_sequence(symbol.arguments))
 
     def visit_SymbolicTerm(self, term: AST) -> AST:  # noqa: N802
+        """Return a constant under its new name if it has one; any other term unchanged."""
         symbol = term.symbol
         if symbol.type is SymbolType.Function and symbol.name in self._constants and not symbol.arguments:
             return term.update(symbol=Function(self.name(symbol.name)))
         return term
 
     def visit_Definition(self, definition: AST) -> AST:  # noqa: N802
+        """Return a ``#const`` statement with new names."""
         return definition.update(name=self.name(definition.name), value=self.visit(definition.value))
 
     def visit_Defined(self, defined: AST) -> AST:  # noqa: N802
+        """Return ``#defined``, with the new name of its predicate if it has one."""
         return self._rename_signature(defined)
 
     def visit_ShowSignature(self, shown: AST) -> AST:  # noqa: N802
+        """Return ``#show``, with the new name of its predicate if it has one."""
         return self._rename_signature(shown)
 
     def _rename_signature(self, statement: AST) -> AST:

@@ -47,7 +47,7 @@ _WORLD_OF_NOTHING: Final = f'"{NOTHING}"'
 _ONE_EXECUTION = {USE, TIMES}
 
 
-class Removes(NamedTuple):
+class Removal(NamedTuple):
     """A rule that removes the units in whose worlds its program derives ``breaks``.
 
     If the program derives ``breaks`` in the world ``NOTHING``, there is no tree.
@@ -86,7 +86,7 @@ class Row(NamedTuple):
     per_unit: bool = False
 
 
-Understood = Removes | AtLeastOne | Row
+Understood = Removal | AtLeastOne | Row
 
 # By forbidden comparison: whether the bound that remains is a lower one, and its offset from the number.
 _ALLOWED = {
@@ -105,6 +105,7 @@ class Translator:
     """
 
     def __init__(self, program: Sequence[Clause], constants: Constants, dependence: Dependence) -> None:
+        """Index the clauses by the predicate in their heads, and choose a variable for worlds."""
         self._constants, self._dependence = constants, dependence
         self._clauses: dict[Signature, list[Clause]] = {}
         for clause in program:
@@ -120,13 +121,13 @@ class Translator:
         self._numbers = 0
         self._units_read_by_predicate: dict[Signature, int] = {}
 
-    def removal(self, clauses: Sequence[Clause]) -> Removes | None:
+    def removal(self, clauses: Sequence[Clause]) -> Removal | None:
         """Return a removal of units for the rule that consists of ``clauses``; ``None`` for another rule."""
         if not all(self._has_no_calculation(clause.body) for clause in clauses):
             return None
         if any(self._count_units_read(clause.body) > 1 for clause in clauses):
             return None
-        return Removes(
+        return Removal(
             tuple(self._rule_text(self._new_answer_head("breaks", 0), clause) for clause in clauses)
         )
 

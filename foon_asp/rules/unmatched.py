@@ -86,6 +86,7 @@ class _Search:
     """
 
     def __init__(self, program: Sequence[Clause], constants: Constants, values: FactValues) -> None:
+        """Collect the values that facts in the program list."""
         self._constants, self._values = constants, values
         self._listed_values = self._find_listed_values(program)
 

@@ -15,6 +15,7 @@ class Worlds(Transformer):
     """
 
     def __init__(self, dependent: Collection[Signature], world: str, prefix: str = "_") -> None:
+        """Keep the predicates, the variable and the prefix."""
         self._dependent, self._world, self._prefix = dependent, world, prefix
 
     def visit_SymbolicAtom(self, atom: AST) -> AST:  # noqa: N802 (the name clingo looks for)
