@@ -151,7 +151,7 @@ def read_encoding(rules: Loaded) -> Encoding:
     kinds: set[ASTType] = set()
 
     def collect(statement: AST) -> None:
-        """Collect a statement; record its file and kind."""
+        """Pass a statement to the collector; record its file and kind."""
         included.add(statement.location.begin.filename)
         kinds.add(statement.ast_type)
         collector.collect(statement)
@@ -281,7 +281,7 @@ class _Collector(Transformer):
         return aggregate.update(**self.visit_children(aggregate))
 
     def _record_assignment(self, aggregate: AST) -> None:
-        """Record whether an aggregate may give a variable its value, as in ``N = #count {...}``."""
+        """Set ``assigns`` if an aggregate may give a variable its value, as in ``N = #count {...}``."""
         guard = aggregate.left_guard
         if guard is not None and guard.comparison == ComparisonOperator.Equal:
             self.encoding.assigns |= guard.term.ast_type != ASTType.SymbolicTerm
@@ -624,9 +624,9 @@ def program_fault(
 
 
 def _dropped_message(message: str, term: str) -> str:
-    """Return the message that clingo would drop an instance of a rule or element.
+    """Return the message that clingo would drop an instance of a rule or element, with its reason.
 
-    ``message`` and ``term`` are what clingo says of it.
+    ``message`` is the reason as clingo states it, and ``term`` the term that it names.
     """
     no_value = f"a term has no value here: {term.removeprefix('(').removesuffix(')')}"
     if message == "tuple ignored" and _NEGATIVE.match(term):

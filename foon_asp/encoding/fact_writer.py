@@ -86,7 +86,7 @@ def write_facts(
 
     Raises :class:`UserError` where user rules read prices and a price is no whole number of hundredths.
     """
-    name = problem.network.object_number
+    object_number = problem.network.object_number
     nodes = described_nodes(problem, units)
     prices = None if looked_at is None else prices_in_hundredths(problem, units, looked_at)
     kitchen = problem.kitchen_seen
@@ -97,9 +97,9 @@ def write_facts(
     for o in nodes:
         atoms = _object_atoms(problem, o)
         if o in kitchen:
-            atoms.append(("kitchen", f"{name(o)}"))
+            atoms.append(("kitchen", f"{object_number(o)}"))
             copies = problem.stock_of(o)
-            atoms += [] if copies is None else [("stock", f"{name(o)},{_check_int32(copies)}")]
+            atoms += [] if copies is None else [("stock", f"{object_number(o)},{_check_int32(copies)}")]
         lines.append(". ".join([_object_atom(problem, o), *map(_atom_text, atoms)]) + ".")
     return "\n".join([*lines, *_other_lines(problem, nodes)]) + "\n"
 
@@ -107,41 +107,41 @@ def write_facts(
 def write_facts_read(
     problem: Problem, units: Sequence[int], read: Collection[tuple[str, int]], scales: Scales | None = None
 ) -> str:
-    """Return the facts of :func:`write_facts` restricted to the predicates in ``read``.
+    """Return the facts of :func:`write_facts` that have the predicates in ``read``.
 
-    Without ``scales``, ``risk/2`` and ``cost/3`` are omitted. Raises :class:`UserError` where prices are read
-    and a price is no whole number of hundredths.
+    Facts about utensils and goals are always included. Without ``scales``, ``risk/2`` and ``cost/3`` are
+    omitted. Raises :class:`UserError` where prices are read and a price is no whole number of hundredths.
     """
     problem_seen = problem.as_seen or problem
-    name = problem.network.object_number
-    names = {predicate for predicate, _ in read}
+    object_number = problem.network.object_number
+    read_names = {predicate for predicate, _ in read}
     nodes = described_nodes(problem, units)
     kitchen = problem.kitchen_seen
     lines: list[str] = []
     prices = prices_in_hundredths(problem, units, read) if _OF_RULES & {*read} else None
-    of_objects = {name for name in OBJECT_FACTS if (name, FACT_PREDICATES[name]) in read}
+    object_predicates = {name for name in OBJECT_FACTS if (name, FACT_PREDICATES[name]) in read}
 
     def add(atoms: Iterable[_Atom]) -> None:
-        """Add a line with the atoms whose predicates are read, if there are any."""
+        """Add a line with those of the atoms whose predicates are in ``read``, if there are any."""
         texts = [_atom_text(atom) for atom in atoms if (atom[0], FACT_PREDICATES[atom[0]]) in read]
         if texts:
             lines.append(". ".join(texts) + ".")
 
     for unit in units:
         atoms = [("unit", f"{_check_int32(problem.network.unit_number(unit))}")]
-        atoms += _unit_atoms(problem, unit, scales, prices, names)
-        if "rate" in names and problem.rates is not None and not (scales and scales.rates):
+        atoms += _unit_atoms(problem, unit, scales, prices, read_names)
+        if "rate" in read_names and problem.rates is not None and not (scales and scales.rates):
             number = problem.network.unit_number(unit)
             atoms.append(("rate", f"{number},{millionths(problem_seen.rate(unit))}"))
         add(atoms)
-    for o in nodes if of_objects or not names.isdisjoint(("object", "kitchen")) else ():
-        atoms = [("object", f"{_check_int32(name(o))}")]
+    for o in nodes if object_predicates or not read_names.isdisjoint(("object", "kitchen")) else ():
+        atoms = [("object", f"{_check_int32(object_number(o))}")]
         atoms += [
-            (predicate, f"{name(o)},{arguments}")
-            for predicate, arguments in object_facts(problem.network.objects[o], of_objects)
+            (predicate, f"{object_number(o)},{arguments}")
+            for predicate, arguments in object_facts(problem.network.objects[o], object_predicates)
         ]
         if o in kitchen:
-            atoms.append(("kitchen", f"{name(o)}"))
+            atoms.append(("kitchen", f"{object_number(o)}"))
         add(atoms)
     return "\n".join([*lines, *_other_lines(problem, nodes)]) + "\n"
 
@@ -151,12 +151,12 @@ def _other_lines(problem: Problem, nodes: Sequence[int]) -> Iterator[str]:
 
     These are in the kitchen, but not in the part of it that user rules see.
     """
-    name = problem.network.object_number
+    object_number = problem.network.object_number
     labels = {problem.network.objects[o].label for o in nodes}
     yield from (f"utensil({quote(label)})." for label in sorted(labels & problem.utensils))
-    yield from (f"goal({name(o)})." for o in problem.goals)
+    yield from (f"goal({object_number(o)})." for o in problem.goals)
     assumed = problem.kitchen - problem.kitchen_seen
-    yield from (f"available({name(o)})." for o in nodes if o in assumed)
+    yield from (f"available({object_number(o)})." for o in nodes if o in assumed)
 
 
 def write_worlds(
@@ -219,9 +219,9 @@ def _unit_atoms(
     ``None``, facts about sources, videos and prices are among them.
     """
     network = problem.network
-    inputs, name = network.inputs[unit], network.object_number
-    u = network.unit_number(unit)
-    atoms = [("motion", f"{u},{quote(network.motions[unit])}")] if "motion" in read else []
+    inputs, object_number = network.inputs[unit], network.object_number
+    number = network.unit_number(unit)
+    atoms = [("motion", f"{number},{quote(network.motions[unit])}")] if "motion" in read else []
     for predicate, nodes in (
         ("input", inputs),
         ("needs", problem.needs[unit]),
@@ -229,28 +229,31 @@ def _unit_atoms(
         ("gives", problem.gives[unit]),
     ):
         if predicate in read:
-            atoms += [(predicate, f"{u},{name(o)}") for o in nodes]
+            atoms += [(predicate, f"{number},{object_number(o)}") for o in nodes]
     if problem.items is not None:
         used_up = problem.flows[unit].uses
-        atoms += [("uses_up" if o in used_up else "stays", f"{u},{name(o)}") for o in problem.needs[unit]]
+        atoms += [
+            ("uses_up" if o in used_up else "stays", f"{number},{object_number(o)}")
+            for o in problem.needs[unit]
+        ]
     if "inputs" in read:
-        atoms.append(("inputs", f"{u},{len(inputs)}"))
+        atoms.append(("inputs", f"{number},{len(inputs)}"))
     if "ingredients" in read:
         ingredients = sum(len(network.objects[o].ingredients) for o in inputs)
-        atoms.append(("ingredients", f"{u},{_check_int32(ingredients)}"))
+        atoms.append(("ingredients", f"{number},{_check_int32(ingredients)}"))
     if scales and scales.rates:
         weight = scales.rates.weights[problem.rate(unit)]
         rate_seen = (problem.as_seen or problem).rate(unit)
-        atoms += [("rate", f"{u},{millionths(rate_seen)}"), ("risk", f"{u},{_check_int32(weight)}")]
+        atoms += [("rate", f"{number},{millionths(rate_seen)}"), ("risk", f"{number},{_check_int32(weight)}")]
     if scales:
         weights = ((objective.row.term, scales.weight(objective, [unit])) for objective in scales.facts)
-        atoms += [("cost", f"{term},{u},{_check_int32(weight)}") for term, weight in weights]
+        atoms += [("cost", f"{term},{number},{_check_int32(weight)}") for term, weight in weights]
     if prices is not None:
         sources = network.sources[unit]
-        atoms += [("source", f"{u},{quote(text)}") for text in source_names(sources)]
+        atoms += [("source", f"{number},{quote(text)}") for text in source_names(sources)]
         videos = dict.fromkeys(video for source in sources for video in source.videos)
-        atoms += [("video", f"{u},{quote(encodable(video))}") for video in videos]
-        atoms += [("price", f"{u},{prices[unit]}")] if unit in prices else []
+        atoms += [("video", f"{number},{quote(encodable(video))}") for video in videos]
+        atoms += [("price", f"{number},{prices[unit]}")] if unit in prices else []
     return atoms
 
 

@@ -1,11 +1,11 @@
 """Locality of rules: whether they read facts about the tree alone, its units, object nodes and goals.
 
-A rule is local if its truth for a tree stays the same without the facts of units outside the tree and of
-object nodes that only such units have. So each fact that a local rule reads is about a subject that is known
-to be in the tree. In ``use(U)``, the unit U is in the tree. If U is in the tree, so is the object node O in
-``input(U,O)``. If O is in the tree, so is the label L in ``label(O,L)``. The node O in ``goal(O)`` always is
-in the tree. The arguments of an auxiliary predicate may be subjects: ``tainted(O) :- label(O,"nut").`` reads
-facts about O only.
+A rule is local if its truth for a tree does not depend on facts outside the tree. They are facts of units
+outside the tree, and of object nodes that only such units have. So each fact that a local rule reads is about
+a subject that is known to be in the tree. In ``use(U)``, the unit U is in the tree. If U is in the tree, so
+is the object node O in ``input(U,O)``. If O is in the tree, so is the label L in ``label(O,L)``. The node O
+in ``goal(O)`` always is in the tree. The arguments of an auxiliary predicate may be subjects: ``tainted(O) :-
+label(O,"nut").`` reads facts about O only.
 """
 
 from collections import defaultdict

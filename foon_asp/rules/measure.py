@@ -84,13 +84,13 @@ def wrong_cost(
     """
     from foon_asp.rules.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)
 
-    everything = measure.costs(problem, deadline)
+    costs = measure.costs(problem, deadline)
     rules = read_rules(measure.text, measure.place)
     if measure.name not in rules.names:
         return f"the rules say nothing of {measure.name}"
-    alone = _Evaluation(measure, rules, problem, deadline).cost_by_number(stated)
+    evaluated_costs = _Evaluation(measure, rules, problem, deadline).cost_by_number(stated)
     for unit, cost in stated.items():
-        for rule_cost in (everything[unit], alone.get(problem.network.unit_number(unit), 0)):
+        for rule_cost in (costs[unit], evaluated_costs.get(problem.network.unit_number(unit), 0)):
             if rule_cost != cost:
                 return f"unit {unit} costs {rule_cost} by the rules of {measure.name}, and not {cost}"
     return None

@@ -1,4 +1,4 @@
-"""Overflow checks: rules that derive an atom where arithmetic of other rules silently leaves 32 bits."""
+"""Overflow checks: rules that derive an atom where arithmetic in other rules exceeds 32 bits."""
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence

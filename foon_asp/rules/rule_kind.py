@@ -75,9 +75,8 @@ class Rule(NamedTuple):
 
     ``reason``, at ``reason_source``: why the kind is ``OTHER``, or why the rule has no effect; else empty.
     ``nonlocality``, at ``nonlocality_source``: the facts outside the tree that the rule reads; empty for a
-    local rule. The truth of a local rule for a tree stays the same without the facts of units outside the
-    tree and of object nodes that only such units have. A ``HELPER`` is always local: its facts count for the
-    rules that use it.
+    local rule (:mod:`foon_asp.rules.locality`). A ``HELPER`` is always local: its facts count for the rules
+    that use it.
     ``one_of``: the rule requires a unit of each of one or several sets, which are found before the search.
     """
 
@@ -143,8 +142,8 @@ class Analysis:
         self.at_least_ones: dict[int, tuple[AtLeastOne, ...]] = {}
         self.rows: dict[int, Row] = {}
         self.rules = tuple(
-            self._translate_rule(number, self._classify_statement(statement, live))
-            for number, (statement, live) in enumerate(
+            self._translate_rule(number, self._classify_statement(statement, live_clauses))
+            for number, (statement, live_clauses) in enumerate(
                 zip(self.statements, self.clauses_of_rule, strict=True)
             )
         )
@@ -214,28 +213,28 @@ class Analysis:
                 return Doubt(f"more units may make `{conjunct.text}` true or false", clause.source)
         return Doubt("more units may break it, and others may mend it", clause.source)
 
-    def _classify_statement(self, statement: AST, live: Sequence[Clause]) -> Rule:
+    def _classify_statement(self, statement: AST, live_clauses: Sequence[Clause]) -> Rule:
         """Return a statement as a rule with its kind and locality.
 
-        ``live`` are its clauses that can have an effect.
+        ``live_clauses`` are its clauses that can have an effect.
         """
         source = source_of(statement)
         if statement.ast_type != ASTType.Rule:
             reason = f"{str(statement).split(maxsplit=1)[0]} is nothing that is looked into"
             return Rule(source, Kind.OTHER, reason, source, reason, source)
-        if not live:
+        if not live_clauses:
             idle_clauses = list(clauses(statement, 0, self.constants))
             reasons = map(self._why_never, (clause.body for clause in idle_clauses))
             why_never = next(filter(None, reasons), _NEVER)
             kind = Kind.FACT if any(clause.is_constraint for clause in idle_clauses) else Kind.HELPER
             return Rule(source, kind, f"{why_never}, so it has no effect", source)
-        kinds = [self.kind(clause) for clause in live]
+        kinds = [self.kind(clause) for clause in live_clauses]
         kind = _conjunction_kind(kind for kind, _ in kinds)
         doubt = next((doubt for _, doubt in kinds if doubt), None)
         if kind is Kind.OTHER and doubt is None:
             doubt = Doubt("read in one way it rules units out, in another it requires some", source)
         nonlocality = None
-        for clause in live if kind is not Kind.HELPER else ():
+        for clause in live_clauses if kind is not Kind.HELPER else ():
             nonlocality = nonlocality or self._locality.nonlocality(clause)
         return Rule(
             source,
@@ -252,22 +251,26 @@ class Analysis:
         The translations are added to ``removals``, ``at_least_ones`` and ``rows``, under the index of the
         rule (``number``).
         """
-        live = self.clauses_of_rule[number]
+        live_clauses = self.clauses_of_rule[number]
         if not rule.local or rule.kind in {Kind.HELPER, Kind.OTHER}:
             return rule
-        if rule.kind is not Kind.FACT and len(live) == 1 and (row := self.translator.row(live[0])):
+        if (
+            rule.kind is not Kind.FACT
+            and len(live_clauses) == 1
+            and (row := self.translator.row(live_clauses[0]))
+        ):
             self.rows[number] = row
         if rule.kind is Kind.REQUIRING:
-            translations = [self.translator.at_least_one(clause) for clause in live]
+            translations = [self.translator.at_least_one(clause) for clause in live_clauses]
             at_least_ones = tuple(translation for translation in translations if translation is not None)
             if len(at_least_ones) < len(translations):
                 return rule
             self.at_least_ones[number] = at_least_ones
             return rule._replace(one_of=True)
-        removes = self.translator.removal(live)
-        if removes is None:
+        removal = self.translator.removal(live_clauses)
+        if removal is None:
             return rule
-        self.removals[number] = removes
+        self.removals[number] = removal
         return rule._replace(kind=Kind.FACT if rule.kind is Kind.FACT else Kind.DELETING)
 
 

@@ -1,13 +1,16 @@
 """Translation of rules into programs about single units, which clingo evaluates.
 
-A translated rule *removes* the units that break it by themselves, requires *at least one* of the units that
-keep to it by themselves, or is a *row*, which bounds a sum of weights of units. The translation is a program
-that clingo evaluates in several worlds: one world for each unit, in which only this unit is used, and the
-world ``NOTHING``, in which no unit is. The program derives ``_of_unit(NUMBER,WHAT,OF,W)`` in a world ``W``.
-Any other rule is a *check*: clingo evaluates it on whole trees.
+There are three kinds of translations. A *removal* removes each unit that breaks the rule by itself. An
+*at-least-one constraint* requires one of the units that keep to the rule by themselves. A *row* bounds a sum
+of weights of units. Any other rule is a *check*: clingo evaluates it on whole trees.
 
-A rule can be translated if, by its syntax, each of its derivations looks at one unit of the tree, and
-if it calculates nothing: then no number can overflow, and grounding ends.
+Clingo evaluates the program of a translation in several worlds. There is a world for each unit, in which only
+this unit is used; in the world ``NOTHING``, no unit is. The program derives atoms
+``_of_unit(NUMBER,WHAT,OF,W)`` in a world ``W``. ``NUMBER`` is that of the translation. ``WHAT`` is
+``breaks``, ``asks``, ``meets`` or ``weighs``. ``OF`` is a term, or the weight.
+
+A rule can be translated if, by its syntax, each of its derivations looks at one unit of the tree, and if it
+calculates nothing. Then no number can overflow, and grounding ends.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -133,19 +136,19 @@ class Translator:
 
     def at_least_one(self, clause: Clause) -> AtLeastOne | None:
         """Return the at-least-one constraint that a requiring rule stands for; ``None`` for another rule."""
-        deciding = [n for n, conjunct in enumerate(clause.body) if self._count_units_read([conjunct])]
-        others = [n for n in range(len(clause.body)) if n not in deciding]
-        alternatives = [self._alternatives(clause, n) for n in deciding]
+        unit_positions = [n for n, conjunct in enumerate(clause.body) if self._count_units_read([conjunct])]
+        set_positions = [n for n in range(len(clause.body)) if n not in unit_positions]
+        alternatives = [self._alternatives(clause, n) for n in unit_positions]
         if None in alternatives or not self._has_no_calculation(clause.body):
             return None
-        bound = {name for n in others for name in global_variables(clause.body[n])}
+        bound = {name for n in set_positions for name in global_variables(clause.body[n])}
         set_term = f"({','.join([*sorted(bound), ''])})" if bound else "()"
-        set_conditions = [str(self._worlds.visit(clause.ast.body[n])) for n in others]
+        set_conditions = [str(self._worlds.visit(clause.ast.body[n])) for n in set_positions]
         self._numbers += 1
         asks = self._answer_head("asks", set_term, _WORLD_OF_NOTHING)
         program = [f"{asks} :- {'; '.join(set_conditions) or '#true'}."]
         rows: list[Sequence[Trait]] = []
-        always = all(getattr(clause.body[n], "holds", None) for n in others)
+        always = all(getattr(clause.body[n], "holds", None) for n in set_positions)
         for unit_conditions, conjuncts in (pair for pairs in alternatives for pair in pairs or ()):
             body = "; ".join([*set_conditions, *unit_conditions, f"__world({self._world})"])
             program.append(f"{self._answer_head('meets', set_term, self._world)} :- {body}.")

@@ -77,29 +77,29 @@ def candidate_units(network: Network, wanted: Iterable[Wanted]) -> set[int] | No
 def _read_answers(problem: Problem, rows: Iterable[tuple[Value, ...]]) -> UnitAnswers:
     """Return the removed units, required sets and weights in the atoms that clingo derived.
 
-    ``rows`` are the arguments of the atoms ``_of_unit``.
+    ``rows`` are the arguments of the atoms ``_of_unit/4``; :mod:`foon_asp.rules.understood` explains them.
     """
     removed: set[int] = set()
     required: dict[tuple[Value, Value], set[int] | None] = {}  # None where a set is not needed
     weights: dict[int, dict[int, int]] = {}
     possible = True
-    for number, what, of, world in rows:
+    for number, answer, term, world in rows:
         assert isinstance(number, int)
         unit = problem.network.unit_of_number(world) if isinstance(world, int) else None
         if world == NOTHING:
-            possible &= what != "breaks"
-            if what == "meets":
-                required[number, of] = None
+            possible &= answer != "breaks"
+            if answer == "meets":
+                required[number, term] = None
             else:
-                required.setdefault((number, of), set())
+                required.setdefault((number, term), set())
         elif unit is None:
             continue
-        elif what == "breaks":
+        elif answer == "breaks":
             removed.add(unit)
-        elif what == "weighs":
-            of_row = weights.setdefault(number, {})
-            of_row[unit] = of_row.get(unit, 0) + (of if isinstance(of, int) else 0)
-        elif (units := required.setdefault((number, of), set())) is not None:
+        elif answer == "weighs":
+            row_weights = weights.setdefault(number, {})
+            row_weights[unit] = row_weights.get(unit, 0) + (term if isinstance(term, int) else 0)
+        elif (units := required.setdefault((number, term), set())) is not None:
             units.add(unit)
     sets = tuple(frozenset(units) for units in required.values() if units is not None)
     if not possible or not all(sets):

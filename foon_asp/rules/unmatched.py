@@ -60,6 +60,9 @@ def unmatched_warnings(
     ``theirs`` are user files, ``ours`` ready-made constraints used with them, and ``settings`` the constants
     that are set. There is no warning if another rule with the same head has a literal that matches and has
     the same constants: one rule may look for a label, the other for an ingredient, of the same name.
+
+    There are also warnings for facts in user files, such as ``allergen("milk").``, that name nothing in the
+    network.
     """
     encodings = (*theirs, *ours)
     definitions = [statement for encoding in encodings for statement in encoding.definitions]
@@ -180,7 +183,10 @@ class _Search:
         return values
 
     def _find_listed_values(self, program: Sequence[Clause]) -> dict[tuple[Signature, int], Sequence[Symbol]]:
-        """Return the values of predicates that facts alone define, by predicate and position."""
+        """Return the values that facts list for predicates without rules, by predicate and position.
+
+        An argument is left out if its value in some fact is unknown.
+        """
         rows: defaultdict[Signature, list[list[Symbol | None]]] = defaultdict(list)
         derived = {
             head.signature for clause in program if clause.body or not clause.plain for head in clause.heads
