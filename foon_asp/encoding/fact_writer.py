@@ -78,7 +78,7 @@ def write_facts(
 ) -> str:
     """Return the facts about units of a problem, their object nodes, the kitchen and the goals.
 
-    There is one line per unit and per object node, with public numbers.
+    There is one line per unit and per object node. In the facts, these have the numbers that users see.
 
     ``scales`` have the weights of ``risk/2`` and ``cost/3``; without scales, these facts are omitted.
     ``looked_at`` are the predicates that user rules read. Unless it is ``None``, facts about sources, videos

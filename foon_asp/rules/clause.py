@@ -80,14 +80,17 @@ class Conditional(NamedTuple):
 
 
 class Element(NamedTuple):
-    """An element ``terms : condition`` of an aggregate, which adds the terms where the condition holds."""
+    """An element ``terms : condition`` of an aggregate.
+
+    The aggregate counts or adds the terms where the condition holds.
+    """
 
     terms: tuple[AST, ...]
     condition: "tuple[Conjunct, ...]"
 
 
 class Guard(NamedTuple):
-    """A comparison of an aggregate, on its left, with a term, on its right: ``> 9``."""
+    """A guard of an aggregate, such as ``> 9``: the value of the aggregate is compared with a term."""
 
     comparison: ComparisonOperator
     term: AST

@@ -139,7 +139,7 @@ class Dependence:
         return Doubt(f"{strange.text} is nothing that is looked into") if strange else None
 
     def _doubt_of_predicate(self, signature: Signature) -> Doubt | None:
-        """Return a doubt about a predicate that does not come from its rules; ``None`` without one."""
+        """Return why a predicate's monotonicity is unknown whatever its rules are, else ``None``."""
         name, arity = signature
         if name.startswith("-"):
             return Doubt(f"{name}/{arity} is negated with a minus")
@@ -198,7 +198,8 @@ class Dependence:
     def _find_nonnegative(self, program: Sequence[Clause]) -> None:
         """Set ``_nonnegative`` to the predicate arguments that are never negative numbers.
 
-        They are the greatest fixpoint: each rule derives such an argument from such arguments.
+        This is a greatest fixpoint: an argument is dropped as soon as some rule may derive a negative number
+        for it.
         """
         facts = {
             (signature, position) for signature, subjects in SUBJECTS.items() for position in subjects.numbers

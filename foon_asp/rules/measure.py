@@ -183,7 +183,7 @@ class _Evaluation:
     def _derive_costs(
         self, units: Iterable[int], statements: Iterable["Statement"]
     ) -> Sequence[tuple["Value", ...]]:
-        """Derive costs of units with clingo: rows of world, measure, unit number and cost.
+        """Return the costs of units that clingo derives, as rows of world, measure, unit number and cost.
 
         The world is the number of the unit whose facts were used. Raises :class:`InputError` if clingo drops
         an instance of a rule.
@@ -210,7 +210,7 @@ class _Evaluation:
             raise self._with_places(program_fault(refused.messages, refused.otherwise), statements) from None
 
     def _with_places(self, error: UserError, statements: Sequence["Statement"]) -> UserError:
-        """Return an error about the text for clingo with places in the rules of the user instead."""
+        """Return an error of clingo with places in the rules of the user, not in the text for clingo."""
         if not isinstance(error, InputError):
             return UserError(f"{self._measure.place}: {error}")
         return InputError(

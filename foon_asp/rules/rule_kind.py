@@ -149,7 +149,10 @@ class Analysis:
         )
 
     def kind(self, clause: Clause) -> tuple[Kind, Doubt | None]:
-        """Return the kind of a clause, and why it is ``OTHER``; ``None`` for any other kind."""
+        """Return the kind of a clause, and the reason if the kind is ``OTHER``.
+
+        The reason is ``None`` for any other kind.
+        """
         dependence = self.dependence
         doubt: Doubt | None
         if not clause.plain:
