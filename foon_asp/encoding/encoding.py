@@ -434,10 +434,10 @@ def _replaced_definition_errors(encoding: Encoding) -> list[Diagnostic]:
     Those that the built-in file of the same name defines are allowed.
     """
     name = encoding.rules.name if isinstance(encoding.rules, Path) else ""
-    ours = [
+    built_in_files = [
         file for file in (encodings_folder() / name, encodings_folder() / "by_need" / name) if file.is_file()
     ]
-    theirs = {signature for file in ours for signature in read_encoding(file).defined}
+    built_in_predicates = {signature for file in built_in_files for signature in read_encoding(file).defined}
     return [
         encoding.remark(
             Severity.ERROR,
@@ -447,7 +447,7 @@ def _replaced_definition_errors(encoding: Encoding) -> list[Diagnostic]:
             source,
         )
         for (predicate, arity), source in encoding.defined.items()
-        if _is_reserved(predicate) and (predicate, arity) not in theirs
+        if _is_reserved(predicate) and (predicate, arity) not in built_in_predicates
     ]
 
 
@@ -525,7 +525,8 @@ def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) 
 def constant_value(name: str, default: str, value: str) -> str:
     """Return a value of a constant as a term, of the type of its default.
 
-    Raises :class:`UserError` for a value of another type.
+    Where the default is a word, the value may be a word or a whole number. Raises :class:`UserError` for a
+    value of another type.
     """
     if default.startswith('"'):
         return quote(string_constant(value))

@@ -30,7 +30,8 @@ class Exact:
 def _exact(text: Symbol, *values: Symbol) -> Symbol:
     """Return 1 if a term is beyond clingo's numbers, else 0.
 
-    ``text`` is the term in postfix notation, and ``values`` are the values in it.
+    ``text`` is the term in postfix notation, and ``values`` are the values in it. 0 also if one of them is no
+    number, which clingo reports itself.
     """
     if any(value.type is not SymbolType.Number for value in values):
         return Number(0)  # reported by clingo

@@ -154,9 +154,9 @@ class Dependence:
         return None
 
     def _find_doubts(self, program: Sequence[Clause]) -> None:
-        """Fill ``doubts``: a predicate gets the first doubt about a body of its rules, or about its head.
+        """Fill ``doubts`` as a fixpoint: a doubt about a body passes to the predicates in the head.
 
-        Also fills ``loops``.
+        A head that is a choice is a doubt, too. Also fills ``loops``.
         """
         for clause in program:
             if not clause.plain:

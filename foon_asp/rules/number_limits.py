@@ -324,8 +324,8 @@ def _binds(condition: AST) -> bool:
     elif atom.ast_type in {ASTType.BodyAggregate, ASTType.Aggregate}:
         sides = [guard for guard in (atom.left_guard, atom.right_guard) if guard is not None]
         guards = [guard for guard in sides if any(variables(guard.term))]
-    equal = any(guard.comparison == ComparisonOperator.Equal for guard in guards)
-    return equal or bool(atom.ast_type == ASTType.SymbolicAtom)
+    has_equation = any(guard.comparison == ComparisonOperator.Equal for guard in guards)
+    return has_equation or bool(atom.ast_type == ASTType.SymbolicAtom)
 
 
 def _body_text(conditions: Sequence[AST | str]) -> str:

@@ -129,7 +129,7 @@ def ready_made(constraints: Sequence[Constraint], settings: Sequence[str]) -> Re
     """Return the constraints if each is ready-made, unchanged, used once, and has all its constants set.
 
     ``settings``, as ``NAME=VALUE``, set the constants of constraints that are passed without constants.
-    ``None`` for any other constraints, and if a value is not a plain text or number.
+    ``None`` for any other constraints, for one with an error, and if a value is not a plain text or number.
     """
     shared = dict(setting.partition("=")[::2] for setting in settings)
     files: list[Path] = []
