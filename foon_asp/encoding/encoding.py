@@ -540,9 +540,9 @@ def constant_value(name: str, default: str, value: str) -> str:
 def unset_constant_warnings(added: Sequence[Encoding], constants: Sequence[str]) -> list[str]:
     """Return a warning for each constant that is not set and has no effect with its default.
 
-    Such defaults are ``""``, ``#sup`` and ``#inf``. There is no warning where a rule derives a fact with the
-    constant as argument, and another encoding derives facts of the same predicate, such as
-    ``allergen("milk").``
+    Such defaults are ``""``, ``#sup`` and ``#inf``. A constant may be replaced by facts such as
+    ``allergen("milk").`` Then a rule derives a fact with the constant, and another encoding derives facts of
+    this predicate. There is no warning for it.
     """
     settings_given = {setting.partition("=")[0] for setting in constants}
     warnings = []

@@ -1,7 +1,7 @@
 """Checks of the text of an encoding before clingo reads it: included files, letters and numbers.
 
-clingo opens any file that an ``#include`` names, reads a number that is too large modulo 2^32, and aborts the
-whole process where its message about an unexpected letter is not UTF-8. These texts are refused here.
+clingo opens any file that an ``#include`` names. It reads a number that is too large modulo 2^32. It aborts
+the whole process where its message about an unexpected letter is not UTF-8. These texts are refused here.
 """
 
 import re

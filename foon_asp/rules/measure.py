@@ -53,8 +53,8 @@ class Measure:
 
         Clingo evaluates the rules until the deadline at most. The costs are cached for the network.
 
-        Raises :class:`InputError` if rules give a unit two costs, or a cost other than a number from 0, and
-        :class:`UserError` if they read success rates and there are none.
+        Raises :class:`InputError` if rules give a unit two costs, or a cost other than a number from 0.
+        Raises :class:`UserError` if they read success rates and there are none.
         """
         from foon_asp.rules.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)
 
@@ -308,9 +308,9 @@ def _value_text(value: "Value") -> str:
 def read_measures(rules: str | PathLike[str] | Iterable[str | PathLike[str]]) -> dict[str, Measure]:
     """Read measures from one or several files or texts of rules; return them by name.
 
-    A text that has ``:-``, or ends in a full stop, is rules, unless it is an existing path. Any other text is
-    the path of a file. Raises :class:`UserError` for an empty text, for faults in rules, and for a measure
-    that is defined twice.
+    An existing path is a file. Any other text is rules if it has ``:-``, or ends in a full stop; else it is a
+    path. Raises :class:`UserError` for an empty text, for faults in rules, and for a measure that is defined
+    twice.
     """
     rules = [rules] if isinstance(rules, str | PathLike) else list(rules)
     if not rules:

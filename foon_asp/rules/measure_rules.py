@@ -424,8 +424,8 @@ def _is_nameless(rules: Sequence[_Atoms]) -> bool:
     """Whether rules compare units and object nodes for equality only.
 
     The argument positions of units and of object nodes are inferred from the facts, along the variables of
-    each rule. The answer is ``False`` if such a position has a constant or a variable of the other kind, or
-    if such a variable is compared.
+    each rule. The answer is ``False`` if such a position has a constant or a variable of the other kind. It
+    is ``False``, too, if such a variable is compared.
     """
     kinds: dict[tuple[Signature, int], str] = {(COST, 1): _UNIT}
     for name, arity in FACT_PREDICATES.items():

@@ -82,8 +82,8 @@ Constraint = Path | RuleText | LibraryUse
 def given_constraint(constraint: str | PathLike[str] | Constraint) -> Constraint:
     """Return the constraint that a Python argument stands for.
 
-    A text that has ``:-``, or ends in a full stop, is a rule, unless it is an existing path or the name of a
-    ready-made constraint; a path is always a path. Raises :class:`UserError` for an empty text.
+    An existing path, or the name of a ready-made constraint, is that. Any other text is a rule if it has
+    ``:-``, or ends in a full stop; else it is a path. Raises :class:`UserError` for an empty text.
     """
     if isinstance(constraint, RuleText | LibraryUse):
         return constraint

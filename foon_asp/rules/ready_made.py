@@ -152,8 +152,8 @@ def _rules_with_values(
     """Return constraints with the values of their constants, and all constants as terms of clingo.
 
     ``uses`` are the names of constraints with their constants; these are ``shared`` where a use has none of
-    its own. ``None`` if a value is not a plain text or number, a constant is missing, or a setting in
-    ``shared`` is not used.
+    its own. The result is ``None`` if a value is not a plain text or number, or is missing. It is ``None``,
+    too, if a setting in ``shared`` is not used.
     """
     facts: dict[str, set[str]] = {name: set() for name in LISTED}
     constants: dict[str, str] = {}

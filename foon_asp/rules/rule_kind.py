@@ -1,9 +1,9 @@
 """Kind and locality of the rules of one question, inferred from clingo's syntax tree.
 
-All rules of a question are analysed together, since a rule in one file may change the effect of a rule in
-another. A rule whose effect is unknown is ``OTHER``; docs/writing-constraints.md explains the consequences.
-The kinds serve to cut the search. Rules known to remove units or to require one of a set can be applied
-before the search; clingo enforces all other rules.
+All rules of a question are analysed together: a rule in one file may change the effect of a rule in another.
+A rule whose effect is unknown is ``OTHER``; docs/writing-constraints.md explains the consequences. The kinds
+serve to cut the search. Rules known to remove units or to require one of a set can be applied before the
+search; clingo enforces all other rules.
 """
 
 from collections.abc import Collection, Iterable, Sequence

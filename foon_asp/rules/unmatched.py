@@ -41,8 +41,8 @@ _Values = Mapping[str, Sequence[Symbol]]  # by variable, where all values are kn
 class _Unmatched(NamedTuple):
     """A literal that matches no fact, with the warning about it and its place.
 
-    ``clause`` is the index of its rule in the file, ``head`` the predicate that the rule derives, and
-    ``constants`` are the values in the literal.
+    ``clause``: the index of its rule in the file. ``head``: the predicate that the rule derives.
+    ``constants``: the values in the literal.
     """
 
     clause: int
