@@ -82,8 +82,9 @@ Constraint = Path | RuleText | LibraryUse
 def given_constraint(constraint: str | PathLike[str] | Constraint) -> Constraint:
     """Return the constraint that a Python argument stands for.
 
-    An existing path, or the name of a ready-made constraint, is that. Any other text is a rule if it has
-    ``:-``, or ends in a full stop; else it is a path. Raises :class:`UserError` for an empty text.
+    A text that is an existing path, or names a ready-made constraint, stands for that. Any other text is a
+    rule if it has ``:-``, or ends in a full stop; else it is a path. Raises :class:`UserError` for an empty
+    text.
     """
     if isinstance(constraint, RuleText | LibraryUse):
         return constraint
