@@ -312,7 +312,7 @@ def _others(trees: list[Outcome]) -> Iterator[tuple[Asked, list[Outcome]]]:
 def _restricted(problem: Problem, asked: Asked) -> Problem:
     rules = ready_made(asked.settings.constraints, asked.settings.constants)
     assert rules is not None
-    found = rules.applied(problem, Deadline())
+    found = rules.restriction_of(problem, Deadline())
     assert isinstance(found, Restriction)
     return replace(problem, restriction=found)
 
@@ -322,7 +322,7 @@ def _trees_left(asked: Asked, trees: list[Outcome]) -> tuple[int, int]:
     rules = ready_made(asked.settings.constraints, asked.settings.constants)
     assert rules is not None
     problem = trees[-1].problem
-    found = rules.applied(problem, Deadline())
+    found = rules.restriction_of(problem, Deadline())
     if not isinstance(found, Restriction):
         return 0, 0
     available = reach(replace(problem, restriction=found)).available

@@ -96,16 +96,16 @@ def assemble(
         from foon_asp.rules import stating  # noqa: PLC0415
 
         if endless:
-            from foon_asp.encoding.program_client import prepare  # noqa: PLC0415
+            from foon_asp.encoding.program_client import start_in_advance  # noqa: PLC0415
 
-            prepare()  # while files are parsed
+            start_in_advance()  # while files are parsed
 
         parsed = [encoding.read_encoding(file) for file in base if endless]
         question_encodings = [encoding.read_encoding(file) for file in question_files]
-        files = stating.loaded(added)
+        files = stating.load_constraints(added)
         added_encodings = [encoding.read_encoding(files[constraint]) for constraint in added]
         faults = map(str, encoding.check_encodings(added_encodings, parsed, question_encodings))
-        for message in (*faults, *encoding.unset_constants(added_encodings, settings.constants)):
+        for message in (*faults, *encoding.unset_constant_warnings(added_encodings, settings.constants)):
             warn(message)
         constants = encoding.constant_arguments(settings.constants, [*parsed, *added_encodings])
         user_encodings = [
@@ -122,9 +122,9 @@ def assemble(
     _warn_of_names(problem, settings, added_encodings, constants[1::2], warn)
     arguments = (*constants, *_clingo_options(settings.clingo_options))
     if settings.clingo_options:  # checked now, since clingo may not run
-        from foon_asp.encoding.clingo_run import check  # noqa: PLC0415
+        from foon_asp.encoding.clingo_run import check_options  # noqa: PLC0415
 
-        check(arguments)
+        check_options(arguments)
     return Program(
         (
             *base,
@@ -170,7 +170,7 @@ def ready_made_program(problem: Problem, settings: Settings, warn: Callable[[str
 
     network = problem.network  # reading a part of a store takes longer than searching it
     is_large = len(network) > SEARCH.units_without_clingo and not network.object_numbers
-    if (is_large and rules.shrinking) or not rules.fit(problem):
+    if (is_large and rules.shrinking) or not rules.has_same_meaning(problem):
         return None
     for message in unknown_parameters(settings.constraints, settings.constants, FactValues(problem)):
         warn(message)
@@ -203,7 +203,7 @@ def _warn_of_names(
         return
     from foon_asp.encoding.encoding import read_encoding  # noqa: PLC0415 (which takes clingo along)
     from foon_asp.rules.fact_values import FactValues  # noqa: PLC0415 (only of use with constraints)
-    from foon_asp.rules.unmatched import unmatched  # noqa: PLC0415
+    from foon_asp.rules.unmatched import unmatched_warnings  # noqa: PLC0415
 
     values = FactValues(problem)
     user_encodings = [encoding for encoding in added if not _is_built_in(encoding)]
@@ -214,10 +214,10 @@ def _warn_of_names(
         relaxed = settings.relaxed.constraints if settings.relaxed is not None else ()
         for message in unknown_parameters((*settings.constraints, *relaxed), settings.constants, values):
             warn(message)
-    for diagnostic in unmatched(user_encodings, built_in, constants, values):
+    for diagnostic in unmatched_warnings(user_encodings, built_in, constants, values):
         warn(str(diagnostic))
     for origin, text in measures:
-        for diagnostic in unmatched([read_encoding(Stated(origin, text))], [], (), values):
+        for diagnostic in unmatched_warnings([read_encoding(Stated(origin, text))], [], (), values):
             warn(str(diagnostic))
 
 
@@ -251,7 +251,7 @@ def _optional_predicates(encodings: "Sequence[Encoding]") -> frozenset[tuple[str
     predicates: set[tuple[str, str]] = set()
     for encoding in encodings:
         if not _is_built_in(encoding) and not _OF_SOME_QUESTIONS.isdisjoint(encoding.used):
-            predicates.update(encoding.first_names(_OF_SOME_QUESTIONS))
+            predicates.update(encoding.first_argument_names(_OF_SOME_QUESTIONS))
     return frozenset(predicates)
 
 

@@ -32,9 +32,9 @@ def read_who_does_units(constraints: Sequence[Constraint]) -> bool:
     if not constraints:
         return False
     from foon_asp.encoding.encoding import read_encoding  # noqa: PLC0415 (takes clingo along)
-    from foon_asp.rules.stating import loaded  # noqa: PLC0415
+    from foon_asp.rules.stating import load_constraints  # noqa: PLC0415
 
-    files = loaded([*map(find_constraint, constraints)]).values()
+    files = load_constraints([*map(find_constraint, constraints)]).values()
     return any(_OF_DOERS & read_encoding(rules).used.keys() for rules in files)
 
 
@@ -47,10 +47,10 @@ def require_local(settings: Settings) -> None:
     from foon_asp.encoding.encoding import read_encoding  # noqa: PLC0415 (takes clingo along)
     from foon_asp.rules.numbered_units import numbered_unit  # noqa: PLC0415
     from foon_asp.rules.rules import Rules  # noqa: PLC0415
-    from foon_asp.rules.stating import loaded  # noqa: PLC0415
+    from foon_asp.rules.stating import load_constraints  # noqa: PLC0415
 
     program = assemble(settings, lambda _: None)
-    files = loaded([*map(find_constraint, settings.constraints)]).values()
+    files = load_constraints([*map(find_constraint, settings.constraints)]).values()
     encodings = [read_encoding(rules) for rules in (*files, Stated("a person", _AS_FACTS))]
     for encoding in encodings:
         numbered = numbered_unit(encoding.statements)
@@ -60,7 +60,7 @@ def require_local(settings: Settings) -> None:
                 "has another one beside a rule about who does a unit: name it by its motion, inputs or "
                 "outputs, or leave one of the two out"
             )
-    for shown in Rules(encodings, program.constants[1::2]).shown:
+    for shown in Rules(encodings, program.constants[1::2]).shown_rules:
         if not shown.rule.local:
             raise UserError(
                 f"{shown.source}: this rule looks at units that the tree need not have "

@@ -10,15 +10,15 @@ from clingo.symbol import SymbolType
 from foon_asp.asp.settings import Relaxed
 from foon_asp.deadline import Deadline
 from foon_asp.encoding.clingo_run import ground
-from foon_asp.encoding.encoding import located, read_encoding
+from foon_asp.encoding.encoding import located_diagnostic, read_encoding
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.encoding.parsing import nodes, parse
 from foon_asp.encoding.stated import Loaded
 from foon_asp.network import Source
 from foon_asp.results.values import ListedConstraint
-from foon_asp.rules.clause import source_of, variables, written
+from foon_asp.rules.clause import source_of, statement_text, variables
 from foon_asp.rules.passed_constraint import Constraint, LibraryUse, find_constraint
-from foon_asp.rules.stating import loaded
+from foon_asp.rules.stating import load_constraints
 from foon_asp.text.diagnostics import Diagnostic, InputError
 
 _BLOCK = "<block>"  # the file name that clingo uses for text without a file
@@ -69,7 +69,7 @@ def relax(
     numbered: list[IntegrityConstraint] = []
     rules: dict[str, Source] = {}
     distinct = tuple(dict.fromkeys(map(find_constraint, constraints)))
-    files = loaded((*map(find_constraint, before), *distinct))
+    files = load_constraints((*map(find_constraint, before), *distinct))
     for constraint in distinct:
         _check_alone(files[constraint], deadline or Deadline())
         settings, original_rules = constants, files[constraint]
@@ -87,7 +87,7 @@ def relax(
             number = len(numbered) + 1
             names = set(_possible_constants(original))
             set_here = tuple(setting for setting in settings if setting.partition("=")[0] in names)
-            text = written(original, original_rules)
+            text = statement_text(original, original_rules)
             numbered.append(IntegrityConstraint(number, constraint, source_of(original), text, set_here))
             rule = _rule_for_broken(statement, number) if soft else _rule_unless_dropped(statement, number)
             rules[rule] = source_of(statement)
@@ -117,7 +117,9 @@ def errors_at_sources(relaxed: Relaxed, text: str) -> Iterator[None]:
             diagnostics.append(
                 diagnostic
                 if source is None
-                else located(diagnostic.severity, diagnostic.code, diagnostic.message, source, relaxed.files)
+                else located_diagnostic(
+                    diagnostic.severity, diagnostic.code, diagnostic.message, source, relaxed.files
+                )
             )
         raise InputError(diagnostics) from None
 

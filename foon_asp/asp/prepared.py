@@ -260,7 +260,7 @@ def _apply_rules(prepared: Prepared, rules: "Rules | ReadyMade") -> Prepared:
     whole = replace(prepared, full_program=prepared.program)
     if rules.leave_to_search(problem):
         return replace(whole, kept=problem, unsettled=True, redundant=rules.redundant)
-    restriction = rules.applied(problem, prepared.deadline)
+    restriction = rules.restriction_of(problem, prepared.deadline)
     if restriction is None:
         return prepared
     prepared = whole

@@ -151,4 +151,4 @@ class Ranked:
         position = self.levels.index(rounded_objective)
         if last[:position] > tree.rounded:  # with equal prefixes, the prefix is less
             return True
-        return last[position] >= tree.rounded[position] + self._prepared.scales.doubt(tree.units)
+        return last[position] >= tree.rounded[position] + self._prepared.scales.count_rounded(tree.units)

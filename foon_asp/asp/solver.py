@@ -256,7 +256,7 @@ class _Solver:
         program = self.prepared.full_program
         assert program is not None
         assert program.added is not None
-        for row in program.added.counted(self.problem, self.deadline):
+        for row in program.added.upper_limits(self.problem, self.deadline):
             if row.total(tree) <= row.bound:
                 continue
             try:
@@ -609,7 +609,7 @@ class _Solver:
             # A total that is better or as good has a weight of at most W + n - 1, where n units of the tree
             # weigh less than they cost, and of at most W where none does.
             totals.append(scales.vector(rival))
-            doubt = scales.doubt(chosen)
+            doubt = scales.count_rounded(chosen)
             if not doubt and multiplies(scales.rounded):
                 break  # nothing succeeds more often than always, and equal products have equal vectors
             band = scales.weight(scales.rounded, chosen) + max(0, doubt - 1)

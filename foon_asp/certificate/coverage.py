@@ -136,7 +136,7 @@ def _facts_of_rules(constraint: Constraint, among_others: bool = False) -> dict[
     from foon_asp.rules import stating  # noqa: PLC0415 - they load clingo
 
     values: dict[str, set[str]] = {}
-    for line in encoding.read_encoding(stating.loaded((constraint,))[constraint]).text.splitlines():
+    for line in encoding.read_encoding(stating.load_constraints((constraint,))[constraint]).text.splitlines():
         fact = _FACT.fullmatch(line)
         if fact is not None:
             values.setdefault(fact[1], set()).update(map(string_constant, _STRING.findall(fact[2])))

@@ -7,20 +7,20 @@ from clingo import Control
 
 from foon_asp.deadline import Deadline
 from foon_asp.encoding.grounded import Grounded
-from foon_asp.encoding.messages import listener, refusing
+from foon_asp.encoding.messages import listener, refuse_messages
 from foon_asp.encoding.run import ProgramError, Run
 from foon_asp.encoding.stated import Loaded
 from foon_asp.errors import UserError
 
 
-def check(arguments: Sequence[str]) -> None:
+def check_options(arguments: Sequence[str]) -> None:
     """Raise :class:`UserError` for options that clingo refuses."""
     messages: list[str] = []
     try:
-        with refusing(messages):
+        with refuse_messages(messages):
             Control(list(arguments), logger=listener(messages))
     except ProgramError as error:
-        raise refused(error) from None
+        raise as_user_error(error) from None
 
 
 def run(
@@ -50,7 +50,7 @@ def run(
         products: The number of products of rates in the facts.
         endless: Whether grounding may not terminate.
 
-    Raises the error of :func:`foon_asp.encoding.encoding.fault` where clingo refuses the program.
+    Raises the error of :func:`foon_asp.encoding.encoding.program_fault` where clingo refuses the program.
     """
     began = time.perf_counter()
     try:
@@ -75,15 +75,18 @@ def ground(
     products: int = 0,
     endless: bool = False,
 ) -> Grounded:
-    """Return the ground program of files and facts; raises like :func:`run`, and ``KeyboardInterrupt``."""
+    """Return the ground program of files and facts; the parameters are those of :func:`run`.
+
+    Raises the errors of :func:`run`, ``LimitError`` at a limit, and ``KeyboardInterrupt`` at ctrl-C.
+    """
     try:
         return Grounded(files, facts, arguments, products, deadline, endless)
     except ProgramError as error:
-        raise refused(error, files) from None
+        raise as_user_error(error, files) from None
 
 
-def refused(error: ProgramError, files: Sequence[Loaded] = ()) -> UserError:
-    """Return clingo's messages as one error with places and source lines."""
-    from foon_asp.encoding.encoding import fault  # noqa: PLC0415 (slow to import, needed for faults only)
+def as_user_error(error: ProgramError, files: Sequence[Loaded] = ()) -> UserError:
+    """Return the error for the user with clingo's messages, their places and source lines."""
+    from foon_asp.encoding.encoding import program_fault  # noqa: PLC0415 (slow to import, needed for faults only)
 
-    return fault(error.messages, error.otherwise, files)
+    return program_fault(error.messages, error.otherwise, files)

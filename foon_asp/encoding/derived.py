@@ -5,7 +5,7 @@ from typing import NamedTuple
 from clingo import Control
 from clingo.symbol import Symbol, SymbolType
 
-from foon_asp.encoding.messages import NO_LIMIT, listener, refusing
+from foon_asp.encoding.messages import NO_LIMIT, listener, refuse_messages
 from foon_asp.encoding.number_checks import Exact
 
 
@@ -22,10 +22,11 @@ Value = int | str | Term
 def derive(text: str, name: str, arity: int) -> list[tuple[Value, ...]]:
     """Ground a stratified program and return the arguments of each atom of a predicate.
 
-    Raises :class:`ProgramError` for statements or instances that clingo refuses or drops.
+    The predicate is given by ``name`` and ``arity``. Raises :class:`ProgramError` for statements or instances
+    that clingo refuses or drops.
     """
     messages: list[str] = []
-    with refusing(messages):
+    with refuse_messages(messages):
         control = Control(logger=listener(messages), message_limit=NO_LIMIT)
         control.add("base", [], text)
         control.ground([("base", [])], Exact())
@@ -35,6 +36,7 @@ def derive(text: str, name: str, arity: int) -> list[tuple[Value, ...]]:
 
 
 def _value(symbol: Symbol) -> Value:
+    """Return an argument of an atom as number, string or :class:`Term`."""
     if symbol.type is SymbolType.Number:
         return symbol.number
     return symbol.string if symbol.type is SymbolType.String else Term(str(symbol))

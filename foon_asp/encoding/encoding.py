@@ -1,4 +1,4 @@
-"""Encodings, built-in or of the user: their parser, and checks before solving."""
+"""Parser of encodings, built-in or of the user, and checks before solving."""
 
 import difflib
 import re
@@ -10,7 +10,7 @@ from pathlib import Path
 from clingo.ast import AST, AggregateFunction, ASTType, ComparisonOperator, Location, Transformer
 from clingo.symbol import SymbolType
 
-from foon_asp.encoding.encoding_file import check_text, excerpt, included_files, string_constant
+from foon_asp.encoding.encoding_file import check_text, included_files, source_line, string_constant
 from foon_asp.encoding.exact import LARGEST
 from foon_asp.encoding.fact_writer import FACT_PREDICATES, quote
 from foon_asp.encoding.messages import listener
@@ -74,13 +74,14 @@ class Encoding:
     without a file, their name stands in place of the file.
 
     Attributes:
+        rules: The file or text.
         defined: Signatures of atoms in heads, with places.
         declared: Signatures under ``#defined``, with places.
         used: Signatures of atoms in bodies, with places.
         names: Names of constants and functions in terms, with places.
         constants: Values of ``#const`` statements by name, as written.
         constant_sources: Places of ``#const`` statements by name.
-        special: Types of statements and atoms other than plain rules, with places.
+        special: Types of the statements and atoms that a constraint may not have, with places.
         assigns: Whether a variable may get its value from an aggregate (``N = #count {...}``).
         text: All statements as clingo prints them.
         statements: All statements, in order.
@@ -98,23 +99,28 @@ class Encoding:
     text: str = ""
     statements: list[AST] = field(default_factory=list)
 
-    def first_names(self, signatures: Collection[Signature]) -> Iterator[tuple[str, str]]:
-        """Return atoms over signatures: the predicate, and the first argument, empty where it is no name."""
+    def first_argument_names(self, signatures: Collection[Signature]) -> Iterator[tuple[str, str]]:
+        """Yield the predicate and the first argument of each atom over some signatures.
+
+        The argument is empty if it is no name, but a variable, for example.
+        """
         symbols = (
             node.symbol for statement in self.statements for node in nodes(statement) if _is_atom(node)
         )
         for symbol in symbols:
             if (symbol.name, len(symbol.arguments)) in signatures:
-                first = symbol.arguments[0]
-                named = first.ast_type == ASTType.SymbolicTerm and first.symbol.type is SymbolType.Function
-                yield symbol.name, first.symbol.name if named else ""
+                argument = symbol.arguments[0]
+                is_name = (
+                    argument.ast_type == ASTType.SymbolicTerm and argument.symbol.type is SymbolType.Function
+                )
+                yield symbol.name, argument.symbol.name if is_name else ""
 
     @property
     def definitions(self) -> list[AST]:
         """The ``#const`` statements."""
         return [statement for statement in self.statements if statement.ast_type == ASTType.Definition]
 
-    def deriving(self, constant: str) -> set[Signature]:
+    def predicates_with_argument(self, constant: str) -> set[Signature]:
         """Return the predicates that rules derive with a given constant as argument."""
         heads = (rule.head for rule in self.statements if rule.ast_type == ASTType.Rule)
         atoms = (
@@ -123,28 +129,32 @@ class Encoding:
         return {(atom.name, len(atom.arguments)) for atom in atoms if constant in map(str, atom.arguments)}
 
     def remark(self, severity: Severity, code: str, message: str, source: Source) -> Diagnostic:
-        """Return a diagnostic about a place in these rules, with its line."""
-        return located(severity, code, message, source, [self.rules])
+        """Return a diagnostic about a place in these rules, with its source line."""
+        return located_diagnostic(severity, code, message, source, [self.rules])
 
 
 def _is_atom(node: AST) -> bool:
+    """Whether a node is an atom without a minus before it, and without a pool."""
     return node.ast_type == ASTType.SymbolicAtom and node.symbol.ast_type == ASTType.Function
 
 
 def read_encoding(rules: Loaded) -> Encoding:
-    """Parse an encoding and the files that it includes; raises :class:`InputError` for a syntax error.
+    """Parse an encoding and the files that it includes.
 
-    Also raises as :func:`foon_asp.encoding.encoding_file.included_files` and ``check_text`` in that module.
+    Raises :class:`InputError` for a syntax error, and for a text or file that
+    :mod:`foon_asp.encoding.encoding_file` refuses. Raises :class:`UserError` for a missing file and for a
+    text without rules.
     """
     encoding = Encoding(rules)
     collector = _Collector(encoding)
     included: set[str] = set()
     kinds: set[ASTType] = set()
 
-    def statement(statement: AST) -> None:
+    def collect(statement: AST) -> None:
+        """Pass a statement to the collector; record its file and kind."""
         included.add(statement.location.begin.filename)
         kinds.add(statement.ast_type)
-        collector.statement(statement)
+        collector.collect(statement)
 
     if isinstance(rules, Stated):
         check_text(rules.text, rules.place)
@@ -155,27 +165,28 @@ def read_encoding(rules: Loaded) -> Encoding:
         raise UserError(f"{rules}: no such file; expected an encoding (.lp)")
     messages: list[str] = []
     try:
-        parse(rules, statement, listener(messages))
+        parse(rules, collect, listener(messages))
     except RuntimeError as error:
-        raise fault(messages, str(error), [rules]) from None
+        raise program_fault(messages, str(error), [rules]) from None
     if isinstance(rules, Stated):
         if not kinds - {ASTType.Program, ASTType.Comment}:
             raise UserError(f"{rules.place}: found {rules.text!r}, expected a rule such as {_EXAMPLE}")
         return encoding
-    others = sorted(file for file in included if Path(file).resolve() not in checked)
-    if others:
-        raise UserError(f"{rules} includes {others[0]}, which was not checked: leave that out")
+    unchecked_files = sorted(file for file in included if Path(file).resolve() not in checked)
+    if unchecked_files:
+        raise UserError(f"{rules} includes {unchecked_files[0]}, which was not checked: leave that out")
     return encoding
 
 
 class _Collector(Transformer):
-    """Visitor that collects signatures in heads and bodies, and names in terms, of statements."""
+    """Visitor that records in ``encoding`` what statements define and use: atoms, names and constants."""
 
     def __init__(self, encoding: Encoding) -> None:
+        """Begin outside heads."""
         self.encoding = encoding
         self._in_head = False
 
-    def statement(self, statement: AST) -> None:
+    def collect(self, statement: AST) -> None:
         """Record a statement: its text, and the predicates and constants that it defines and uses."""
         encoding = self.encoding
         encoding.text += f"{statement}\n"
@@ -201,12 +212,14 @@ class _Collector(Transformer):
             self.visit(statement)
 
     def visit_Rule(self, rule: AST) -> AST:  # noqa: N802 (the name clingo looks for)
-        self._head(rule.head)
+        """Visit a rule; the atoms in its head are recorded as defined, those in its body as used."""
+        self._visit_head(rule.head)
         self.visit_sequence(rule.body)
         return rule
 
     def visit_External(self, external: AST) -> AST:  # noqa: N802
-        self._head(external.atom)
+        """Visit ``#external``; its atom is recorded as defined, those in its body as used."""
+        self._visit_head(external.atom)
         self.visit_sequence(external.body)
         return external
 
@@ -219,57 +232,69 @@ class _Collector(Transformer):
         return literal
 
     def visit_SymbolicAtom(self, atom: AST) -> AST:  # noqa: N802
-        self._atom(atom.symbol, "")
+        """Record the signature of an atom."""
+        self._record_atom(atom.symbol, "")
         return atom
 
-    def _atom(self, symbol: AST, sign: str) -> None:
-        """Record the signature of an atom as defined or used, with its first place."""
+    def _record_atom(self, symbol: AST, sign: str) -> None:
+        """Record the signature of an atom as defined or used, with its first place.
+
+        ``sign`` is ``-`` for an atom after a minus, else empty.
+        """
         if symbol.ast_type == ASTType.UnaryOperation:  # classical negation: -p(X)
-            self._atom(symbol.argument, "" if sign else "-")
+            self._record_atom(symbol.argument, "" if sign else "-")
         elif symbol.ast_type == ASTType.Pool:  # p(1;2)
-            for one in symbol.arguments:
-                self._atom(one, sign)
+            for argument in symbol.arguments:
+                self._record_atom(argument, sign)
         else:
             signature = sign + symbol.name, len(symbol.arguments)
-            noted = self.encoding.defined if self._in_head else self.encoding.used
-            noted.setdefault(signature, _source(symbol.location))
+            first_places = self.encoding.defined if self._in_head else self.encoding.used
+            first_places.setdefault(signature, _source(symbol.location))
             self.visit_sequence(symbol.arguments)
 
     def visit_Function(self, function: AST) -> AST:  # noqa: N802
+        """Record the name of a function in a term, and visit its arguments."""
         self.encoding.names.setdefault(function.name, _source(function.location))
         self.visit_sequence(function.arguments)
         return function
 
     def visit_SymbolicTerm(self, term: AST) -> AST:  # noqa: N802
+        """Record a term that is a word."""
         if term.symbol.type is SymbolType.Function:
             self.encoding.names.setdefault(term.symbol.name, _source(term.location))
         return term
 
     def visit_TheoryAtom(self, atom: AST) -> AST:  # noqa: N802
+        """Record a theory atom as special, and do not visit it."""
         self.encoding.special.append((ASTType.TheoryAtom, _source(atom.location)))
         return atom
 
     def visit_BodyAggregate(self, aggregate: AST) -> AST:  # noqa: N802
-        self._note_assignment(aggregate)
+        """Visit an aggregate, and record whether it may give a variable its value."""
+        self._record_assignment(aggregate)
         return aggregate.update(**self.visit_children(aggregate))
 
     def visit_Aggregate(self, aggregate: AST) -> AST:  # noqa: N802
+        """Visit an aggregate, and record for one in a body whether it may give a variable its value."""
         if not self._in_head:
-            self._note_assignment(aggregate)
+            self._record_assignment(aggregate)
         return aggregate.update(**self.visit_children(aggregate))
 
-    def _note_assignment(self, aggregate: AST) -> None:
+    def _record_assignment(self, aggregate: AST) -> None:
+        """Set ``assigns`` if an aggregate may give a variable its value, as in ``N = #count {...}``."""
         guard = aggregate.left_guard
         if guard is not None and guard.comparison == ComparisonOperator.Equal:
             self.encoding.assigns |= guard.term.ast_type != ASTType.SymbolicTerm
 
-    def _head(self, head: AST) -> None:
+    def _visit_head(self, head: AST) -> None:
+        """Visit a head; atoms in it are recorded as defined."""
         self._in_head = True
         self.visit(head)
         self._in_head = False
 
 
 def _source(location: Location) -> Source:
+    """Return the place where a location of clingo begins."""
     return Source(location.begin.filename, location.begin.line, location.begin.column)
 
 
@@ -278,51 +303,55 @@ def check_encodings(
 ) -> list[Diagnostic]:
     """Check the user's files: the constraints ``added``, and files in ``base`` that are not built-in.
 
-    ``others`` are further built-in files that are loaded. Returns warnings about undefined atoms, each with
-    the most similar defined predicate. It also returns warnings about terms that are compared with numbers
-    and can never be numbers. Raises :class:`InputError` for statements that would change the set of trees or
-    their order, or that clingo would ignore silently. These are rules for built-in predicates, reserved
-    names, and statements other than rules.
+    ``others`` are further built-in files that are loaded.
+
+    Returns warnings about two mistakes. An atom has a predicate that nothing defines; the most similar one is
+    suggested. Or a term is compared with numbers and can never be a number.
+
+    Raises :class:`InputError` for statements that would change the set of trees or their order, or that
+    clingo would ignore silently. These are rules for built-in predicates, reserved names, and statements
+    other than rules.
     """
     errors: list[Diagnostic] = []
     defined = set(PUBLIC)
     for encoding in (*added, *base, *others):
         defined |= encoding.defined.keys() | encoding.declared.keys()
-    user_files = [encoding for encoding in added if not _is_ours(encoding.rules)]
-    replaced = [encoding for encoding in base if not _is_ours(encoding.rules)]
+    user_files = [encoding for encoding in added if not _is_built_in(encoding.rules)]
+    replaced = [encoding for encoding in base if not _is_built_in(encoding.rules)]
     for encoding in user_files:
-        errors += _statements(encoding, tuple(_REFUSED))
-        errors += _definitions(encoding, PUBLIC.union(*(file.defined for file in base)))
-        errors += _reserved_names(encoding)
+        errors += _statement_errors(encoding, tuple(_REFUSED))
+        errors += _definition_errors(encoding, PUBLIC.union(*(file.defined for file in base)))
+        errors += _reserved_name_errors(encoding)
     for encoding in replaced:
-        errors += _statements(encoding, _LOST)
-        errors += _replaced_definitions(encoding)
-    settable = {name for encoding in added if _is_ours(encoding.rules) for name in encoding.constants}
+        errors += _statement_errors(encoding, _LOST)
+        errors += _replaced_definition_errors(encoding)
+    settable = {name for encoding in added if _is_built_in(encoding.rules) for name in encoding.constants}
     for encoding in (*user_files, *replaced):
         names = set(settable)
         if encoding in user_files:
             for file in replaced:
                 names |= file.names.keys() | {name for name, _ in (*file.defined, *file.used)}
-        errors += _constants(encoding, names)
+        errors += _constant_errors(encoding, names)
     if errors:
         raise InputError(errors)
     warnings = [
-        encoding.remark(Severity.WARNING, "undefined-atom", undefined(signature, defined), source)
+        encoding.remark(Severity.WARNING, "undefined-atom", undefined_message(signature, defined), source)
         for encoding in added
         for signature, source in encoding.used.items()
         if signature not in defined
     ]
     constants = {name for encoding in (*added, *base, *others) for name in encoding.constants}
     for encoding in user_files:
-        for term, message in no_numbers(encoding.statements, constants):
+        for term, message in non_numeric_terms(encoding.statements, constants):
             warnings.append(encoding.remark(Severity.WARNING, "no-number", message, _source(term.location)))
     return warnings
 
 
-def no_numbers(statements: Iterable[AST], constants: Collection[str]) -> Iterator[tuple[AST, str]]:
-    """Yield the terms that compare above every number because they are no numbers, each with a message.
+def non_numeric_terms(statements: Iterable[AST], constants: Collection[str]) -> Iterator[tuple[AST, str]]:
+    """Yield the terms that are compared with numbers but are no numbers, each with a message.
 
-    They are names that no ``#const`` sets, and texts as guards of a count or sum.
+    Such a term is above every number. It is a name that no ``#const`` sets, or a text as guard of a count or
+    sum.
     """
     for node in (node for statement in statements for node in nodes(statement)):
         terms: list[AST] = []
@@ -346,12 +375,13 @@ def no_numbers(statements: Iterable[AST], constants: Collection[str]) -> Iterato
 
 
 @cache
-def _is_ours(rules: Loaded) -> bool:
+def _is_built_in(rules: Loaded) -> bool:
+    """Whether rules are a file of the built-in encodings, or a ready-made constraint."""
     path = rules.file if isinstance(rules, Stated) else rules
     return path is not None and path.resolve().is_relative_to(encodings_folder().resolve())
 
 
-def _statements(encoding: Encoding, refused: Sequence[ASTType]) -> list[Diagnostic]:
+def _statement_errors(encoding: Encoding, refused: Sequence[ASTType]) -> list[Diagnostic]:
     """Return an error for each statement of a refused kind."""
     return [
         encoding.remark(Severity.ERROR, _CODES.get(kind, "statement"), f"found {_REFUSED[kind]}", source)
@@ -360,8 +390,11 @@ def _statements(encoding: Encoding, refused: Sequence[ASTType]) -> list[Diagnost
     ]
 
 
-def _definitions(encoding: Encoding, owned: frozenset[Signature]) -> list[Diagnostic]:
-    """Return errors for rules for predicates that a constraint may not define."""
+def _definition_errors(encoding: Encoding, owned: frozenset[Signature]) -> list[Diagnostic]:
+    """Return an error for each predicate that rules define although a constraint may not.
+
+    ``owned`` are the predicates of facts and of the built-in encodings. Reserved names are refused, too.
+    """
     return [
         encoding.remark(
             Severity.ERROR,
@@ -375,12 +408,12 @@ def _definitions(encoding: Encoding, owned: frozenset[Signature]) -> list[Diagno
     ]
 
 
-def _reserved_names(encoding: Encoding) -> list[Diagnostic]:
+def _reserved_name_errors(encoding: Encoding) -> list[Diagnostic]:
     """Return errors for reserved names in bodies, ``#defined`` and terms of a constraint."""
     atoms = [
         (f"{name}/{arity}", source)
-        for noted in (encoding.used, encoding.declared)
-        for (name, arity), source in noted.items()
+        for sources in (encoding.used, encoding.declared)
+        for (name, arity), source in sources.items()
         if _is_reserved(name) and (name, arity) not in _LOOKED_AT
     ]
     terms = [(name, source) for name, source in encoding.names.items() if _is_reserved(name)]
@@ -395,13 +428,16 @@ def _reserved_names(encoding: Encoding) -> list[Diagnostic]:
     ]
 
 
-def _replaced_definitions(encoding: Encoding) -> list[Diagnostic]:
-    """Return errors for rules for reserved predicates that the replaced original does not define."""
+def _replaced_definition_errors(encoding: Encoding) -> list[Diagnostic]:
+    """Return an error for each reserved predicate in a head of a file that replaces a built-in one.
+
+    Those that the built-in file of the same name defines are allowed.
+    """
     name = encoding.rules.name if isinstance(encoding.rules, Path) else ""
-    ours = [
+    built_in_files = [
         file for file in (encodings_folder() / name, encodings_folder() / "by_need" / name) if file.is_file()
     ]
-    theirs = {signature for file in ours for signature in read_encoding(file).defined}
+    built_in_predicates = {signature for file in built_in_files for signature in read_encoding(file).defined}
     return [
         encoding.remark(
             Severity.ERROR,
@@ -411,12 +447,15 @@ def _replaced_definitions(encoding: Encoding) -> list[Diagnostic]:
             source,
         )
         for (predicate, arity), source in encoding.defined.items()
-        if _is_reserved(predicate) and (predicate, arity) not in theirs
+        if _is_reserved(predicate) and (predicate, arity) not in built_in_predicates
     ]
 
 
-def _constants(encoding: Encoding, names: set[str]) -> list[Diagnostic]:
-    """Return errors for constants that would replace a name in the facts or in another file."""
+def _constant_errors(encoding: Encoding, names: set[str]) -> list[Diagnostic]:
+    """Return errors for constants that would replace a name in the facts or in another file.
+
+    ``names`` are the names in other files.
+    """
     return [
         encoding.remark(
             Severity.ERROR,
@@ -431,29 +470,33 @@ def _constants(encoding: Encoding, names: set[str]) -> list[Diagnostic]:
 
 
 def _is_reserved(name: str) -> bool:
+    """Whether a name begins with ``_``, perhaps after a minus."""
     return name.lstrip("-").startswith(_PREFIX)
 
 
-def undefined(signature: Signature, defined: set[Signature]) -> str:
+def undefined_message(signature: Signature, defined: set[Signature]) -> str:
     """Return the message that a predicate is undefined, with the similar one that may be meant."""
     name, arity = signature
     message = f"no rule or fact defines {name}/{arity}, so it never holds"
-    same_name = sorted(n for other, n in defined if other == name)
+    same_name = sorted(n for defined_name, n in defined if defined_name == name)
     if same_name:
         return message + f"; did you mean {name}/{same_name[0]}?"
-    nearest = difflib.get_close_matches(name, sorted({other for other, _ in defined}), n=1, cutoff=0.5)
+    nearest = difflib.get_close_matches(
+        name, sorted({defined_name for defined_name, _ in defined}), n=1, cutoff=0.5
+    )
     if not nearest:
         return message + "; the predicates are listed in encodings/README.md"
-    arities = {n for other, n in defined if other == nearest[0]}
+    arities = {n for defined_name, n in defined if defined_name == nearest[0]}
     return message + f"; did you mean {nearest[0]}/{min(arities, key=lambda n: (abs(n - arity), n))}?"
 
 
 def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) -> list[str]:
-    """Return ``NAME=VALUE`` settings as arguments of clingo, of the type of the default in their ``#const``.
+    """Return settings ``NAME=VALUE`` as arguments of clingo: ``-c`` and ``NAME=VALUE`` by turns.
 
-    Where the default is a string, the setting becomes a string, with or without quotes. Where the default is
-    a number, the setting has to be an integer of 32 bits. Raises :class:`UserError` for an unknown name, and
-    for a constant that only a ready-made constraint with its own values has.
+    Each value gets the type of the default in its ``#const``. Where the default is a string, the value
+    becomes a string, with or without quotes. Where the default is a number, the value has to be an integer of
+    32 bits. Raises :class:`UserError` for an unknown name, and for a constant that only a ready-made
+    constraint with its own values has.
     """
     defaults = {
         name: value
@@ -482,33 +525,40 @@ def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) 
 def constant_value(name: str, default: str, value: str) -> str:
     """Return a value of a constant as a term, of the type of its default.
 
-    Raises :class:`UserError` for a value of another type.
+    Where the default is a word, the value may be a word or a whole number. Raises :class:`UserError` for a
+    value of another type.
     """
     if default.startswith('"'):
         return quote(string_constant(value))
-    if _is_number(default) and not _fits(value):
+    if _is_number(default) and not _is_int32(value):
         raise UserError(f"found {value!r} for the constant {name!r}, expected a whole number of 32 bits")
-    if not _is_number(default) and not (_fits(value) or _IDENTIFIER.fullmatch(value)):
+    if not _is_number(default) and not (_is_int32(value) or _IDENTIFIER.fullmatch(value)):
         raise UserError(f"found {value!r} for the constant {name!r}, expected a whole number or a word")
-    return str(int(value)) if _fits(value) else value  # clingo reads no 007
+    return str(int(value)) if _is_int32(value) else value  # clingo reads no 007
 
 
-def unset_constants(added: Sequence[Encoding], constants: Sequence[str]) -> list[str]:
-    """Return warnings for constants that are not set and have no effect with their default: "", #sup or #inf.
+def unset_constant_warnings(added: Sequence[Encoding], constants: Sequence[str]) -> list[str]:
+    """Return a warning for each constant that is not set and has no effect with its default.
 
-    There is no warning where a rule derives a fact with the constant as argument, and another encoding
-    derives facts of the same predicate, such as ``allergen("milk").``
+    Such defaults are ``""``, ``#sup`` and ``#inf``. A constant may be replaced by facts such as
+    ``allergen("milk").`` Then a rule derives a fact with the constant, and another encoding derives facts of
+    this predicate. There is no warning for it.
     """
     settings_given = {setting.partition("=")[0] for setting in constants}
     warnings = []
     for encoding in added:
         rules = encoding.rules
-        others = {signature for other in added if other is not encoding for signature in other.defined}
+        defined_elsewhere = {
+            signature
+            for other_encoding in added
+            if other_encoding is not encoding
+            for signature in other_encoding.defined
+        }
         for name, value in encoding.constants.items():
             if (
                 value not in {'""', "#sup", "#inf"}
                 or name in settings_given
-                or encoding.deriving(name) & others
+                or encoding.predicates_with_argument(name) & defined_elsewhere
             ):
                 continue
             if isinstance(rules, Stated) and rules.file is not None:
@@ -529,37 +579,41 @@ def unset_constants(added: Sequence[Encoding], constants: Sequence[str]) -> list
 
 
 def _is_number(value: str) -> bool:
+    """Whether a default is a whole number, ``#sup`` or ``#inf``."""
     return value in {"#sup", "#inf"} or value.lstrip("-").isdigit()
 
 
-def _fits(value: str) -> bool:
+def _is_int32(value: str) -> bool:
+    """Whether a text is a whole number that clingo can represent."""
     return bool(re.fullmatch(r"-?\d{1,10}", value, re.ASCII)) and abs(int(value)) <= LARGEST
 
 
-def fault(messages: Sequence[str], otherwise: str, files: Sequence[Loaded] = ()) -> InputError | UserError:
+def program_fault(
+    messages: Sequence[str], otherwise: str, files: Sequence[Loaded] = ()
+) -> InputError | UserError:
     """Return clingo's messages about a program as one error with places and source lines.
 
-    ``files`` are the files and texts of the program. A source line of a text is found only there.
-    ``otherwise`` is the message of the error if clingo has given none.
+    ``files`` are the files and texts of the program; the lines of a text are looked up there. ``otherwise``
+    is the message of the error if clingo has given none.
     """
     errors: dict[Source, Diagnostic] = {}
     for message in messages:
-        first, *notes = (_MESSAGE.match(line) for line in message.strip().split("\n"))
-        if first is None:
+        main_match, *note_matches = (_MESSAGE.match(line) for line in message.strip().split("\n"))
+        if main_match is None:
             continue
-        matches = [first]
+        matches = [main_match]
         details = [line.strip() for line in message.strip().split("\n")[1:]]
-        if first["text"].startswith("unsafe variables"):
-            matches = list(filter(None, notes))
+        if main_match["text"].startswith("unsafe variables"):
+            matches = list(filter(None, note_matches))
         for match in matches:
-            if match is not first:
+            if match is not main_match:
                 text = f"the variable {match['text'].split()[0]} is unsafe: no literal of the body binds it"
-            elif first["kind"] == "error":
-                text = " ".join([first["text"], *details])
+            elif main_match["kind"] == "error":
+                text = " ".join([main_match["text"], *details])
             else:
-                text = _left_out(first["text"].rstrip(":"), " ".join(details))
+                text = _dropped_message(main_match["text"].rstrip(":"), " ".join(details))
             source = Source(match["file"], int(match["line"]), int(match["column"]))
-            errors.setdefault(source, located(Severity.ERROR, "clingo", text, source, files))
+            errors.setdefault(source, located_diagnostic(Severity.ERROR, "clingo", text, source, files))
     if errors:
         return InputError(list(errors.values()))
     if "Integer overflow" in otherwise:
@@ -570,8 +624,11 @@ def fault(messages: Sequence[str], otherwise: str, files: Sequence[Loaded] = ())
     return UserError("".join(messages).strip() or otherwise)
 
 
-def _left_out(message: str, term: str) -> str:
-    """Return the message that clingo would drop an instance of a rule or element."""
+def _dropped_message(message: str, term: str) -> str:
+    """Return the message that clingo would drop an instance of a rule or element, with its reason.
+
+    ``message`` is the reason as clingo states it, and ``term`` the term that it names.
+    """
     no_value = f"a term has no value here: {term.removeprefix('(').removesuffix(')')}"
     if message == "tuple ignored" and _NEGATIVE.match(term):
         return (
@@ -589,10 +646,13 @@ def _left_out(message: str, term: str) -> str:
     )
 
 
-def located(
+def located_diagnostic(
     severity: Severity, code: str, message: str, source: Source, files: Sequence[Loaded] = ()
 ) -> Diagnostic:
-    """Return a diagnostic with its source line, found in the files and texts or in the source's own file."""
+    """Return a diagnostic with its source line, found in the files and texts or in the source's own file.
+
+    A place in a ready-made constraint with constants of its own is replaced by the place in its file.
+    """
     for rules in files:
         if isinstance(rules, Stated) and rules.place == source.file:
             lines = rules.text.split("\n")
@@ -603,4 +663,4 @@ def located(
                 source = source._replace(file=str(rules.file))
                 message = f"{message} (in {rules.written})"
             return Diagnostic(severity, code, message, source, lines[source.line - 1].rstrip("\r"))
-    return Diagnostic(severity, code, message, source, excerpt(source))
+    return Diagnostic(severity, code, message, source, source_line(source))

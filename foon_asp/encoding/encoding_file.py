@@ -1,7 +1,7 @@
 """Checks of the text of an encoding before clingo reads it: included files, letters and numbers.
 
-clingo opens any file that an ``#include`` names, reads a number that is too large modulo 2^32, and aborts the
-whole process where its message about an unexpected letter is not UTF-8. These texts are refused here.
+clingo opens any file that an ``#include`` names. It reads a number that is too large modulo 2^32. It aborts
+the whole process where its message about an unexpected letter is not UTF-8. These texts are refused here.
 """
 
 import re
@@ -54,8 +54,8 @@ def included_files(path: Path) -> list[Path]:
     return list(files.values())
 
 
-def excerpt(source: Source) -> str:
-    """Return the line of an encoding at a place; files of other kinds are never quoted."""
+def source_line(source: Source) -> str:
+    """Return the line of an encoding at a place; empty if there is none, and for files of other kinds."""
     path = Path(source.file)
     if path.suffix != _SUFFIX or not path.is_file():
         return ""
@@ -72,7 +72,11 @@ class _Token(NamedTuple):
 
 
 def check_text(text: str, origin: str) -> None:
-    """Check rules without a file, as :func:`included_files` does; they may include nothing."""
+    """Raise :class:`InputError` for rules without a file that clingo must not read.
+
+    They have ``#include``, or what :func:`included_files` refuses. ``origin`` is their name in messages.
+    Raises :class:`UserError` for a text that is not UTF-8.
+    """
     errors: list[Diagnostic] = []
     if any("\ud800" <= letter <= "\udfff" for letter in text):
         raise UserError(f"{origin}: expected a rule in UTF-8")
@@ -82,7 +86,10 @@ def check_text(text: str, origin: str) -> None:
 
 
 def _check_file(file: Path, errors: list[Diagnostic]) -> list[Path]:
-    """Append the errors of a file to ``errors``, and return the files that it includes."""
+    """Append the errors of a file to ``errors``, and return the files that it includes.
+
+    Raises :class:`UserError` for a file that is no encoding by its name.
+    """
     if file.suffix != _SUFFIX:
         raise UserError(f"{file}: expected an encoding, a file whose name ends in {_SUFFIX}")
     if any("\ud800" <= letter <= "\udfff" for letter in str(file)):  # clingo takes UTF-8 only
@@ -94,9 +101,9 @@ def _check_file(file: Path, errors: list[Diagnostic]) -> list[Path]:
         line = content.count(b"\n", 0, fault.start) + 1
         column = fault.start - content.rfind(b"\n", 0, fault.start)
         message = f"found the byte {content[fault.start]:#04x}, expected text in UTF-8"
-        shown = content.split(b"\n")[line - 1].decode("utf-8", "replace").rstrip("\r")
+        line_text = content.split(b"\n")[line - 1].decode("utf-8", "replace").rstrip("\r")
         source = Source(str(file), line, column)
-        errors.append(Diagnostic(Severity.ERROR, "not-utf-8", message, source, shown))
+        errors.append(Diagnostic(Severity.ERROR, "not-utf-8", message, source, line_text))
         return []
     return _check_content(text, str(file), file, errors)
 
@@ -112,8 +119,8 @@ def _check_content(text: str, origin: str, file: Path | None, errors: list[Diagn
         """Append an error at an offset of the text (``start``), with its line."""
         line = text.count("\n", 0, start) + 1
         column = start - text.rfind("\n", 0, start)
-        shown = lines[line - 1].rstrip("\r")
-        errors.append(Diagnostic(Severity.ERROR, code, message, Source(origin, line, column), shown))
+        line_text = lines[line - 1].rstrip("\r")
+        errors.append(Diagnostic(Severity.ERROR, code, message, Source(origin, line, column), line_text))
 
     if "\0" in text:  # clingo ends a text there, even within a comment
         error("letter", "found U+0000, which no rule can have", text.index("\0"))
@@ -125,9 +132,13 @@ def _check_content(text: str, origin: str, file: Path | None, errors: list[Diagn
             error("large-number", f"found the number {token.text}, expected at most {LARGEST}", token.start)
         elif token.kind == "sign" and not (token.text.isascii() and token.text.isprintable()):
             letter = f"U+{ord(token.text):04X}"
-            shown = f"{token.text!r} ({letter})" if token.text.isprintable() else letter
+            letter_text = f"{token.text!r} ({letter})" if token.text.isprintable() else letter
             advice = "; clingo's quotation mark is \"" if token.text in "“”„«»‘’" else ""
-            error("letter", f"found {shown}, which no rule can have outside of quotes{advice}", token.start)
+            error(
+                "letter",
+                f"found {letter_text}, which no rule can have outside of quotes{advice}",
+                token.start,
+            )
         elif token.kind == "call":
             name = "".join(token.text[:-1].split())
             error("function", f"found {name}(...), expected no function: rules run no code", token.start)
@@ -135,24 +146,26 @@ def _check_content(text: str, origin: str, file: Path | None, errors: list[Diagn
             error("script", "found #script, expected rules: scripts in encodings are not run", token.start)
             break
         elif token.text == "#include":
-            named = next(tokens, None)
+            target_token = next(tokens, None)
             if file is None:
                 error("include", "found #include, expected rules: only a file includes others", token.start)
-            elif named is not None and named.kind == "string":
-                target = _ESCAPED.sub(lambda match: "\n" if match[1] == "n" else match[1], named.text[1:-1])
-                problem = _refused(file, target)
+            elif target_token is not None and target_token.kind == "string":
+                target = _ESCAPED.sub(
+                    lambda match: "\n" if match[1] == "n" else match[1], target_token.text[1:-1]
+                )
+                problem = _include_refusal(file, target)
                 if problem:
-                    error("include", f"found #include of {named.text}, {problem}", token.start)
+                    error("include", f"found #include of {target_token.text}, {problem}", token.start)
                 else:
                     included.append(file.parent / target)
-            elif named is not None and named.text == "<":
+            elif target_token is not None and target_token.text == "<":
                 error(
                     "include", "found #include <...>, expected a file: nothing else is included", token.start
                 )
     return included
 
 
-def _refused(file: Path, target: str) -> str:
+def _include_refusal(file: Path, target: str) -> str:
     """Return the reason why a file may not include ``target``; empty if it may."""
     folder = file.parent.resolve()
     path = file.parent / target
@@ -172,7 +185,7 @@ def _refused(file: Path, target: str) -> str:
 
 
 def _tokens(text: str) -> Iterator[_Token]:
-    """Return the tokens of a program, without blanks and comments."""
+    """Yield the tokens of a program, without blanks and comments."""
     offset = 0
     while match := _TOKEN.match(text, offset):
         kind = str(match.lastgroup)

@@ -12,13 +12,16 @@ class _BeyondError(Exception):
     """A result that clingo cannot represent."""
 
 
-def _divided(a: int, b: int) -> int:
+def _divide(a: int, b: int) -> int:
     """Return a quotient as clingo does, rounded towards 0."""
     return abs(a) // abs(b) * (1 if (a < 0) == (b < 0) else -1)
 
 
 def _power(a: int, b: int) -> int:
-    """Return a power; raise for a negative exponent, where clingo returns wrong values."""
+    """Return a power; large powers are cut off, but stay beyond clingo's numbers.
+
+    Raises for a negative exponent, where clingo returns wrong values.
+    """
     if b < 0 and a:
         raise _BeyondError  # for clingo 2**(-1) is 0, and so is 1**(-1)
     power: int = a ** (b if abs(a) < 2 else min(b, 32))
@@ -29,8 +32,8 @@ _BINARY: Final[dict[str, Callable[[int, int], int]]] = {
     "+": lambda a, b: a + b,
     "-": lambda a, b: a - b,
     "*": lambda a, b: a * b,
-    "/": _divided,
-    "\\": lambda a, b: a - b * _divided(a, b),
+    "/": _divide,
+    "\\": lambda a, b: a - b * _divide(a, b),
     "**": _power,
     "&": lambda a, b: a & b,
     "?": lambda a, b: a | b,
@@ -43,6 +46,7 @@ def is_beyond(text: str, values: Sequence[int]) -> bool:
     """Return whether the value of a term or of a subterm is outside clingo's numbers.
 
     ``text`` is the term in postfix notation, as in ``0 1 + 0 *``; a number in it is an index into ``values``.
+    ``False`` for a division by 0, which clingo reports itself.
     """
     stack: list[int] = []
     try:

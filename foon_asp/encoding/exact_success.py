@@ -1,8 +1,8 @@
 """Success rates as integer weights for clingo, and as exact exponents where rounding could decide.
 
 The logarithm of a product of rates is the sum of their logarithms. clingo adds integers, so each rate p has
-the weight ``floor(S * -ln p)``. Rounding down changes the weight of a unit by less than 1, so the error of a
-sum is below the number of units. ``docs/dev/exact-success.md`` has the argument, and
+the weight ``floor(S * -ln p)``, where S is a scale. Rounding down changes the weight of a unit by less than
+1, so the error of a sum is below the number of units. ``docs/dev/exact-success.md`` has the argument, and
 ``foon_asp/asp/solver.py`` uses it.
 """
 
@@ -26,9 +26,9 @@ _CONTEXT = Context(prec=60, Emax=MAX_EMAX, Emin=MIN_EMIN)
 class RateScale(NamedTuple):
     """Integer weights and exponents for a set of rates.
 
-    ``weights[p]`` is ``floor(scale * -ln p)``; ``exponents[p][f]`` is the exponent of factor number ``f`` in
-    the rate. The factors are pairwise coprime, so two products of rates are equal exactly when the sums of
-    their exponents are. A rate with a weight of 0 may be slightly below 1.
+    ``weights[p]`` is ``floor(scale * -ln p)``; a rate slightly below 1 may have the weight 0.
+    ``exponents[p][f]`` is the exponent of factor number ``f`` in the rate ``p``. The factors are pairwise
+    coprime, so two products of rates are equal exactly when the sums of their exponents are.
     """
 
     scale: int
@@ -36,7 +36,7 @@ class RateScale(NamedTuple):
     exponents: Mapping[Fraction, Mapping[int, int]]
 
     def product_exponents(self, rates: Iterable[Fraction]) -> dict[int, int]:
-        """Return the exponents of a product of rates; every factor is listed."""
+        """Return the exponents of a product of rates, by factor number; every factor is listed."""
         total = {factor: 0 for rate in self.exponents.values() for factor in rate}
         for rate in rates:
             for factor, exponent in self.exponents[rate].items():
@@ -50,7 +50,8 @@ class RateScale(NamedTuple):
     def success_bound(self, weight: int) -> Fraction:
         """Return an upper bound on the success of trees whose weights sum up to at least ``weight``.
 
-        Weights are rounded down, so such a tree has ``-ln(success) >= weight / scale``.
+        Weights are rounded down, so such a tree has ``-ln(success) >= weight / scale``. The bound is at most
+        1.
         """
         value = _CONTEXT.exp(_CONTEXT.divide(Decimal(-weight), Decimal(self.scale)))
         places = _CONTEXT.scaleb(Decimal(1), value.adjusted() - 17)
@@ -73,7 +74,7 @@ def rate_scale(rates: Collection[Fraction]) -> RateScale:
 
 
 def _scale(logarithms: Collection[Decimal]) -> int:
-    """Return the power of ten by which logarithms above 0 become weights."""
+    """Return the power of ten by which logarithms above 0 are multiplied to become weights."""
     if not logarithms:
         return USUAL_SCALE
     fitting: int = 10 ** (INT32_MAX / max(logarithms)).adjusted()
@@ -85,7 +86,7 @@ def _scale(logarithms: Collection[Decimal]) -> int:
 def problem_scale(problem: Problem, units: Iterable[int]) -> RateScale:
     """Return the scale of the rates of units of a problem.
 
-    Raises :class:`UserError` where the sum of their exponents overflows.
+    Raises :class:`UserError` where a sum of exponents of the units could overflow.
     """
     units = list(units)
     scale = rate_scale(problem.different_rates(units))
@@ -116,20 +117,20 @@ def _weight(rate: Fraction, scale: int) -> int:
     digits = 40  # doubled until the floor is settled
     while math.floor(low) < math.floor(high):
         value = scale * Fraction(_minus_log(rate, digits))
-        off = value / 10**digits
-        low, high = value - off, value + off
+        error = value / 10**digits
+        low, high = value - error, value + error
         digits *= 2
     return math.floor(low)
 
 
 def _exponents(rates: Collection[Fraction]) -> dict[Fraction, dict[int, int]]:
-    """Return for each rate its exponents in a coprime base of all rates."""
+    """Return for each rate its exponents in a coprime base of all rates, by factor number."""
     base = coprime_base(number for rate in rates for number in rate.as_integer_ratio())
     numbers = {factor: number for number, factor in enumerate(base)}
     exponents: dict[Fraction, dict[int, int]] = {}
     for rate in rates:
-        up, down = (
-            factor_exponents(number, base) for number in rate.as_integer_ratio()
-        )  # no factor is in both
-        exponents[rate] = {numbers[f]: e for f, e in up.items()} | {numbers[f]: -e for f, e in down.items()}
+        # no factor is in both
+        of_numerator, of_denominator = (factor_exponents(number, base) for number in rate.as_integer_ratio())
+        exponents[rate] = {numbers[factor]: e for factor, e in of_numerator.items()}
+        exponents[rate] |= {numbers[factor]: -e for factor, e in of_denominator.items()}
     return exponents

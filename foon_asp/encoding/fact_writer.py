@@ -78,86 +78,95 @@ def write_facts(
 ) -> str:
     """Return the facts about units of a problem, their object nodes, the kitchen and the goals.
 
-    There is one line per unit and per object node, with public numbers. ``scales`` have the weights of
-    ``risk/2`` and ``cost/3``; without scales, these facts are omitted. ``looked_at`` are the predicates that
-    user rules read. Unless it is ``None``, facts about sources, videos and prices of units are added. Raises
-    :class:`UserError` where user rules read prices and a price is no whole number of hundredths.
+    There is one line per unit and per object node. In the facts, these have the numbers that users see.
+
+    ``scales`` have the weights of ``risk/2`` and ``cost/3``; without scales, these facts are omitted.
+    ``looked_at`` are the predicates that user rules read. Unless it is ``None``, facts about sources, videos
+    and prices of units are added.
+
+    Raises :class:`UserError` where user rules read prices and a price is no whole number of hundredths.
     """
-    name = problem.network.object_number
-    nodes = described(problem, units)
-    prices = None if looked_at is None else hundredths(problem, units, looked_at)
+    object_number = problem.network.object_number
+    nodes = described_nodes(problem, units)
+    prices = None if looked_at is None else prices_in_hundredths(problem, units, looked_at)
     kitchen = problem.kitchen_seen
     lines = []
     for unit in units:
         atoms = _unit_atoms(problem, unit, scales, prices)
-        lines.append(". ".join([_unit_atom(problem, unit), *map(_written, atoms)]) + ".")
+        lines.append(". ".join([_unit_atom(problem, unit), *map(_atom_text, atoms)]) + ".")
     for o in nodes:
         atoms = _object_atoms(problem, o)
         if o in kitchen:
-            atoms.append(("kitchen", f"{name(o)}"))
+            atoms.append(("kitchen", f"{object_number(o)}"))
             copies = problem.stock_of(o)
-            atoms += [] if copies is None else [("stock", f"{name(o)},{_check(copies)}")]
-        lines.append(". ".join([_object_atom(problem, o), *map(_written, atoms)]) + ".")
+            atoms += [] if copies is None else [("stock", f"{object_number(o)},{_check_int32(copies)}")]
+        lines.append(". ".join([_object_atom(problem, o), *map(_atom_text, atoms)]) + ".")
     return "\n".join([*lines, *_other_lines(problem, nodes)]) + "\n"
 
 
 def write_facts_read(
     problem: Problem, units: Sequence[int], read: Collection[tuple[str, int]], scales: Scales | None = None
 ) -> str:
-    """Return the facts of :func:`write_facts` restricted to the predicates in ``read``.
+    """Return the facts of :func:`write_facts` that have the predicates in ``read``.
 
-    Without ``scales``, predicates that depend on them are omitted. Raises :class:`UserError` as
-    :func:`write_facts` does.
+    Facts about utensils and goals are always included. Without ``scales``, ``risk/2`` and ``cost/3`` are
+    omitted. Raises :class:`UserError` where prices are read and a price is no whole number of hundredths.
     """
-    seen = problem.as_seen or problem
-    name = problem.network.object_number
-    names = {predicate for predicate, _ in read}
-    nodes = described(problem, units)
+    problem_seen = problem.as_seen or problem
+    object_number = problem.network.object_number
+    read_names = {predicate for predicate, _ in read}
+    nodes = described_nodes(problem, units)
     kitchen = problem.kitchen_seen
     lines: list[str] = []
-    prices = hundredths(problem, units, read) if _OF_RULES & {*read} else None
-    of_objects = {name for name in OBJECT_FACTS if (name, FACT_PREDICATES[name]) in read}
+    prices = prices_in_hundredths(problem, units, read) if _OF_RULES & {*read} else None
+    object_predicates = {name for name in OBJECT_FACTS if (name, FACT_PREDICATES[name]) in read}
 
     def add(atoms: Iterable[_Atom]) -> None:
-        wanted = [_written(atom) for atom in atoms if (atom[0], FACT_PREDICATES[atom[0]]) in read]
-        if wanted:
-            lines.append(". ".join(wanted) + ".")
+        """Add a line with those of the atoms whose predicates are in ``read``, if there are any."""
+        texts = [_atom_text(atom) for atom in atoms if (atom[0], FACT_PREDICATES[atom[0]]) in read]
+        if texts:
+            lines.append(". ".join(texts) + ".")
 
     for unit in units:
-        atoms = [("unit", f"{_check(problem.network.unit_number(unit))}")]
-        atoms += _unit_atoms(problem, unit, scales, prices, names)
-        if "rate" in names and problem.rates is not None and not (scales and scales.rates):
+        atoms = [("unit", f"{_check_int32(problem.network.unit_number(unit))}")]
+        atoms += _unit_atoms(problem, unit, scales, prices, read_names)
+        if "rate" in read_names and problem.rates is not None and not (scales and scales.rates):
             number = problem.network.unit_number(unit)
-            atoms.append(("rate", f"{number},{millionths(seen.rate(unit))}"))
+            atoms.append(("rate", f"{number},{millionths(problem_seen.rate(unit))}"))
         add(atoms)
-    for o in nodes if of_objects or not names.isdisjoint(("object", "kitchen")) else ():
-        atoms = [("object", f"{_check(name(o))}")]
+    for o in nodes if object_predicates or not read_names.isdisjoint(("object", "kitchen")) else ():
+        atoms = [("object", f"{_check_int32(object_number(o))}")]
         atoms += [
-            (predicate, f"{name(o)},{arguments}")
-            for predicate, arguments in object_facts(problem.network.objects[o], of_objects)
+            (predicate, f"{object_number(o)},{arguments}")
+            for predicate, arguments in object_facts(problem.network.objects[o], object_predicates)
         ]
         if o in kitchen:
-            atoms.append(("kitchen", f"{name(o)}"))
+            atoms.append(("kitchen", f"{object_number(o)}"))
         add(atoms)
     return "\n".join([*lines, *_other_lines(problem, nodes)]) + "\n"
 
 
 def _other_lines(problem: Problem, nodes: Sequence[int]) -> Iterator[str]:
-    """Yield the facts of utensils and goals, and of available object nodes that user rules do not see."""
-    name = problem.network.object_number
+    """Yield the facts about utensils and goals, and ``available/1`` of object nodes that rules do not see.
+
+    These are in the kitchen, but not in the part of it that user rules see.
+    """
+    object_number = problem.network.object_number
     labels = {problem.network.objects[o].label for o in nodes}
     yield from (f"utensil({quote(label)})." for label in sorted(labels & problem.utensils))
-    yield from (f"goal({name(o)})." for o in problem.goals)
+    yield from (f"goal({object_number(o)})." for o in problem.goals)
     assumed = problem.kitchen - problem.kitchen_seen
-    yield from (f"available({name(o)})." for o in nodes if o in assumed)
+    yield from (f"available({object_number(o)})." for o in nodes if o in assumed)
 
 
 def write_worlds(
     problem: Problem, units: Iterable[int], predicates: Collection[str], world: str
 ) -> Iterator[str]:
-    """Yield facts about units and their object nodes by predicates, each unit in a separate world.
+    """Yield a line with the facts about each unit and its object nodes, in a world of the unit.
 
-    In a separate world, rules see no other unit. ``world`` is the predicate of worlds.
+    In a world, rules see no other unit. ``predicates`` are the names of the predicates to write, and
+    ``world`` is that of worlds. A predicate ``p`` becomes ``_p``, with the number of the unit as first
+    argument, which stands for the world.
     """
     network = problem.network
     sees_nodes = not OBJECT_FACTS.isdisjoint(predicates)
@@ -165,16 +174,17 @@ def write_worlds(
 
     @cache
     def of_object(o: int) -> list[_Atom]:
+        """Return the facts about an object node, by predicates."""
         number = network.object_number(o)
         atoms = [
             (name, f"{number},{arguments}")
             for name, arguments in object_facts(network.objects[o], predicates)
         ]
-        return [*atoms, ("object", f"{_check(number)}")] if "object" in predicates else atoms
+        return [*atoms, ("object", f"{_check_int32(number)}")] if "object" in predicates else atoms
 
     for unit in units:
         number = network.unit_number(unit)
-        atoms = [("unit", f"{_check(number)}"), *_unit_atoms(problem, unit, None, prices)]
+        atoms = [("unit", f"{_check_int32(number)}"), *_unit_atoms(problem, unit, None, prices)]
         atoms = [atom for atom in atoms if atom[0] in predicates]
         if "rate" in predicates:
             atoms.append(("rate", f"{number},{millionths((problem.as_seen or problem).rate(unit))}"))
@@ -186,12 +196,14 @@ def write_worlds(
         )
 
 
-def _written(atom: _Atom) -> str:
+def _atom_text(atom: _Atom) -> str:
+    """Return an atom as text."""
     return f"{atom[0]}({atom[1]})"
 
 
 def _unit_atom(problem: Problem, unit: int) -> str:
-    return f"unit({_check(problem.network.unit_number(unit))})"
+    """Return the fact ``unit(U)`` as text."""
+    return f"unit({_check_int32(problem.network.unit_number(unit))})"
 
 
 def _unit_atoms(
@@ -201,14 +213,15 @@ def _unit_atoms(
     prices: Mapping[int, int] | None,
     read: Collection[str] = FACT_PREDICATES,
 ) -> list[_Atom]:
-    """Return the facts about a unit, except ``unit/1``, by the predicates in ``read`` and maybe a few others.
+    """Return the facts about a unit, except ``unit/1``.
 
-    With ``prices``, the facts that only user rules read are included, too.
+    ``read`` has the names of predicates to write; a few others may be written, too. Unless ``prices`` is
+    ``None``, facts about sources, videos and prices are among them.
     """
     network = problem.network
-    inputs, name = network.inputs[unit], network.object_number
-    u = network.unit_number(unit)
-    atoms = [("motion", f"{u},{quote(network.motions[unit])}")] if "motion" in read else []
+    inputs, object_number = network.inputs[unit], network.object_number
+    number = network.unit_number(unit)
+    atoms = [("motion", f"{number},{quote(network.motions[unit])}")] if "motion" in read else []
     for predicate, nodes in (
         ("input", inputs),
         ("needs", problem.needs[unit]),
@@ -216,35 +229,38 @@ def _unit_atoms(
         ("gives", problem.gives[unit]),
     ):
         if predicate in read:
-            atoms += [(predicate, f"{u},{name(o)}") for o in nodes]
+            atoms += [(predicate, f"{number},{object_number(o)}") for o in nodes]
     if problem.items is not None:
-        gone = problem.flows[unit].uses
-        atoms += [("uses_up" if o in gone else "stays", f"{u},{name(o)}") for o in problem.needs[unit]]
+        used_up = problem.flows[unit].uses
+        atoms += [
+            ("uses_up" if o in used_up else "stays", f"{number},{object_number(o)}")
+            for o in problem.needs[unit]
+        ]
     if "inputs" in read:
-        atoms.append(("inputs", f"{u},{len(inputs)}"))
+        atoms.append(("inputs", f"{number},{len(inputs)}"))
     if "ingredients" in read:
         ingredients = sum(len(network.objects[o].ingredients) for o in inputs)
-        atoms.append(("ingredients", f"{u},{_check(ingredients)}"))
+        atoms.append(("ingredients", f"{number},{_check_int32(ingredients)}"))
     if scales and scales.rates:
         weight = scales.rates.weights[problem.rate(unit)]
-        seen = (problem.as_seen or problem).rate(unit)
-        atoms += [("rate", f"{u},{millionths(seen)}"), ("risk", f"{u},{_check(weight)}")]
+        rate_seen = (problem.as_seen or problem).rate(unit)
+        atoms += [("rate", f"{number},{millionths(rate_seen)}"), ("risk", f"{number},{_check_int32(weight)}")]
     if scales:
         weights = ((objective.row.term, scales.weight(objective, [unit])) for objective in scales.facts)
-        atoms += [("cost", f"{term},{u},{_check(weight)}") for term, weight in weights]
+        atoms += [("cost", f"{term},{number},{_check_int32(weight)}") for term, weight in weights]
     if prices is not None:
         sources = network.sources[unit]
-        atoms += [("source", f"{u},{quote(text)}") for text in source_names(sources)]
+        atoms += [("source", f"{number},{quote(text)}") for text in source_names(sources)]
         videos = dict.fromkeys(video for source in sources for video in source.videos)
-        atoms += [("video", f"{u},{quote(encodable(video))}") for video in videos]
-        atoms += [("price", f"{u},{prices[unit]}")] if unit in prices else []
+        atoms += [("video", f"{number},{quote(encodable(video))}") for video in videos]
+        atoms += [("price", f"{number},{prices[unit]}")] if unit in prices else []
     return atoms
 
 
-def hundredths(
+def prices_in_hundredths(
     problem: Problem, units: Iterable[int], looked_at: Collection[tuple[str, int]]
 ) -> dict[int, int]:
-    """Return the price of each unit that has one, in hundredths.
+    """Return the price of each unit that has one, in hundredths, by unit id.
 
     The result is empty where a price is no whole number of hundredths, or where the sum overflows. If rules
     read prices, :class:`UserError` is raised instead.
@@ -278,7 +294,8 @@ def hundredths(
 
 
 def _object_atom(problem: Problem, o: int) -> str:
-    return f"object({_check(problem.network.object_number(o))})"
+    """Return the fact ``object(O)`` as text."""
+    return f"object({_check_int32(problem.network.object_number(o))})"
 
 
 def _object_atoms(problem: Problem, o: int) -> list[_Atom]:
@@ -288,7 +305,11 @@ def _object_atoms(problem: Problem, o: int) -> list[_Atom]:
 
 
 def object_facts(node: ObjectNode, predicates: Collection[str] = OBJECT_FACTS) -> list[_Atom]:
-    """Return facts about an object node by predicates, without its number as first argument."""
+    """Return the facts about an object node by ``predicates``, without its number as first argument.
+
+    ``object/1`` is not among them. Each fact is a predicate with its arguments as text: ``("state",
+    '"sliced"')``.
+    """
     atoms = [("label", quote(node.label))] if "label" in predicates else []
     if "state" in predicates:
         atoms += [("state", quote(state)) for state in sorted(node.states)]
@@ -299,8 +320,8 @@ def object_facts(node: ObjectNode, predicates: Collection[str] = OBJECT_FACTS) -
     return atoms
 
 
-def described(problem: Problem, units: Iterable[int]) -> list[int]:
-    """Return the object nodes in the facts about some units, including the goals, in order."""
+def described_nodes(problem: Problem, units: Iterable[int]) -> list[int]:
+    """Return the inputs and outputs of some units and the goals, as ids of object nodes in order."""
     network = problem.network
     touched = {
         o for unit in units for objects_of in (network.inputs, network.outputs) for o in objects_of[unit]
@@ -309,15 +330,18 @@ def described(problem: Problem, units: Iterable[int]) -> list[int]:
 
 
 def write_times(times: Mapping[int, tuple[int, int]]) -> str:
-    """Return facts for the least and greatest number of executions of units, by number."""
+    """Return facts ``_least(U,N)`` and ``_most(U,N)``: bounds on the number of executions of units.
+
+    ``times`` has the least and greatest number by unit number.
+    """
     return "".join(
-        f"_least({unit},{least}). _most({unit},{_check(greatest)}).\n"
+        f"_least({unit},{least}). _most({unit},{_check_int32(greatest)}).\n"
         for unit, (least, greatest) in times.items()
     )
 
 
 def write_objectives(objectives: Sequence[Objective]) -> str:
-    """Return facts that switch objectives on, the first with the highest priority."""
+    """Return facts ``optimize(Objective,Priority)``; the first objective has the highest priority."""
     return "".join(
         f"optimize({objective.row.term},{len(objectives) - position}).\n"
         for position, objective in enumerate(objectives)
@@ -325,56 +349,69 @@ def write_objectives(objectives: Sequence[Objective]) -> str:
 
 
 def write_exponents(problem: Problem, scales: Scales) -> str:
-    """Return facts of the :meth:`Scales.vector` of each unit, by the objective that is rounded."""
+    """Return facts ``_exponent(U,F,E)``: entry F of the :meth:`Scales.unit_vector` of unit U is E."""
     return "".join(
-        f"_exponent({problem.network.unit_number(unit)},{factor},{_check(number)}).\n"
+        f"_exponent({problem.network.unit_number(unit)},{factor},{_check_int32(number)}).\n"
         for unit, vector in scales.unit_vectors().items()
         for factor, number in vector.items()
     )
 
 
 def write_product(number: int, exponents: Mapping[int, int]) -> str:
-    """Return facts of a product of rates, by its exponents."""
-    return "".join(f"_product({number},{factor},{_check(e)}).\n" for factor, e in exponents.items())
+    """Return facts ``_product(K,F,E)``: the exponents of product number K of rates."""
+    return "".join(f"_product({number},{factor},{_check_int32(e)}).\n" for factor, e in exponents.items())
 
 
 def write_seen(numbers: Iterable[int]) -> str:
-    """Return facts that exclude products of rates, by number."""
+    """Return facts ``_seen(K)``: no tree may have product number K of rates."""
     return "".join(f"_seen({number}).\n" for number in numbers)
 
 
 def write_fewer(units: Mapping[int, int]) -> str:
-    """Return facts that allow small trees to have products of rates that are otherwise excluded.
+    """Return facts ``_fewer(K,N)``: trees of fewer than N units may have product number K all the same.
 
-    ``units`` maps the number of a product to N: trees of fewer than N units may have this product.
+    ``units`` maps K to N.
     """
     return "".join(f"_fewer({number},{count}).\n" for number, count in units.items())
 
 
 def write_wanted(number: int) -> str:
-    """Return the fact that a tree has to have the product of rates with a number."""
+    """Return the fact ``_wanted(K)``: a tree has to have product number K of rates."""
     return f"_wanted({number}).\n"
 
 
 def write_for_sale(prices: Mapping[int, int], second_choices: Iterable[int]) -> str:
-    """Return facts of object nodes for sale: their integer prices, and which are bought only if necessary."""
-    facts = [f"_for_sale({o},{_check(price)}).\n" for o, price in prices.items()]
+    """Return facts ``_for_sale(O,Price)`` and ``_second_choice(O)`` about object nodes that may be bought.
+
+    Prices are integers. Of two lists that cost the same and are as long, the one with fewer nodes of second
+    choice is better.
+    """
+    facts = [f"_for_sale({o},{_check_int32(price)}).\n" for o, price in prices.items()]
     return "".join([*facts, *(f"_second_choice({o}).\n" for o in second_choices)])
 
 
-def write_list(number: int, items: Iterable[int]) -> str:
-    """Return facts of a shopping list that was found before, so that it is not found again."""
+def write_found_list(number: int, items: Iterable[int]) -> str:
+    """Return facts ``_found_list(K)`` and ``_on_list(K,O)``: a shopping list that is known.
+
+    No list that contains it is found again.
+    """
     return f"_found_list({number}).\n" + "".join(f"_on_list({number},{o}).\n" for o in items)
 
 
 def write_constraints(weights: Mapping[int, int], kept: Iterable[int]) -> str:
-    """Return facts of the cost of dropping each constraint, by number, and of constraints kept."""
-    facts = [f"_constraint({number},{_check(weight)}).\n" for number, weight in weights.items()]
+    """Return facts ``_constraint(C,Weight)``, the cost of dropping a constraint, and ``_kept(C)``.
+
+    Constraints are numbers. Those in ``kept`` may not be dropped.
+    """
+    facts = [f"_constraint({number},{_check_int32(weight)}).\n" for number, weight in weights.items()]
     return "".join([*facts, *(f"_kept({number}).\n" for number in kept)])
 
 
 def write_corrections(corrections: Iterable[Iterable[int]]) -> str:
-    """Return facts of correction sets: constraints, by number, without which there is a tree."""
+    """Return facts ``_correction(K,C)``: constraint C is in correction set number K.
+
+    Without the constraints of a correction set, there is a tree. Constraints are numbers.
+    """
     return "".join(
         f"_correction({index},{number}).\n"
         for index, correction in enumerate(corrections)
@@ -383,34 +420,35 @@ def write_corrections(corrections: Iterable[Iterable[int]]) -> str:
 
 
 def write_soft(weights: Mapping[int, int]) -> str:
-    """Return facts of the weight of each soft constraint, by number."""
-    return "".join(f"_soft({number},{_check(weight)}).\n" for number, weight in weights.items())
+    """Return facts ``_soft(C,Weight)``: the weight of each soft constraint, by number."""
+    return "".join(f"_soft({number},{_check_int32(weight)}).\n" for number, weight in weights.items())
 
 
 def write_least_penalty(priority: int) -> str:
-    """Return the fact that minimizes the weights of broken constraints, at a priority."""
+    """Return the fact ``optimize(_soft,Priority)``: the weights of broken constraints are minimized."""
     return f"optimize(_soft,{priority}).\n"
 
 
 def write_greatest_penalty(penalty: int) -> str:
-    """Return the fact that bounds the weights of broken constraints."""
-    return f"_greatest_penalty({_check(penalty)}).\n"
+    """Return the fact ``_greatest_penalty(N)``: broken constraints may weigh at most N in all."""
+    return f"_greatest_penalty({_check_int32(penalty)}).\n"
 
 
 def write_at_most(number: int, bounds: Mapping[Objective, int]) -> str:
-    """Return facts of a set of upper bounds by objective, of which at least one has to hold.
+    """Return facts ``_at_most(K,Objective,N)``: of the upper bounds N of set K, at least one has to hold.
 
-    Raises ``ValueError`` for ``success``, which is no sum.
+    ``number`` is K. Raises ``ValueError`` for ``success``, which is no sum.
     """
     if any(map(multiplies, bounds)):
         raise ValueError("success is a product, and no sum that a bound could be put on")
     return "".join(
-        f"_at_most({number},{objective.row.term},{_check(bound)}).\n" for objective, bound in bounds.items()
+        f"_at_most({number},{objective.row.term},{_check_int32(bound)}).\n"
+        for objective, bound in bounds.items()
     )
 
 
 def write_below(below: Iterable[Mapping[Objective, int | Fraction]], scales: Scales) -> str:
-    """Return facts of sets of strict upper bounds: at least one bound of each set has to hold.
+    """Return facts ``_at_most(K,Objective,N)``: a tree has to undercut at least one cost of each set.
 
     Raises :class:`UserError` for an objective that is rounded.
     """
@@ -421,95 +459,102 @@ def write_below(below: Iterable[Mapping[Objective, int | Fraction]], scales: Sca
 
 
 def write_assisted(twins: Mapping[int, int], max_assisted: int) -> str:
-    """Return facts that pair each unit done by a person with the same unit done by the robot.
+    """Return facts ``_takes_over(P,U)`` and ``_at_most_assisted(N)`` about units done by a person.
 
-    ``twins`` maps the number of a person's unit to that of the robot's unit. The facts also limit the
-    person's units in a tree to ``max_assisted``.
+    ``twins`` maps the number P of a person's unit to the number U of the same unit done by the robot. A tree
+    may have at most N units of the person (``max_assisted``).
     """
-    facts = [f"_takes_over({_check(ours)},{theirs}).\n" for ours, theirs in twins.items()]
-    return "".join([*facts, f"_at_most_assisted({_check(max_assisted)}).\n"])
+    facts = [f"_takes_over({_check_int32(ours)},{theirs}).\n" for ours, theirs in twins.items()]
+    return "".join([*facts, f"_at_most_assisted({_check_int32(max_assisted)}).\n"])
 
 
 def write_required(sets: Sequence[Iterable[int]]) -> str:
-    """Return facts of sets of units, by number: a tree has to have a unit of each set."""
+    """Return facts ``_required(K)`` and ``_one_of(K,U)``: a tree has to have a unit U of each set K.
+
+    ``sets`` have numbers of units.
+    """
     return "".join(
-        "".join([f"_required({index}).\n", *(f"_one_of({index},{_check(number)}).\n" for number in numbers)])
+        "".join(
+            [f"_required({index}).\n", *(f"_one_of({index},{_check_int32(number)}).\n" for number in numbers)]
+        )
         for index, numbers in enumerate(sets)
     )
 
 
 def write_known(numbers: Iterable[int]) -> str:
-    """Return facts of the units, by number, whose inputs have all their achievers in the facts."""
-    return "".join(f"_known({_check(number)}).\n" for number in numbers)
+    """Return facts ``_known(U)``: all achievers of the inputs of unit number U are in the facts."""
+    return "".join(f"_known({_check_int32(number)}).\n" for number in numbers)
 
 
 def write_tree(units: Collection[int]) -> str:
-    """Return facts that require the tree of exactly these units."""
+    """Return facts ``_tree_size(N)`` and ``_in_tree(U)``: the tree has exactly these units."""
     return f"_tree_size({len(units)}).\n" + "".join(f"_in_tree({unit}).\n" for unit in units)
 
 
 def write_avoided(number: int, units: Iterable[int]) -> str:
-    """Return facts that exclude a tree and all trees that contain it.
+    """Return facts ``_avoid(K,U)``: no tree may have all units U of known tree number K.
 
-    ``number`` is a number for the tree; ``units`` are the numbers of its units.
+    ``number`` is K; ``units`` are the numbers of its units.
     """
-    return "".join(f"_avoid({number},{_check(unit)}).\n" for unit in units)
+    return "".join(f"_avoid({number},{_check_int32(unit)}).\n" for unit in units)
 
 
 def write_unseen(units: Iterable[int]) -> str:
-    """Return facts that require a tree with at least one of some units, by their numbers."""
-    return "".join(f"_unseen({_check(unit)}).\n" for unit in units)
+    """Return facts ``_unseen(U)``: a tree has to have at least one of these units, by number."""
+    return "".join(f"_unseen({_check_int32(unit)}).\n" for unit in units)
 
 
 def write_in_all(units: Iterable[int]) -> str:
-    """Return facts that require a tree without at least one of some units, by their numbers."""
-    return "".join(f"_in_all({_check(unit)}).\n" for unit in units)
+    """Return facts ``_in_all(U)``: a tree has to lack at least one of these units, by number."""
+    return "".join(f"_in_all({_check_int32(unit)}).\n" for unit in units)
 
 
-def write_beside(plans: Sequence[Mapping[int, int]]) -> str:
-    """Return facts that exclude plans which execute each unit at least as often as a known plan.
+def write_avoided_plans(plans: Sequence[Mapping[int, int]]) -> str:
+    """Return facts ``_avoid(K,U,N)``: no plan may execute each unit U of known plan K at least N times.
 
     ``plans`` are the known plans: the number of executions by unit number.
     """
     return "".join(
-        f"_avoid({number},{_check(unit)},{count}).\n"
+        f"_avoid({number},{_check_int32(unit)},{count}).\n"
         for number, plan in enumerate(plans)
         for unit, count in plan.items()
     )
 
 
 def write_given(numbers: Collection[int]) -> str:
-    """Return facts of the units, by number, that are to be checked as a tree."""
+    """Return facts ``_given_units(N)`` and ``_given(U)``: the N units that are to be checked as a tree."""
     return f"_given_units({len(numbers)}).\n" + "".join(f"_given({number}).\n" for number in numbers)
 
 
 def write_same_rates(classes: Sequence[Iterable[int]]) -> str:
-    """Return facts of the units of each success rate, by number."""
+    """Return facts ``_same_rate(R,U)``: the numbers of the units of each success rate number R."""
     return "".join(
         f"_same_rate({rate},{number}).\n" for rate, numbers in enumerate(classes) for number in numbers
     )
 
 
 def write_most_alike(limits: Sequence[int]) -> str:
-    """Return facts that bound the number of units of each success rate."""
-    return "".join(f"_most_alike({rate},{_check(number)}).\n" for rate, number in enumerate(limits))
+    """Return facts ``_most_alike(R,N)``: a tree has at most N units of success rate number R."""
+    return "".join(f"_most_alike({rate},{_check_int32(number)}).\n" for rate, number in enumerate(limits))
 
 
 def write_exactly_alike(numbers: Sequence[int]) -> str:
-    """Return facts that fix the number of units of each success rate."""
-    return "".join(f"_exactly_alike({rate},{_check(number)}).\n" for rate, number in enumerate(numbers))
+    """Return facts ``_exactly_alike(R,N)``: a tree has exactly N units of success rate number R."""
+    return "".join(f"_exactly_alike({rate},{_check_int32(number)}).\n" for rate, number in enumerate(numbers))
 
 
 def write_distances(trees: Sequence[Collection[Hashable]], chosen: int) -> str:
     """Return facts of the distances between trees, and of the number of trees to choose (``chosen``).
 
-    The trees are sets of units or of executions.
+    They are ``_tree(T)``, ``_distance(T,S,D)`` and ``_chosen_trees(N)``. The trees are sets of units or of
+    executions. A distance is the number of units that only one of two trees has.
     """
     sets = list(map(frozenset, trees))
     facts = [f"_chosen_trees({chosen}).", *(f"_tree({number})." for number in range(len(sets)))]
-    for number, one in enumerate(sets):
+    for number, tree in enumerate(sets):
         facts += [
-            f"_distance({number},{other},{len(one ^ sets[other])})." for other in range(number + 1, len(sets))
+            f"_distance({number},{other_number},{len(tree ^ sets[other_number])})."
+            for other_number in range(number + 1, len(sets))
         ]
     return "\n".join(facts) + "\n"
 
@@ -522,13 +567,15 @@ def write_tool_order(
 ) -> str:
     """Return facts of tools, their uses, and the order of steps; kinds of tools and steps are numbers.
 
+    They are ``_tools(K,N)``, ``_may_lack(K)``, ``_tool_use(I,K)``, ``_in_use(I,S)`` and ``_waits(S,R)``.
+
     Parameters:
         tools: The number of tools of each kind.
         uses: For each use of a tool, its kind and the steps during which the tool is in use.
         after: For each step, the steps that have to be done before.
         may_lack: Whether tools may be lacking.
     """
-    facts = [f"_tools({kind},{_check(count)}).\n" for kind, count in enumerate(tools)]
+    facts = [f"_tools({kind},{_check_int32(count)}).\n" for kind, count in enumerate(tools)]
     facts += [f"_may_lack({kind}).\n" for kind in range(len(tools)) if may_lack]
     for use, (kind, steps) in enumerate(uses):
         facts += [f"_tool_use({use},{kind}).\n", *(f"_in_use({use},{step}).\n" for step in steps)]
@@ -555,7 +602,10 @@ def quote(text: str) -> str:
 
 
 def source_names(sources: Iterable[Source]) -> dict[str, None]:
-    """Return the names of the sources of a unit: files, with folders and without, and videos."""
+    """Return the names of the sources of a unit: files, with folders and without, and videos.
+
+    They are the keys of the result, each once.
+    """
     names: dict[str, None] = {}
     for source in sources:
         names.update(_file_names(source.file))
@@ -565,6 +615,7 @@ def source_names(sources: Iterable[Source]) -> dict[str, None]:
 
 @lru_cache(maxsize=1000)  # most units are from the file of the one before
 def _file_names(file: str) -> dict[str, None]:
+    """Return the names of a file, with folders and without, as keys."""
     return dict.fromkeys(map(encodable, (file, PurePath(file).name)))
 
 
@@ -573,7 +624,8 @@ def millionths(rate: Fraction) -> int:
     return rate.numerator * 1_000_000 // rate.denominator
 
 
-def _check(number: int) -> int:
+def _check_int32(number: int) -> int:
+    """Return a number; raises :class:`UserError` if it does not fit into 32 bits."""
     if abs(number) > INT32_MAX:
         raise UserError(f"the number {number} is too large for clingo, whose numbers have 32 bits")
     return number

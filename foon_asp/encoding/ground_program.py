@@ -11,8 +11,8 @@ from clingo import Control, MessageCode, Model, SolveHandle
 from clingo.symbol import Number, Symbol, SymbolType
 
 from foon_asp.deadline import Deadline
-from foon_asp.encoding.messages import NO_LIMIT, listener, refusing
-from foon_asp.encoding.number_checks import CHECKS_FILE, Exact, numbers_beyond
+from foon_asp.encoding.messages import NO_LIMIT, listener, refuse_messages
+from foon_asp.encoding.number_checks import CHECKS_FILE, Exact, overflow_messages
 from foon_asp.encoding.run import Ended, FoundAnswer, asks_for_statistics
 from foon_asp.encoding.stated import Stated
 from foon_asp.errors import UserError
@@ -22,7 +22,7 @@ class GroundProgram:
     """Ground program of files and text; raises :class:`ProgramError` where clingo refuses it.
 
     A rule instance that clingo drops with only a message is an error, too. ``products`` is the number of
-    products of rates in the text. A search ends at the ``deadline``, if any.
+    products of rates in the text. A search ends at the ``deadline``, if there is one.
     """
 
     deadline: Deadline | None = None
@@ -33,15 +33,14 @@ class GroundProgram:
         """Load files and text into clingo, and ground them."""
         self._messages: list[str] = []
         self._statistics = asks_for_statistics(arguments)
-        with refusing(self._messages):
+        with refuse_messages(self._messages):
             logger = listener(self._messages)
             self._control = Control(list(arguments), logger=logger, message_limit=NO_LIMIT)
             checks = [file for file in files if isinstance(file, Stated) and file.place == CHECKS_FILE]
             self._load([file for file in files if file not in checks], logger)
             self._control.add("base", [], text)
-            self._load(
-                checks, logger
-            )  # last, since the check of a sum that clasp refuses has to be grounded before the sum
+            # last, since the check of a sum that clasp refuses has to be grounded before the sum
+            self._load(checks, logger)
             parts = [("_product", [Number(number)]) for number in range(products)]
             self._ground([("base", []), *parts])
 
@@ -56,16 +55,17 @@ class GroundProgram:
                 self._control.load(file)
 
     def _ground(self, parts: Sequence[tuple[str, Sequence[Symbol]]]) -> None:
-        """Ground parts of the program, and record messages about overflows."""
+        """Ground parts of the program; messages about overflows are added to ``_messages``."""
         try:
             self._control.ground(parts, Exact())
         finally:
-            self._messages += numbers_beyond(self._control)
+            self._messages += overflow_messages(self._control)
 
     def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
-        """Return the arguments of all atoms of each predicate, by name and arity; all arguments are numbers.
+        """Return the arguments of all atoms of each predicate, given by name and arity.
 
-        The rules have to be stratified, so that grounding alone derives all atoms.
+        The result has a list for each predicate; all arguments have to be numbers. The rules have to be
+        stratified, so that grounding alone derives all atoms.
         """
         atoms = self._control.symbolic_atoms
         return [
@@ -106,9 +106,10 @@ class GroundProgram:
         faults: list[Exception] = []  # raised in clingo's thread, to be raised again in this one
 
         def model(model: Model) -> bool:
+            """Report an answer; return whether to continue, which is ``False`` after an error."""
             try:
-                atoms = {name: _numbers(model, name, arity) for name, arity in predicates}
-                rows = {name: _rows(model, name, arity) for name, arity in predicates}
+                atoms = {name: _first_arguments(model, name, arity) for name, arity in predicates}
+                rows = {name: _rows_of_numbers(model, name, arity) for name, arity in predicates}
                 on_tree(FoundAnswer(_used(model), tuple(model.cost), atoms, rows))
             except Exception as error:
                 faults.append(error)
@@ -123,20 +124,22 @@ class GroundProgram:
         if faults:
             raise faults[0]
         exhausted = bool(ended.exhausted) or (opt_mode == "ignore" and ended.satisfiable is not None)
-        return Ended(exhausted, "\n".join(_lines(self._control.statistics)) if self._statistics else "")
+        return Ended(
+            exhausted, "\n".join(_statistics_lines(self._control.statistics)) if self._statistics else ""
+        )
 
     def close(self) -> None:
-        """Release the program."""
+        """Release the program: nothing to do, as it is in this process."""
 
 
-def _lines(statistics: Any, name: str = "") -> Iterator[str]:
-    """Return clingo's statistics, a tree of numbers, as one line per number with its path."""
+def _statistics_lines(statistics: Any, name: str = "") -> Iterator[str]:
+    """Yield clingo's statistics as one line per number, such as ``solving.solvers.choices = 9``."""
     if isinstance(statistics, dict):
         for key, child in statistics.items():
-            yield from _lines(child, f"{name}.{key}" if name else key)
+            yield from _statistics_lines(child, f"{name}.{key}" if name else key)
     elif isinstance(statistics, list):
         for number, child in enumerate(statistics):
-            yield from _lines(child, f"{name}.{number}")
+            yield from _statistics_lines(child, f"{name}.{number}")
     else:
         yield f"{name} = {statistics:g}"
 
@@ -154,7 +157,10 @@ def _wait(handle: SolveHandle, deadline: Deadline) -> None:
 
 
 def _used(model: Model) -> frozenset[int]:
-    """Return the numbers of the units in use in an answer."""
+    """Return the numbers of the units in use in an answer.
+
+    Raises :class:`UserError` if an argument of ``use/1`` is no number.
+    """
     units = set()
     for symbol in model.symbols(shown=True):
         if symbol.type is SymbolType.Function and symbol.match("use", 1):
@@ -165,8 +171,11 @@ def _used(model: Model) -> frozenset[int]:
     return frozenset(units)
 
 
-def _rows(model: Model, name: str, arity: int) -> frozenset[tuple[int, ...]]:
-    """Return the arguments of all atoms of a predicate in an answer, if these are numbers."""
+def _rows_of_numbers(model: Model, name: str, arity: int) -> frozenset[tuple[int, ...]]:
+    """Return the arguments of the atoms of a predicate in an answer.
+
+    Atoms with an argument that is no number are left out.
+    """
     atoms = (symbol.arguments for symbol in model.symbols(atoms=True) if symbol.match(name, arity))
     return frozenset(
         tuple(argument.number for argument in arguments)
@@ -175,6 +184,7 @@ def _rows(model: Model, name: str, arity: int) -> frozenset[tuple[int, ...]]:
     )
 
 
-def _numbers(model: Model, name: str, arity: int) -> Counter[int]:
+def _first_arguments(model: Model, name: str, arity: int) -> Counter[int]:
+    """Return how many atoms of a predicate an answer has for each first argument, which is a number."""
     atoms = (symbol for symbol in model.symbols(atoms=True) if symbol.match(name, arity))
     return Counter(symbol.arguments[0].number for symbol in atoms)

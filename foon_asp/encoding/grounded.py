@@ -15,11 +15,13 @@ if TYPE_CHECKING:
 
 
 class Grounded:
-    """Ground program of files and text.
+    """Ground program of files and text, in this process or in a worker process.
 
-    It is in a worker process if grounding may not terminate (``endless``), if the text is long, or if memory
-    is limited. A worker is killed at the limits and at ctrl-C. ``doing`` names the phase in messages about
-    limits. Raises :class:`foon_asp.encoding.run.ProgramError` where clingo refuses the program, and
+    A worker is used if grounding may not terminate (``endless``), if the text is long, or if memory is
+    limited. It is killed at the limits and at ctrl-C. ``products`` is the number of products of rates in the
+    text. ``doing`` names the phase in messages about limits.
+
+    Raises :class:`foon_asp.encoding.run.ProgramError` where clingo refuses the program, and
     :class:`LimitError`.
     """
 
@@ -47,7 +49,10 @@ class Grounded:
             self._program = GroundProgram(names, text, arguments, products)
 
     def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
-        """Return the arguments of all atoms of each predicate; raises as the class does."""
+        """Return the arguments of all atoms of each predicate, given by name and arity.
+
+        Raises :class:`LimitError` if a limit is reached in a worker.
+        """
         return self._program.consequences(predicates)
 
     def search(
@@ -74,17 +79,19 @@ class Grounded:
         began = time.perf_counter()
 
         def tree(answer: FoundAnswer) -> None:
+            """Record an answer, and report its units."""
             result.units, result.cost, result.atoms, result.rows = answer
             if on_tree:
                 on_tree(answer.units)
 
         def bound(lower: list[int]) -> None:
+            """Record a lower bound, and report the greatest one so far."""
             result.lower = max(result.lower, lower)  # a lesser bound may arrive later; all are valid
             if on_bound:
                 on_bound(result.lower)
 
         try:
-            self._begin("searching", deadline)
+            self._begin_phase("searching", deadline)
             result.exhausted, result.statistics = self._program.search(opt_mode, predicates, tree, bound)
         except LimitError:  # the last answer remains
             pass
@@ -95,8 +102,8 @@ class Grounded:
         """Release the program; dropping the last reference does so, too."""
         self._program.close()
 
-    def _begin(self, doing: str, deadline: Deadline) -> None:
-        """Begin a phase, which has a name and a deadline."""
+    def _begin_phase(self, doing: str, deadline: Deadline) -> None:
+        """Set the deadline of a phase and its name in messages; raises :class:`LimitError` if it is over."""
         deadline.doing = doing
         deadline.check()
         self._program.deadline = deadline

@@ -17,22 +17,23 @@ NO_LIMIT = INT32_MAX  # clingo's limit of messages: beyond a lower one, a releva
 
 
 def listener(messages: list[str], max_kept: int = 1000) -> Callable[[MessageCode, str], None]:
-    """Return a logger for clingo that collects messages about dropped statements or instances.
+    """Return a logger for clingo that adds messages about dropped statements or instances to ``messages``.
 
-    After ``max_kept`` messages, it collects only those about statements.
+    After ``max_kept`` messages, it adds only those about statements.
     """
 
-    def hear(code: MessageCode, text: str) -> None:
+    def log(code: MessageCode, text: str) -> None:
+        """Add a message if it is about something dropped."""
         if text.startswith(f"{CHECKS_FILE}:") and code is MessageCode.OperationUndefined:
             return  # the checked rule causes the same message
         if code not in _HARMLESS and (code is MessageCode.RuntimeError or len(messages) < max_kept):
             messages.append(text)
 
-    return hear
+    return log
 
 
 @contextmanager
-def refusing(messages: list[str]) -> Iterator[None]:
+def refuse_messages(messages: list[str]) -> Iterator[None]:
     """Raise :class:`ProgramError` where clingo stops, or where ``messages`` is not empty after the block."""
     try:
         yield

@@ -22,21 +22,24 @@ class Exact:
     def __getattribute__(self, name: str) -> Callable[..., Symbol]:
         """Return the function ``@_exact``; raise ``RuntimeError`` for any other name."""
         if name != "_exact":
-            raise RuntimeError(
-                f"no function is called, and {name!r} is one"
-            )  # the text has been checked for calls
+            # the text has been checked for calls
+            raise RuntimeError(f"no function is called, and {name!r} is one")
         return _exact
 
 
 def _exact(text: Symbol, *values: Symbol) -> Symbol:
-    """Return whether a term is beyond clingo's numbers, as 1 or 0."""
+    """Return 1 if a term is beyond clingo's numbers, else 0.
+
+    ``text`` is the term in postfix notation, and ``values`` are the values in it. 0 also if one of them is no
+    number, which clingo reports itself.
+    """
     if any(value.type is not SymbolType.Number for value in values):
         return Number(0)  # reported by clingo
     return Number(is_beyond(text.string, [value.number for value in values]))
 
 
-def numbers_beyond(control: Control) -> Iterator[str]:
-    """Return messages in clingo's format about each overflow in a ground program."""
+def overflow_messages(control: Control) -> Iterator[str]:
+    """Yield a message in clingo's format about each overflow in a ground program."""
     for atom in control.symbolic_atoms.by_signature(*BEYOND):
         file, line, column, term = atom.symbol.arguments
         yield (

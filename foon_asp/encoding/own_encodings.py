@@ -18,37 +18,44 @@ _DIGESTS = "SHA256SUMS"
 
 
 def is_own(file: Path) -> bool:
-    """Whether an encoding is an unchanged built-in one."""
+    """Whether a file is a built-in encoding and unchanged."""
     digests = _digests()
     expected = digests.get(file) or digests.get(file.resolve())
     return expected is not None and expected == digest(file)
 
 
 def question_encoding(name: str) -> Path:
-    """Return a built-in encoding that a question needs and the user cannot replace, such as ``soft.lp``.
+    """Return the path of a built-in encoding that a question needs, such as ``soft.lp``.
 
-    Raises :class:`UserError` where it was changed.
+    Users cannot replace it. Raises :class:`UserError` where it was changed.
     """
-    return _unchanged(encodings_folder() / "questions" / name)
+    return _require_unchanged(encodings_folder() / "questions" / name)
 
 
 def exact_success() -> Path:
-    """Return the encoding that compares products of rates; raises :class:`UserError` if it was changed."""
-    return _unchanged(encodings_folder() / "exact_success.lp")
+    """Return the path of the encoding that compares products of rates.
+
+    Raises :class:`UserError` if it was changed.
+    """
+    return _require_unchanged(encodings_folder() / "exact_success.lp")
 
 
 def digest(file: Path) -> str:
-    """Return the SHA-256 of a text with the line ends of Unix; a file is read again once it has changed."""
+    """Return the SHA-256 digest of a text file, as if it had the line ends of Unix.
+
+    It is cached until the file changes.
+    """
     state = file.stat()
     return _digest(file, state.st_ino, state.st_size, state.st_mtime_ns, state.st_ctime_ns)
 
 
 @lru_cache(maxsize=100)
 def _digest(file: Path, *_state: int) -> str:
+    """Return the digest of a file; ``_state`` is part of the key of the cache."""
     return hashlib.sha256(file.read_bytes().replace(b"\r\n", b"\n")).hexdigest()
 
 
-def _unchanged(file: Path) -> Path:
+def _require_unchanged(file: Path) -> Path:
     """Return the path of a built-in encoding; raises :class:`UserError` if it was changed."""
     if not is_own(file):
         raise UserError(
@@ -60,6 +67,7 @@ def _unchanged(file: Path) -> Path:
 
 @cache
 def _digests() -> dict[Path, str]:
+    """Return the digests in ``SHA256SUMS``, by path."""
     folder = encodings_folder().resolve()
     lines = (folder / _DIGESTS).read_text(encoding="ascii").splitlines()
     return {folder / name: sha for sha, name in (line.split("  ", 1) for line in lines)}

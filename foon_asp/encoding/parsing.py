@@ -1,4 +1,4 @@
-"""Parser of statements of files and of rules without a file, with their places."""
+"""Parser of rules, in files or given as text, that keeps the places of statements."""
 
 from collections.abc import Callable, Iterator
 
@@ -11,17 +11,22 @@ _TEXT = "<string>"  # the file name that clingo uses for a text
 
 
 def parse(rules: Loaded, add: Callable[[AST], None], logger: Callable[[MessageCode, str], None]) -> None:
-    """Parse rules and call ``add`` with each statement; raises ``RuntimeError`` as clingo does."""
+    """Parse rules and call ``add`` with each statement; raises ``RuntimeError`` as clingo does.
+
+    For rules without a file, their name replaces the file name in statements and messages.
+    """
     if not isinstance(rules, Stated):
         parse_files([str(rules)], add, logger=logger)
         return
     place = rules.place
 
     def placed(statement: AST) -> None:
-        _set_place(statement, place)
+        """Set the name of the rules as file name in a statement, and add the statement."""
+        _replace_file_name(statement, place)
         add(statement)
 
     def logged(code: MessageCode, message: str) -> None:
+        """Put the name of the rules as file name into a message, and log the message."""
         logger(code, place + message.removeprefix(_TEXT) if message.startswith(_TEXT) else message)
 
     parse_string(rules.text, placed, logger=logged)
@@ -33,18 +38,18 @@ def load(control: Control, rules: Stated, logger: Callable[[MessageCode, str], N
         parse(rules, builder.add, logger)
 
 
-def nodes(piece: AST) -> Iterator[AST]:
-    """Return a node of the syntax tree and all its descendants."""
-    yield piece
-    for key in piece.child_keys:
-        child = getattr(piece, key)
+def nodes(root: AST) -> Iterator[AST]:
+    """Yield a node of the syntax tree and all its descendants."""
+    yield root
+    for key in root.child_keys:
+        child = getattr(root, key)
         for node in child if isinstance(child, ASTSequence) else [child]:
             if isinstance(node, AST):
                 yield from nodes(node)
 
 
-def _set_place(statement: AST, place: str) -> None:
-    """Replace the file name in the locations of a statement by a place."""
+def _replace_file_name(statement: AST, place: str) -> None:
+    """Replace the file name in the locations of a statement and its nodes by a place."""
     for node in nodes(statement):
         if "location" in node.keys():  # noqa: SIM118 (it is no mapping)
             begin, end = node.location

@@ -36,10 +36,13 @@ class WorkerProgram:
         products: int,
         deadline: Deadline,
     ) -> None:
-        """Take a worker process, and wait until it has grounded the files and the text."""
+        """Take a worker process, and wait until it has grounded the files and the text.
+
+        ``products`` is the number of products of rates in the text.
+        """
         self._worker = take(_KEY, _start)
         self._give_back = weakref.finalize(self, _forget, self._worker)
-        command = "ground", _folder(), list(files), text, list(arguments), products, _memory(deadline)
+        command = "ground", _folder(), list(files), text, list(arguments), products, _memory_left(deadline)
         self.deadline = deadline
         _ask(self._worker, deadline, *command)
 
@@ -57,7 +60,10 @@ class WorkerProgram:
         on_tree: Callable[[FoundAnswer], None],
         on_bound: Callable[[list[int]], None],
     ) -> Ended:
-        """Search for the best answer, and return how the search ended; trees are reported in this process."""
+        """Search for the best answer, and return how the search ended; trees are reported in this process.
+
+        The parameters are those of :meth:`foon_asp.encoding.ground_program.GroundProgram.search`.
+        """
         handlers: _Handlers = {"tree": on_tree, "bound": on_bound}
         return Ended(
             *_ask(self._worker, self.deadline, "search", opt_mode, list(predicates), handlers=handlers)
@@ -72,13 +78,15 @@ def derive(text: str, name: str, arity: int, deadline: Deadline) -> list[tuple[V
     """Run :func:`foon_asp.encoding.derived.derive` in another process, which is killed at the limits."""
     worker = take(_KEY, _start)
     try:
-        rows: list[tuple[Value, ...]] = _ask(worker, deadline, "derive", text, name, arity, _memory(deadline))
+        rows: list[tuple[Value, ...]] = _ask(
+            worker, deadline, "derive", text, name, arity, _memory_left(deadline)
+        )
         return rows
     finally:
         _forget(worker)
 
 
-def _memory(deadline: Deadline) -> int | None:
+def _memory_left(deadline: Deadline) -> int | None:
     """Return the number of bytes that another process may use, ``None`` without a limit."""
     return None if deadline.memory is None else max(1, deadline.memory - deadline.memory_in_use())
 
@@ -91,8 +99,8 @@ def _folder() -> str | None:
         return None
 
 
-def prepare() -> None:
-    """Start a process in advance, if none waits."""
+def start_in_advance() -> None:
+    """Start a worker process for a later program, unless one is waiting."""
     give_back(_KEY, take(_KEY, _start))
 
 
@@ -109,14 +117,15 @@ def _forget(worker: Worker) -> None:
 
 
 def _ask(worker: Worker, deadline: Deadline, *command: object, handlers: _Handlers | None = None) -> Any:
-    """Send a command to a worker, and return its answer.
+    """Send a command to a worker, and return its answer; ``handlers`` are called with reports on the way.
 
-    Raises :class:`ProgramError` and :class:`UserError` as the program does, and :class:`LimitError`.
+    Raises the :class:`ProgramError` or :class:`UserError` that the worker reports, and :class:`LimitError` at
+    a limit. Raises :class:`BugError` for any other error in the worker.
     """
     try:
         kind, value = worker.ask(packed(command), deadline, handlers)
     except DiedError as died:
-        raise _cause(died.code, worker.has_spoken, deadline) from None
+        raise _error_of_death(died.code, worker.has_spoken, deadline) from None
     if kind == "refused":
         raise ProgramError(*value)
     if kind == "fault":
@@ -126,8 +135,11 @@ def _ask(worker: Worker, deadline: Deadline, *command: object, handlers: _Handle
     return value
 
 
-def _cause(code: int, has_spoken: bool, deadline: Deadline) -> UserError | LimitError:
-    """Return the error for a process that died: memory ran out, or else the rules made it stop."""
+def _error_of_death(code: int, has_spoken: bool, deadline: Deadline) -> UserError | LimitError:
+    """Return the error for a process that died with an exit code.
+
+    It is :class:`LimitError` if memory ran out; else the rules, or the start of Python, are to blame.
+    """
     if code in _OF_MEMORY or (deadline.memory is not None and code == -signal.SIGSEGV):
         deadline.out_of_memory()
         return LimitError(deadline)

@@ -14,12 +14,16 @@ from foon_asp.processes.pipe import OUT_OF_MEMORY, receive, requests, send
 
 
 def serve() -> None:
-    """Execute the commands on standard input and answer on the original standard output."""
+    """Execute the commands on standard input, and write answers to the original standard output.
+
+    A command is a tuple of its name and parameters. An answer is a pair: ``done`` with the result, or
+    ``refused``, ``fault`` or ``bug`` with the error. The process exits if memory runs out.
+    """
     commands, answers = requests(receive)
     program: GroundProgram | None = None
 
     def obey(command: str, *parameters: Any) -> object:
-        """Execute a command, and return its answer."""
+        """Execute a command, and return its result; a search sends trees and bounds before."""
         nonlocal program
         if command == "ground":
             program = None  # frees the memory before the next one

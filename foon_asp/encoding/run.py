@@ -8,9 +8,13 @@ from typing import NamedTuple
 
 
 class ProgramError(Exception):
-    """clingo refused a program or an option; ``messages`` are its reasons."""
+    """An error of clingo, which refused a program or an option.
+
+    ``messages`` are its reasons; ``otherwise`` is the text of its exception.
+    """
 
     def __init__(self, messages: Sequence[str], otherwise: str) -> None:
+        """Keep the messages, and the text of clingo's exception."""
         super().__init__(otherwise)
         self.messages, self.otherwise = list(messages), otherwise
 
@@ -21,9 +25,11 @@ def asks_for_statistics(options: Sequence[str]) -> bool:
 
 
 class FoundAnswer(NamedTuple):
-    """An answer: the units in use, the cost vector, and counts of atoms by predicate and first argument.
+    """An answer of clingo.
 
-    ``rows`` has, by predicate, the arguments of the atoms whose arguments are all numbers.
+    ``units``: the numbers of the units in use. ``cost``: the cost vector.
+    ``atoms``: by predicate, the number of its atoms for each first argument.
+    ``rows``: by predicate, the arguments of its atoms whose arguments are all numbers.
     """
 
     units: frozenset[int]

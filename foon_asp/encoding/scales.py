@@ -14,8 +14,9 @@ from foon_asp.problem.number import INT32_MAX
 class CostScale(NamedTuple):
     """Integer weights for the costs of units by an objective whose costs are fractions and add up.
 
-    ``weights[c]`` is ``floor(scale * c)``; ``exact`` says that no cost is rounded. ``places[c]`` is the
-    index of a cost in the vectors of :meth:`Scales.vector`. ``total`` is the weight of all units.
+    ``weights[c]`` is ``floor(scale * c)``.
+    ``exact``: no cost is rounded. ``places[c]`` is the index of a cost in the vectors of
+    :meth:`Scales.vector`. ``total`` is the weight of all units.
     """
 
     scale: Fraction
@@ -100,7 +101,7 @@ class Scales:
         self.rounded: Objective | None = rounded[0] if rounded else None
 
     def weight(self, objective: Objective, units: Iterable[int]) -> int:
-        """Return the total weight of units in clingo."""
+        """Return the total weight of units in clingo, by an objective."""
         if multiplies(objective):
             assert self.rates is not None
             return sum(self.rates.weights[self._problem.rate(unit)] for unit in units)
@@ -114,7 +115,7 @@ class Scales:
         return int(sum(problem.figure(objective, unit) for unit in units)) + objective.row.item * len(items)
 
     def cost_weight(self, objective: Objective, cost: int | Fraction) -> int:
-        """Return the weight in clingo of an upper bound on the cost by an objective.
+        """Return an upper bound on the cost by an objective as a weight in clingo.
 
         Raises :class:`UserError` for an objective that is rounded, and where the weight of all units
         overflows, since clingo ignores the bound then.
@@ -134,7 +135,7 @@ class Scales:
             )
         return int(scale.scale * cost)
 
-    def doubt(self, units: Iterable[int]) -> int:
+    def count_rounded(self, units: Iterable[int]) -> int:
         """Return how many units have a weight that was rounded down; each adds an error below 1."""
         assert self.rounded is not None
         costs = (self._problem.figure(self.rounded, unit) for unit in units)
@@ -144,10 +145,10 @@ class Scales:
         return sum(scale * cost != weights[Fraction(cost)] for cost in costs)
 
     def vector(self, units: Iterable[int]) -> dict[int, int]:
-        """Return a vector, by index, from which the exact total by the rounded objective follows.
+        """Return a vector of units from which their exact total by the rounded objective follows.
 
-        For success rates, it has the exponents of coprime factors; otherwise, the number of units of each
-        cost.
+        For success rates, it has the exponents by number of a coprime factor. For other objectives, it has
+        the number of units of each cost, by the index of the cost.
         """
         assert self.rounded is not None
         if multiplies(self.rounded):
@@ -160,7 +161,7 @@ class Scales:
         return vector
 
     def unit_vector(self, unit: int) -> Mapping[int, int]:
-        """Return the vector of one unit, without zeros."""
+        """Return the :meth:`vector` of one unit, without zeros."""
         assert self.rounded is not None
         if multiplies(self.rounded):
             assert self.rates is not None
@@ -168,11 +169,14 @@ class Scales:
         return {self.costs[self.rounded].places[Fraction(self._problem.figure(self.rounded, unit))]: 1}
 
     def unit_vectors(self) -> dict[int, Mapping[int, int]]:
-        """Return the vectors of all units."""
+        """Return the :meth:`vector` of each unit of the question, by unit id, without zeros."""
         return {unit: self.unit_vector(unit) for unit in self._units}
 
     def bound(self, objective: Objective, weight: int) -> int | Fraction:
-        """Return the bound on an objective (for success, an upper one) from a lower bound on weights."""
+        """Return the bound on the cost by an objective that follows from a lower bound on weights.
+
+        It is an upper bound for success, and a lower one for objectives that add up.
+        """
         if multiplies(objective):
             return Fraction(1) if self.rates is None else self.rates.success_bound(weight)
         return weight / self.costs[objective].scale if objective in self.costs else weight
@@ -180,7 +184,7 @@ class Scales:
     def allows(self, objective: Objective, weight: int, figure: int | Fraction) -> bool:
         """Return whether units of a total ``weight`` can have the cost ``figure`` by an objective.
 
-        Without rounding, only one cost has that weight.
+        Unless the objective is rounded, only one cost has that weight.
         """
         bound = self.bound(objective, weight)
         if objective is not self.rounded:

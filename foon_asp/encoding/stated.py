@@ -1,4 +1,4 @@
-"""Rules without a file."""
+"""Rules that are given as text, without a file."""
 
 from pathlib import Path
 from typing import NamedTuple

@@ -340,7 +340,7 @@ class Counting:
         if best and scales is not None and (question.below or question.incomparable):
             # bounds by fractions are enforced by counts alone
             text += fact_writer.write_below([{o: cost} for o, cost in question.below if o.row.whole], scales)
-            text += fact_writer.write_beside(
+            text += fact_writer.write_avoided_plans(
                 [{number(u): n for u, n in plan.items()} for plan in question.incomparable]
             )
             files = (*files, question_encoding("bounded_plans.lp"))

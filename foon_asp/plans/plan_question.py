@@ -80,7 +80,7 @@ class PlanQuestion:
         if rules is None:
             return True
         self.limits = rules.limits(self.problem, self.deadline)
-        restriction = rules.varying({TIMES}).applied(self.problem, self.deadline)
+        restriction = rules.varying({TIMES}).restriction_of(self.problem, self.deadline)
         if isinstance(restriction, Restriction):
             self.restriction = restriction
         return not isinstance(restriction, Contradiction)

@@ -150,9 +150,11 @@ def explain_rules(
     rules = assemble(settings, reporter.warning).understood
     if rules is None:
         raise UserError("the built-in encodings were changed, so nothing is known of rules beside them")
-    nonlocal_rule = next((str(explained.source) for explained in rules.shown if not explained.rule.local), "")
+    nonlocal_rule = next(
+        (str(explained.source) for explained in rules.shown_rules if not explained.rule.local), ""
+    )
     return ExplainedRules(
-        rules=tuple(map(ExplainedRule.of, rules.shown)),
+        rules=tuple(map(ExplainedRule.of, rules.shown_rules)),
         together=rules.reductions_kept,
         meaning=_TOGETHER[rules.reductions_kept].format(nonlocal_rule),
     )

@@ -19,7 +19,7 @@ from foon_asp.asp.postconditions import Postconditions
 from foon_asp.asp.prepared import Prepared, prepare
 from foon_asp.asp.program import Program
 from foon_asp.dataset.paths import File
-from foon_asp.encoding.fact_writer import write_for_sale, write_list
+from foon_asp.encoding.fact_writer import write_for_sale, write_found_list
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.errors import BugError, UserError
 from foon_asp.hypergraph import SolvedGoals
@@ -621,7 +621,7 @@ def _lists_under_rules(
             items = tuple(sorted(ended.atoms["_buy"]))
             price = sum((sold[o] for o in items), Fraction(0))
             lists.append(_PricedList(dict.fromkeys(items, 1), price, ended.exhausted))
-            facts += write_list(len(lists), items)
+            facts += write_found_list(len(lists), items)
         if ended.units is None or not ended.exhausted:
             return _Lists(lists, ended.exhausted)
         if not items:

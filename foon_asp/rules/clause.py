@@ -1,4 +1,4 @@
-"""One rule of an encoding taken apart: its head, and the conjuncts of its body."""
+"""Rules of an encoding taken apart: the head of a rule, and the conjuncts of its body."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from operator import eq, ge, gt, le, lt, ne
@@ -30,7 +30,7 @@ _FLIPPED = {
     ComparisonOperator.LessEqual: ComparisonOperator.GreaterEqual,
     ComparisonOperator.GreaterEqual: ComparisonOperator.LessEqual,
 }
-_COMPARING = {
+_OPERATORS = {
     ComparisonOperator.GreaterThan: gt,
     ComparisonOperator.LessThan: lt,
     ComparisonOperator.LessEqual: le,
@@ -38,13 +38,14 @@ _COMPARING = {
     ComparisonOperator.NotEqual: ne,
     ComparisonOperator.Equal: eq,
 }
-_NUMBERS = {AggregateFunction.Count, AggregateFunction.Sum, AggregateFunction.SumPlus}
+_NUMBER_AGGREGATES = {AggregateFunction.Count, AggregateFunction.Sum, AggregateFunction.SumPlus}
 
 
 class Literal(NamedTuple):
-    """An atom in a body: as it is, negated once (``not p``) or twice (``not not p``).
+    """A literal: an atom as it is, negated once (``not p``) or negated twice (``not not p``).
 
-    The name of a classically negated atom (``-p``) begins with a minus.
+    ``negations`` is 0, 1 or 2. The predicate name of a classically negated atom (``-p``) begins with a minus.
+    ``text`` is the literal as clingo prints it.
     """
 
     signature: Signature
@@ -59,7 +60,11 @@ class Literal(NamedTuple):
 
 
 class Test(NamedTuple):
-    """A comparison, ``#true`` or ``#false``; ``holds`` is its value, ``None`` if unknown."""
+    """A comparison, ``#true`` or ``#false``.
+
+    ``holds`` is its truth value; ``None`` if it depends on a variable, or on a term that is not evaluated
+    here.
+    """
 
     ast: AST
     holds: bool | None
@@ -69,27 +74,34 @@ class Test(NamedTuple):
 class Conditional(NamedTuple):
     """``literal : condition`` in a body: the literal has to hold wherever the condition does."""
 
-    literal: "Literal | Test | Strange"
+    literal: "Literal | Test | UnknownConjunct"
     condition: "tuple[Conjunct, ...]"
     text: str
 
 
 class Element(NamedTuple):
-    """An element of an aggregate: the terms that it adds where its condition holds."""
+    """An element ``terms : condition`` of an aggregate.
+
+    The aggregate counts or adds the terms where the condition holds.
+    """
 
     terms: tuple[AST, ...]
     condition: "tuple[Conjunct, ...]"
 
 
 class Guard(NamedTuple):
-    """A guard of an aggregate: the comparison, with the aggregate on the left and the term on the right."""
+    """A guard of an aggregate, such as ``> 9``: the value of the aggregate is compared with a term."""
 
     comparison: ComparisonOperator
     term: AST
 
 
 class Aggregate(NamedTuple):
-    """An aggregate in a body; ``holds`` is its value where the guards alone decide it, else ``None``."""
+    """An aggregate in a body.
+
+    ``holds`` is its truth value if the guards alone decide it, as in ``#count { ... } < #sup``; else
+    ``None``. ``negations`` is 0, 1 or 2.
+    """
 
     function: AggregateFunction
     elements: tuple[Element, ...]
@@ -99,13 +111,13 @@ class Aggregate(NamedTuple):
     text: str
 
 
-class Strange(NamedTuple):
-    """A conjunct of another kind, such as a theory atom."""
+class UnknownConjunct(NamedTuple):
+    """A conjunct of any other kind, such as a theory atom; only its text is kept."""
 
     text: str
 
 
-Conjunct = Literal | Test | Conditional | Aggregate | Strange
+Conjunct = Literal | Test | Conditional | Aggregate | UnknownConjunct
 
 
 class Clause(NamedTuple):
@@ -113,13 +125,13 @@ class Clause(NamedTuple):
 
     ``plain``: the rule is a constraint, or its head is one atom without negation or choice.
     ``head``: this atom; ``None`` for a constraint, and for a rule that is not plain.
-    ``others``: the head atoms of a rule that is not plain, each with its condition.
-    ``number``: the number of the rule, the same for all clauses of a rule with pools.
+    ``head_elements``: the head atoms of a rule that is not plain, each with its condition.
+    ``number``: a number for the rule, the same for all clauses of a rule with pools.
     ``ast``: the syntax tree of the clause; its body has one node for each conjunct of ``body``.
     """
 
     head: Literal | None
-    others: tuple[tuple[Literal, tuple[Conjunct, ...]], ...]
+    head_elements: tuple[tuple[Literal, tuple[Conjunct, ...]], ...]
     plain: bool
     body: tuple[Conjunct, ...]
     source: Source
@@ -127,20 +139,20 @@ class Clause(NamedTuple):
     ast: AST
 
     @property
-    def constraint(self) -> bool:
-        """Whether the clause has no head."""
+    def is_constraint(self) -> bool:
+        """Whether the clause is a constraint, which has no head."""
         return self.plain and self.head is None
 
     @property
     def heads(self) -> list[Literal]:
-        """The atoms of its head."""
-        return [atom for atom in (self.head, *(atom for atom, _ in self.others)) if atom is not None]
+        """All atoms in the head; empty for a constraint."""
+        return [atom for atom in (self.head, *(atom for atom, _ in self.head_elements)) if atom is not None]
 
 
 def clauses(rule: AST, number: int, constants: Constants) -> Iterator[Clause]:
-    """Unpool a rule: return one clause for each choice from its pools.
+    """Unpool a rule: yield one clause for each choice from its pools, such as ``p(1;2)``.
 
-    ``number`` is the number of the rule; each of its clauses gets it.
+    ``number`` is stored in each clause, so that the rule of a clause can be found again.
     """
     source = source_of(rule)
     for clause in rule.unpool(condition=True):
@@ -159,13 +171,16 @@ def clauses(rule: AST, number: int, constants: Constants) -> Iterator[Clause]:
 
 
 def source_of(statement: AST) -> Source:
-    """Return where a statement begins."""
+    """Return the file, line and column where a statement begins."""
     begin = statement.location.begin
     return Source(begin.filename, begin.line, begin.column)
 
 
-def written(statement: AST, rules: Loaded | None = None) -> str:
-    """Return a statement on one line, as it is written in its file or in the text of ``rules``."""
+def statement_text(statement: AST, rules: Loaded | None = None) -> str:
+    """Return a statement on one line, as it is written in its ``.lp`` file or in the text of ``rules``.
+
+    If it is from neither, it is returned as clingo prints it.
+    """
     begin, end = statement.location.begin, statement.location.end
     if isinstance(rules, Stated) and begin.filename == rules.place:
         content = rules.text.encode("utf-8")
@@ -179,13 +194,16 @@ def written(statement: AST, rules: Loaded | None = None) -> str:
     return " ".join(b" ".join(lines).decode("utf-8", "replace").split())
 
 
-def _is_plain(term: AST) -> bool:
-    """Whether a term has no arithmetic, so that its text is its value."""
+def _has_no_operation(term: AST) -> bool:
+    """Whether a term has no binary operation such as ``+``, so that its text is its value."""
     return all(node.ast_type != ASTType.BinaryOperation for node in nodes(term))
 
 
 def value(term: AST, constants: Constants) -> Symbol | None:
-    """Return the value of a term without variables and arithmetic, ``None`` for other terms."""
+    """Return the value of a number, text, word or constant; ``None`` for any other term.
+
+    A number may stand after a minus. A constant whose value is unknown has the value ``None``.
+    """
     if term.ast_type == ASTType.SymbolicTerm:
         symbol: Symbol = term.symbol
         if symbol.type is SymbolType.Function and not symbol.arguments and symbol.name in constants:
@@ -198,14 +216,14 @@ def value(term: AST, constants: Constants) -> Symbol | None:
 
 
 def plain_value(symbol: Symbol) -> str | int | None:
-    """Return the text or number that a symbol is; ``None`` for others, such as words without quotes."""
+    """Return a symbol as number or as text in quotes; ``None`` for others, such as words without quotes."""
     if symbol.type is SymbolType.Number:
         return symbol.number
     return symbol.string if symbol.type is SymbolType.String else None
 
 
 def factors(term: AST) -> list[AST]:
-    """Return the two factors of a product, or a term itself."""
+    """Return the two factors of a product; any other term is returned as the only factor."""
     product = (ASTType.BinaryOperation, BinaryOperator.Multiplication)
     is_product = (term.ast_type, getattr(term, "operator_type", None)) == product
     return [term.left, term.right] if is_product else [term]
@@ -214,12 +232,13 @@ def factors(term: AST) -> list[AST]:
 def constant_values(definitions: Iterable[AST], settings: Sequence[str]) -> dict[str, Symbol | None]:
     """Return the values of constants by name, from ``#const`` statements and settings ``name=value``.
 
-    ``None`` stands for a value that is unknown without clingo.
+    A setting replaces a default value; settings of other names are ignored. ``None`` stands for a value that
+    only clingo can tell, such as one with arithmetic or one that names another constant.
     """
     texts: dict[str, str | None] = {}
     for definition in definitions:
         name = definition.name
-        plain = definition.is_default and name not in texts and _is_plain(definition.value)
+        plain = definition.is_default and name not in texts and _has_no_operation(definition.value)
         texts[name] = str(definition.value) if plain else None
     for setting in settings:
         name, _, text = setting.partition("=")
@@ -238,14 +257,21 @@ def constant_values(definitions: Iterable[AST], settings: Sequence[str]) -> dict
     return values
 
 
-def variables(*pieces: AST) -> Iterator[str]:
-    """Return the names of the variables in pieces of a rule, without the anonymous ``_``."""
-    nodes_inside = (node for piece in pieces for node in nodes(piece))
-    return (node.name for node in nodes_inside if node.ast_type == ASTType.Variable and node.name != "_")
+def variables(*syntax_nodes: AST) -> Iterator[str]:
+    """Yield the names of the variables in nodes of a syntax tree, each as often as it occurs.
+
+    The anonymous variable ``_`` is left out.
+    """
+    inner_nodes = (node for syntax_node in syntax_nodes for node in nodes(syntax_node))
+    return (node.name for node in inner_nodes if node.ast_type == ASTType.Variable and node.name != "_")
 
 
 def global_variables(conjunct: Conjunct) -> Iterator[str]:
-    """Return the global variables of a conjunct; variables in conditions may be local."""
+    """Yield the names of the global variables of a conjunct.
+
+    They are the variables of a literal, a comparison or a guard. Those in the elements of an aggregate and in
+    a conditional literal may be local, and are left out.
+    """
     if isinstance(conjunct, Literal):
         return variables(*conjunct.arguments)
     if isinstance(conjunct, Test):
@@ -256,7 +282,7 @@ def global_variables(conjunct: Conjunct) -> Iterator[str]:
 
 
 def literals(conjuncts: Iterable[Conjunct]) -> Iterator[Literal]:
-    """Return all literals in conjuncts, including those in conditions and aggregates."""
+    """Yield all literals in conjuncts, including those in conditions and aggregates."""
     for conjunct in conjuncts:
         if isinstance(conjunct, Literal):
             yield conjunct
@@ -268,16 +294,21 @@ def literals(conjuncts: Iterable[Conjunct]) -> Iterator[Literal]:
 
 
 class _Reader:
-    """Reader of rules, under known values of constants."""
+    """Reader that turns the syntax trees of bodies and heads into conjuncts and literals.
+
+    ``constants`` are the values that it uses to evaluate comparisons.
+    """
 
     def __init__(self, constants: Constants) -> None:
+        """Keep the values of constants."""
         self._constants = constants
 
     def conjuncts(self, body: Iterable[AST]) -> tuple[Conjunct, ...]:
+        """Return the conjuncts of a body or condition, in order."""
         return tuple(map(self.conjunct, body))
 
     def conjunct(self, node: AST) -> Conjunct:
-        """Return a part of a body: an aggregate, a conditional literal or a literal."""
+        """Return a node of a body as a conjunct: an aggregate, a conditional literal, or another one."""
         if node.ast_type == ASTType.ConditionalLiteral:
             literal = self.literal(node.literal)
             return Conditional(literal, self.conjuncts(node.condition), str(node))
@@ -288,11 +319,11 @@ class _Reader:
             return self._aggregate(node)
         return self.literal(node)
 
-    def literal(self, node: AST) -> Literal | Test | Strange:
-        """Return a literal over a predicate, a comparison or a constant; ``Strange`` for anything else."""
+    def literal(self, node: AST) -> Literal | Test | UnknownConjunct:
+        """Return a literal over a predicate, a test, or ``UnknownConjunct`` for anything else."""
         text = str(node)
         if node.ast_type != ASTType.Literal:
-            return Strange(text)
+            return UnknownConjunct(text)
         atom, negations = node.atom, int(node.sign)
         if atom.ast_type == ASTType.SymbolicAtom:
             symbol, sign = atom.symbol, ""
@@ -306,10 +337,10 @@ class _Reader:
         elif atom.ast_type == ASTType.Comparison:
             holds = self._compare(atom)
             return Test(node, None if holds is None else holds != (negations == 1), text)
-        return Strange(text)
+        return UnknownConjunct(text)
 
     def _compare(self, comparison: AST) -> bool | None:
-        """Return whether a comparison holds, ``None`` where a term has no known value."""
+        """Return whether a chain of comparisons holds; ``None`` if the value of a term is unknown."""
         values = [
             value(term, self._constants) for term in (comparison.term, *(g.term for g in comparison.guards))
         ]
@@ -318,12 +349,16 @@ class _Reader:
         symbols = [symbol for symbol in values if symbol is not None]
         operators = [guard.comparison for guard in comparison.guards]
         return all(
-            compared(first, operator, second)
+            comparison_holds(first, operator, second)
             for first, operator, second in zip(symbols, operators, symbols[1:], strict=False)
         )
 
     def _aggregate(self, node: AST) -> Aggregate:
-        """Return an aggregate; its left guard is turned around, so that each guard stands on the right."""
+        """Return an aggregate of a body.
+
+        A left guard is turned around, so that each guard stands on the right. ``{ a; b }`` becomes a count of
+        elements without terms.
+        """
         atom = node.atom
         guards = []
         if atom.left_guard is not None:
@@ -342,21 +377,21 @@ class _Reader:
             elements = tuple(
                 Element(tuple(element.terms), self.conjuncts(element.condition)) for element in atom.elements
             )
-        holds = [self._beyond(function, guard) for guard in guards]
-        sure = False if False in holds else True if holds and all(holds) else None
-        if sure is not None and node.sign == Sign.Negation:
-            sure = not sure
-        return Aggregate(function, elements, tuple(guards), int(node.sign), sure, str(node))
+        guard_values = [self._holds_at_infinity(function, guard) for guard in guards]
+        holds = False if False in guard_values else True if guard_values and all(guard_values) else None
+        if holds is not None and node.sign == Sign.Negation:
+            holds = not holds
+        return Aggregate(function, elements, tuple(guards), int(node.sign), holds, str(node))
 
-    def _beyond(self, function: AggregateFunction, guard: Guard) -> bool | None:
-        """Return whether a sum or count satisfies a guard ``#inf`` or ``#sup``, ``None`` for other guards."""
+    def _holds_at_infinity(self, function: AggregateFunction, guard: Guard) -> bool | None:
+        """Return whether a sum or count satisfies a guard ``#inf`` or ``#sup``; ``None`` for other guards."""
         bound = value(guard.term, self._constants)
-        if function not in _NUMBERS or bound not in (Infimum, Supremum):
+        if function not in _NUMBER_AGGREGATES or bound not in (Infimum, Supremum):
             return None
-        return compared(Number(0), guard.comparison, bound)
+        return comparison_holds(Number(0), guard.comparison, bound)
 
     def head_atoms(self, head: AST) -> Iterator[tuple[Literal, tuple[Conjunct, ...]]]:
-        """Return the atoms of a head that is not plain, with their conditions."""
+        """Yield the atoms of a head that is not plain, each with its condition; ``not`` is dropped."""
         if head.ast_type == ASTType.Literal:
             atom = self.literal(head)
             if isinstance(atom, Literal):
@@ -369,6 +404,6 @@ class _Reader:
                     yield atom._replace(negations=0), self.conjuncts(conditional.condition)
 
 
-def compared(first: Symbol, comparison: int, second: Symbol) -> bool:
+def comparison_holds(first: Symbol, comparison: int, second: Symbol) -> bool:
     """Return whether a comparison of two values holds, in clingo's order: numbers, then words, then texts."""
-    return bool(_COMPARING[ComparisonOperator(comparison)](first, second))
+    return bool(_OPERATORS[ComparisonOperator(comparison)](first, second))

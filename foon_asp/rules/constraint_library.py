@@ -1,4 +1,4 @@
-"""The ready-made constraints, as described in their files."""
+"""The ready-made constraints, as the comments in their files describe them."""
 
 import re
 from pathlib import Path
@@ -11,9 +11,9 @@ _SECTION = re.compile(r"(\w+): +(\S.*)$")
 
 
 class Parameter(NamedTuple):
-    """A constant of a constraint: its name, its default as written, and an example from the file.
+    """A ``#const`` of a constraint: its name, its default as written, and an example value from the file.
 
-    The defaults ``""``, ``#sup`` and ``#inf`` stand for "not set".
+    The defaults ``""``, ``#sup`` and ``#inf`` stand for "not set". The example is empty if the file has none.
     """
 
     name: str
@@ -22,7 +22,10 @@ class Parameter(NamedTuple):
 
 
 class LibraryConstraint(NamedTuple):
-    """One file of ``encodings/constraints``: its name, its title, what it demands, its parameters."""
+    """A ready-made constraint: a file of ``encodings/constraints``, and what its comment says.
+
+    ``purpose`` tells what it demands of a tree.
+    """
 
     name: str
     file: Path
@@ -32,12 +35,16 @@ class LibraryConstraint(NamedTuple):
 
 
 def library_constraints() -> list[LibraryConstraint]:
-    """Read the ready-made constraints, in order of name."""
-    return [_read(file) for file in sorted((encodings_folder() / "constraints").glob("*.lp"))]
+    """Return the ready-made constraints, in order of name; their files are read anew."""
+    return [_read_constraint(file) for file in sorted((encodings_folder() / "constraints").glob("*.lp"))]
 
 
-def _read(file: Path) -> LibraryConstraint:
-    """Read the comment at the start of a constraint's file: the title, the purpose and an example call."""
+def _read_constraint(file: Path) -> LibraryConstraint:
+    """Return the ready-made constraint in a file.
+
+    The comment at its start has the title, the purpose and an example call. The parameters are its ``#const``
+    statements.
+    """
     lines = file.read_text(encoding="utf-8").split("\n")
     header = [line.removeprefix("%").strip() for line in lines[: lines.index("")]]
     sections: dict[str, list[str]] = {}

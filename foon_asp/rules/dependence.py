@@ -1,4 +1,4 @@
-"""Monotonicity of predicates in the tree: monotone, antimonotone, both or neither.
+"""Monotonicity of predicates in the units of the tree: monotone, antimonotone, both or neither.
 
 ``available(O)`` holds if O is in the kitchen or a unit of the tree makes O. All units of a tree execute, so
 ``available`` is monotone. A predicate with neither rules nor facts never holds.
@@ -23,7 +23,7 @@ from foon_asp.rules.clause import (
     Guard,
     Literal,
     Signature,
-    Strange,
+    UnknownConjunct,
     factors,
     literals,
     value,
@@ -42,17 +42,23 @@ _UNSURE = {
 _ArgumentPosition = tuple[Signature, int]
 
 
-class Depends(Flag):
-    """Monotonicity of an atom: whether more units can make it true (``GROWS``) or false (``SHRINKS``)."""
+class Monotonicity(Flag):
+    """How the truth of an atom depends on the units of the tree.
+
+    ``GROWS``: more units can make it true, never false.
+    ``SHRINKS``: more units can make it false, never true.
+    ``BOTH``: more units can make it true or false.
+    ``NOT``: it does not depend on them.
+    """
 
     NOT = 0
     GROWS = 1
     SHRINKS = 2
     BOTH = 3
 
-    def negated(self) -> "Depends":
-        """Return the monotonicity of the negation."""
-        swapped = {Depends.GROWS: Depends.SHRINKS, Depends.SHRINKS: Depends.GROWS}
+    def negated(self) -> "Monotonicity":
+        """Return the monotonicity of the negation: ``GROWS`` and ``SHRINKS`` are swapped."""
+        swapped = {Monotonicity.GROWS: Monotonicity.SHRINKS, Monotonicity.SHRINKS: Monotonicity.GROWS}
         return swapped.get(self, self)
 
 
@@ -67,9 +73,11 @@ class Doubt(NamedTuple):
 
 
 class Dependence:
-    """Monotonicity of each predicate of a program, as a fixpoint over its rules.
+    """Monotonicity of each predicate of a program, computed as a fixpoint over its rules.
 
-    ``varied`` are predicates whose facts vary within the question.
+    ``varied``: the predicates whose facts vary within the question; their monotonicity is unknown.
+    ``doubts``: by predicate that rules derive, why its monotonicity is unknown.
+    ``loops``: the predicates with recursion through ``not`` or an aggregate, each with the place of a rule.
     """
 
     def __init__(
@@ -78,57 +86,60 @@ class Dependence:
         """Compute the monotonicity of all predicates, and the reasons why it is unknown for some."""
         self._constants = constants
         self._varied = frozenset(varied)
-        self._depends: dict[Signature, Depends] = {USE: Depends.GROWS, AVAILABLE: Depends.GROWS}
+        self._depends: dict[Signature, Monotonicity] = {
+            USE: Monotonicity.GROWS,
+            AVAILABLE: Monotonicity.GROWS,
+        }
         self.doubts: dict[Signature, Doubt] = {}
         self.loops: dict[Signature, Source] = {}  # predicates with recursion through negation or an aggregate
-        self._at_least_0: set[_ArgumentPosition] = set()
+        self._nonnegative: set[_ArgumentPosition] = set()
         self._defined = {atom.signature for clause in program for atom in clause.heads}
-        self._find_numbers(program)
+        self._find_nonnegative(program)
         self._find_doubts(program)
         changed = True
         while changed:
             changed = False
             for clause in program:
                 if clause.head is not None:
-                    before = self.of(clause.head.signature)
+                    before = self.of_predicate(clause.head.signature)
                     after = before | self.of_body(clause.body)
                     changed |= after != before
                     self._depends[clause.head.signature] = after
 
-    def of(self, signature: Signature) -> Depends:
-        """Return the monotonicity of a predicate."""
-        return self._depends.get(signature, Depends.NOT)
+    def of_predicate(self, signature: Signature) -> Monotonicity:
+        """Return the monotonicity of a predicate; ``NOT`` for a predicate of facts."""
+        return self._depends.get(signature, Monotonicity.NOT)
 
-    def of_body(self, conjuncts: Iterable[Conjunct]) -> Depends:
+    def of_body(self, conjuncts: Iterable[Conjunct]) -> Monotonicity:
         """Return the monotonicity of a conjunction."""
-        dependence = Depends.NOT
+        dependence = Monotonicity.NOT
         for conjunct in conjuncts:
             dependence |= self.of_conjunct(conjunct)
         return dependence
 
-    def of_conjunct(self, conjunct: Conjunct) -> Depends:
+    def of_conjunct(self, conjunct: Conjunct) -> Monotonicity:
         """Return the monotonicity of one conjunct of a body."""
         if isinstance(conjunct, Literal):
-            depends = self.of(conjunct.signature)
+            depends = self.of_predicate(conjunct.signature)
             return depends.negated() if conjunct.negations == 1 else depends
         if isinstance(conjunct, Conditional):
             return self.of_conjunct(conjunct.literal) | self.of_body(conjunct.condition).negated()
         if isinstance(conjunct, Aggregate):
             return self._of_aggregate(conjunct)
-        return Depends.BOTH if isinstance(conjunct, Strange) else Depends.NOT
+        return Monotonicity.BOTH if isinstance(conjunct, UnknownConjunct) else Monotonicity.NOT
 
     def doubt(self, conjuncts: Iterable[Conjunct]) -> Doubt | None:
-        """Return why the monotonicity of conjuncts is unknown, ``None`` where it is known."""
+        """Return the first reason why the monotonicity of conjuncts is unknown; ``None`` if it is known."""
         conjuncts = tuple(conjuncts)
         for literal in literals(conjuncts):
-            reason = self.doubts.get(literal.signature) or self._doubt_of(literal.signature)
+            reason = self.doubts.get(literal.signature) or self._doubt_of_predicate(literal.signature)
             if reason:
                 return reason
-        strange = next((conjunct for conjunct in conjuncts if isinstance(conjunct, Strange)), None)
+        strange = next((conjunct for conjunct in conjuncts if isinstance(conjunct, UnknownConjunct)), None)
         return Doubt(f"{strange.text} is nothing that is looked into") if strange else None
 
-    def _doubt_of(self, signature: Signature) -> Doubt | None:
-        """Return why the monotonicity of a predicate without rules is unknown, ``None`` where it is known."""
+    def _doubt_of_predicate(self, signature: Signature) -> Doubt | None:
+        """Return why a predicate's monotonicity is unknown whatever its rules are, else ``None``."""
         name, arity = signature
         if name.startswith("-"):
             return Doubt(f"{name}/{arity} is negated with a minus")
@@ -143,11 +154,14 @@ class Dependence:
         return None
 
     def _find_doubts(self, program: Sequence[Clause]) -> None:
-        """Record for each predicate the first reason why its monotonicity is unknown."""
+        """Fill ``doubts`` as a fixpoint: a doubt about a body passes to the predicates in the head.
+
+        A head that is a choice is a doubt, too. Also fills ``loops``.
+        """
         for clause in program:
             if not clause.plain:
                 for atom in clause.heads:
-                    reason = f"{named(atom.signature)} is left open by a rule whose head is a choice"
+                    reason = f"{predicate_text(atom.signature)} is left open by a rule whose head is a choice"
                     self.doubts.setdefault(atom.signature, Doubt(reason, clause.source))
         self._find_loops(program)
         changed = True
@@ -162,27 +176,31 @@ class Dependence:
                         changed = True
 
     def _find_loops(self, program: Sequence[Clause]) -> None:
-        """Record in ``loops`` the predicates with recursion through ``not`` or an aggregate."""
+        """Fill ``loops``, and give the predicates in it a doubt."""
         reads: defaultdict[Signature, set[Signature]] = defaultdict(set)
-        unclear: list[tuple[Signature, Signature, Source]] = []
+        nonpositive: list[tuple[Signature, Signature, Source]] = []
         for clause in program:
             for head in clause.heads:
-                for read, plainly in _reads(clause.body, clause.plain):
+                for read, plainly in _predicates_read(clause.body, clause.plain):
                     reads[head.signature].add(read)
                     if not plainly:
-                        unclear.append((head.signature, read, clause.source))
-        behind = {signature: _closure(signature, reads) for signature in reads}
-        for head_signature, read, source in unclear:
-            if head_signature not in behind.get(read, ()):
+                        nonpositive.append((head.signature, read, clause.source))
+        sources_of = {signature: _closure(signature, reads) for signature in reads}
+        for head_signature, read, source in nonpositive:
+            if head_signature not in sources_of.get(read, ()):
                 continue
-            for looped in behind[read]:
-                if head_signature in behind.get(looped, ()):
+            for looped in sources_of[read]:
+                if head_signature in sources_of.get(looped, ()):
                     self.loops.setdefault(looped, source)
-                    reason = f"{named(looped)} is derived from itself through `not` or an aggregate"
+                    reason = f"{predicate_text(looped)} is derived from itself through `not` or an aggregate"
                     self.doubts.setdefault(looped, Doubt(reason, source))
 
-    def _find_numbers(self, program: Sequence[Clause]) -> None:
-        """Find the arguments of predicates that are never negative numbers, as a greatest fixpoint."""
+    def _find_nonnegative(self, program: Sequence[Clause]) -> None:
+        """Set ``_nonnegative`` to the predicate arguments that are never negative numbers.
+
+        This is a greatest fixpoint: an argument is dropped as soon as some rule may derive a negative number
+        for it.
+        """
         facts = {
             (signature, position) for signature, subjects in SUBJECTS.items() for position in subjects.numbers
         }
@@ -192,7 +210,7 @@ class Dependence:
             for head in clause.heads
             for position in range(head.signature[1])
         }
-        self._at_least_0 = facts | derived
+        self._nonnegative = facts | derived
         changed = True
         while changed:
             maybe_negative = {
@@ -200,23 +218,24 @@ class Dependence:
                 for clause in program
                 if clause.head is not None
                 for position, term in enumerate(clause.head.arguments)
-                if not self._is_at_least_0(term, clause.body)
+                if not self._is_nonnegative(term, clause.body)
             }
-            changed = not maybe_negative.isdisjoint(self._at_least_0)
-            self._at_least_0 -= maybe_negative
+            changed = not maybe_negative.isdisjoint(self._nonnegative)
+            self._nonnegative -= maybe_negative
 
-    def _is_at_least_0(self, term: AST, condition: Iterable[Conjunct]) -> bool:
-        """Whether a term cannot be a negative number where the condition holds.
+    def _is_nonnegative(self, term: AST, condition: Iterable[Conjunct]) -> bool:
+        """Whether a term is never a negative number where the condition holds.
 
-        The term may be a product with a number of executions (of ``times/2``), which is never negative.
+        A product counts as nonnegative only if one factor is a number of executions, as ``N`` in
+        ``times(U,N)``.
         """
         condition = tuple(condition)
         product = factors(term)
         if len(product) > 1:
-            counts = [str(literal.arguments[1]) for literal in condition if _counts_executions(literal)]
+            counts = [str(literal.arguments[1]) for literal in condition if _is_times_atom(literal)]
             return any(
-                str(count) in counts and self._is_at_least_0(other, condition)
-                for count, other in (product, product[::-1])
+                str(count) in counts and self._is_nonnegative(weight, condition)
+                for count, weight in (product, product[::-1])
             )
         symbol = value(term, self._constants)
         if symbol is not None:
@@ -225,44 +244,47 @@ class Dependence:
             isinstance(conjunct, Literal)
             and conjunct.positive
             and any(
-                (conjunct.signature, position) in self._at_least_0 and str(argument) == str(term)
+                (conjunct.signature, position) in self._nonnegative and str(argument) == str(term)
                 for position, argument in enumerate(conjunct.arguments)
             )
             for conjunct in condition
         )
 
-    def _of_aggregate(self, aggregate: Aggregate) -> Depends:
+    def _of_aggregate(self, aggregate: Aggregate) -> Monotonicity:
         """Return the monotonicity of an aggregate."""
-        conditions = Depends.NOT
+        conditions = Monotonicity.NOT
         for element in aggregate.elements:
             conditions |= self.of_body(element.condition)
-        if conditions is Depends.NOT or aggregate.holds is not None:
-            return Depends.NOT
-        dependence = Depends.NOT
+        if conditions is Monotonicity.NOT or aggregate.holds is not None:
+            return Monotonicity.NOT
+        dependence = Monotonicity.NOT
         for guard in aggregate.guards:
             dependence |= self._of_guard(aggregate, guard, conditions)
         return dependence.negated() if aggregate.negations == 1 else dependence
 
-    def _of_guard(self, aggregate: Aggregate, guard: Guard, conditions: Depends) -> Depends:
-        """Return the monotonicity of one guard of an aggregate from that of its conditions."""
+    def _of_guard(self, aggregate: Aggregate, guard: Guard, conditions: Monotonicity) -> Monotonicity:
+        """Return the monotonicity of an aggregate with one of its guards.
+
+        ``conditions`` is the monotonicity of the conditions of its elements.
+        """
         operator, function = guard.comparison, aggregate.function
         if operator in {ComparisonOperator.Equal, ComparisonOperator.NotEqual}:
-            if operator is ComparisonOperator.Equal and self._is_zero(aggregate, guard):
+            if operator is ComparisonOperator.Equal and self._is_count_of_zero(aggregate, guard):
                 return conditions.negated()
-            return Depends.BOTH
+            return Monotonicity.BOTH
         if function is AggregateFunction.Sum and not all(
-            self._is_at_least_0(element.terms[0], element.condition)
+            self._is_nonnegative(element.terms[0], element.condition)
             for element in aggregate.elements
             if element.terms
         ):
-            return Depends.BOTH
+            return Monotonicity.BOTH
         upwards = operator in {ComparisonOperator.GreaterThan, ComparisonOperator.GreaterEqual}
         if function is AggregateFunction.Min:
             upwards = not upwards
         return conditions if upwards else conditions.negated()
 
-    def _is_zero(self, aggregate: Aggregate, guard: Guard) -> bool:
-        """Whether a guard is ``#count { ... } = 0``."""
+    def _is_count_of_zero(self, aggregate: Aggregate, guard: Guard) -> bool:
+        """Whether an aggregate is a ``#count`` and the bound in its guard is 0."""
         bound = value(guard.term, self._constants)
         return (
             aggregate.function is AggregateFunction.Count
@@ -272,37 +294,39 @@ class Dependence:
         )
 
 
-def _counts_executions(conjunct: Conjunct) -> TypeGuard[Literal]:
+def _is_times_atom(conjunct: Conjunct) -> TypeGuard[Literal]:
+    """Whether a conjunct is an atom ``times(U,N)`` without ``not``."""
     return isinstance(conjunct, Literal) and conjunct.positive and conjunct.signature == TIMES
 
 
-def named(signature: Signature) -> str:
-    """Write a predicate with its arity."""
+def predicate_text(signature: Signature) -> str:
+    """Return a predicate with its arity, such as ``use/1``."""
     return f"{signature[0]}/{signature[1]}"
 
 
-def _reads(conjuncts: Iterable[Conjunct], plainly: bool) -> Iterator[tuple[Signature, bool]]:
-    """Return the predicates that a body reads, each with a flag.
+def _predicates_read(conjuncts: Iterable[Conjunct], plainly: bool) -> Iterator[tuple[Signature, bool]]:
+    """Yield the predicates that a body reads, each with a flag.
 
-    The flag is ``False`` if the predicate is negated, aggregated or in a condition, or if not ``plainly``.
+    The flag is ``True`` for a positive literal. It is ``False`` if the predicate is negated, or stands in an
+    aggregate or a condition, or if ``plainly`` is ``False``.
     """
     for conjunct in conjuncts:
         if isinstance(conjunct, Literal):
             yield conjunct.signature, plainly and conjunct.positive
         elif isinstance(conjunct, Conditional):
-            yield from _reads((conjunct.literal,), plainly)
-            yield from _reads(conjunct.condition, plainly=False)
+            yield from _predicates_read((conjunct.literal,), plainly)
+            yield from _predicates_read(conjunct.condition, plainly=False)
         elif isinstance(conjunct, Aggregate):
             for element in conjunct.elements:
-                yield from _reads(element.condition, plainly=False)
+                yield from _predicates_read(element.condition, plainly=False)
 
 
 def _closure(start: Signature, reads: Mapping[Signature, set[Signature]]) -> set[Signature]:
     """Return a predicate and all predicates that it is derived from, directly or through others."""
     closure, stack = {start}, [start]
     while stack:
-        for read in reads.get(stack.pop(), ()):
-            if read not in closure:
-                closure.add(read)
-                stack.append(read)
+        for source in reads.get(stack.pop(), ()):
+            if source not in closure:
+                closure.add(source)
+                stack.append(source)
     return closure

@@ -7,7 +7,7 @@ from foon_asp.rules.clause import Signature
 
 
 class Subject(StrEnum):
-    """The kind of an argument."""
+    """The kind of thing that an argument of a fact stands for."""
 
     UNIT = "unit"
     OBJECT = "object node"
@@ -15,11 +15,11 @@ class Subject(StrEnum):
 
 
 class Subjects(NamedTuple):
-    """The subjects among the arguments of a fact, by position.
+    """The arguments of a fact that stand for a unit, an object node or a label, by position from 0.
 
-    ``about``: the subjects that the fact is about. ``leads_to``: further subjects; they are in the tree if
-    the subjects in ``about`` are. ``numbers``: the positions of numbers that are never negative. Arguments at
-    other positions are names or numbers.
+    ``about``: the fact describes these. ``leads_to``: if all in ``about`` are in the tree, these are, too.
+    ``numbers``: the positions of numbers that are never negative. Arguments at other positions are names or
+    numbers.
     """
 
     about: dict[int, Subject]
@@ -55,6 +55,11 @@ SUBJECTS: dict[Signature, Subjects] = {
     ("rate", 2): _NUMBER_SUBJECTS,
     ("price", 2): _NUMBER_SUBJECTS,
 }
+# Predicates that a tree decides.
+# Predicates that a tree decides.
+# Predicates that a tree decides.
+# Predicates that a tree decides.
+# Predicates that a tree decides.
 DECISIONS: dict[Signature, Subjects] = {
     ("use", 1): Subjects({}, {0: Subject.UNIT}),
     ("available", 1): _OF_OBJECT,

@@ -1,4 +1,4 @@
-"""Values in the facts of a question: whether some fact matches constants, and the most similar texts."""
+"""Search in the facts of a question: whether a fact matches constants, and which text is most similar."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import islice
@@ -16,7 +16,7 @@ Value = str | int | None
 
 
 class Columns(NamedTuple):
-    """The argument positions of a fact by type: unit numbers, object node numbers, other numbers, texts."""
+    """Argument positions of a predicate by type: unit numbers, object node numbers, other numbers, texts."""
 
     units: tuple[int, ...] = ()
     objects: tuple[int, ...] = ()
@@ -62,7 +62,7 @@ LISTED_FACTS: Final[Mapping[tuple[str, int], tuple[str, ...]]] = {
 
 
 class _NetworkPart(NamedTuple):
-    """The part of a network that is searched for texts."""
+    """The names of a network, or of its first units and nodes, that are searched for texts."""
 
     motions: Iterable[str]
     sources: Iterable[Sequence[Source]]
@@ -84,10 +84,11 @@ _TEXTS: Final[Mapping[str, Callable[[_NetworkPart], Iterable[Names]]]] = {
 }
 
 
-def misplaced(columns: Columns, values: Mapping[int, Value]) -> int | None:
-    """Return the position of a value of the wrong type (a text for a number, or the other way round).
+def position_of_wrong_type(columns: Columns, values: Mapping[int, Value]) -> int | None:
+    """Return the first position whose value has the wrong type; ``None`` if there is none.
 
-    ``None`` where there is no such position.
+    A text has the wrong type where a number is expected, a number where a text is. ``None`` as a value always
+    has.
     """
     for position, value in values.items():
         if not isinstance(value, str if position in columns.texts else int):
@@ -96,43 +97,46 @@ def misplaced(columns: Columns, values: Mapping[int, Value]) -> int | None:
 
 
 class FactValues:
-    """Facts about the whole network of a question, not only about the part that goals can need.
+    """Search in the facts about the whole network of a question, not only in the part that goals can need.
 
     In a store, the part in memory is searched first, then all units and nodes, one by one. The search reads
-    at most ``max_read`` units and as many nodes; a name that is not found among these counts as known.
+    at most ``max_read`` units and as many nodes. If there are more, a name that is not among these counts as
+    known.
     """
 
     max_read: ClassVar[int] = 200_000
 
     def __init__(self, problem: Problem) -> None:
+        """Prepare a search in the facts of a problem; nothing is read yet."""
         self._problem = problem
         self._lookups_left = 20
 
     def matches(self, name: str, columns: Columns, values: Mapping[int, Value]) -> bool:
-        """Whether some fact may have ``values``, given by argument position.
+        """Whether some fact of the predicate ``name`` may have ``values``, given by argument position.
 
-        One fact must have all the texts. The number of a unit or node need only exist.
+        One fact must have all the texts. The number of a unit or node need only exist, and any other number
+        matches. A value of the wrong type matches nothing.
         """
-        if misplaced(columns, values) is not None:
+        if position_of_wrong_type(columns, values) is not None:
             return False
         network = self._problem.network
-        for size, numbers, places in (
+        for size, numbers, positions in (
             (len(network), network.unit_numbers, columns.units),
             (len(network.objects), network.object_numbers, columns.objects),
         ):
             if not numbers and any(
-                values[position] not in range(size) for position in places if position in values
+                values[position] not in range(size) for position in positions if position in values
             ):
                 return False
         wanted = {
             number: values[position] for number, position in enumerate(columns.texts) if position in values
         }
-        if not wanted or self._has(name, wanted, network):
+        if not wanted or self._has_fact(name, wanted, network):
             return True
-        return bool(network.object_numbers) and self._may_have_beyond(name, wanted)
+        return bool(network.object_numbers) and self._may_have_fact_outside_memory(name, wanted)
 
     def nearest(self, name: str, columns: Columns, words: Mapping[int, str]) -> dict[int, str] | None:
-        """Find the fact whose texts are spelled most like ``words``; return its texts, by argument position.
+        """Return the texts of the fact spelled most like ``words``; both are given by argument position.
 
         ``None`` if no text is similar, and for every call after the twentieth.
         """
@@ -143,11 +147,13 @@ class FactValues:
             number: words[position] for number, position in enumerate(columns.texts) if position in words
         }
         networks = {
-            id(network): network for network in (self._problem.network, self._whole) if network is not None
+            id(network): network
+            for network in (self._problem.network, self._whole_network)
+            if network is not None
         }
         spelt: dict[str, Names] = {}
         for network in networks.values():
-            for row in self._rows(name, network):
+            for row in self._fact_texts(name, network):
                 spelt.setdefault("\n".join(row[number] for number in wanted), row)
         word = "\n".join(wanted.values())
         matches = [word] if word in spelt else near_labels(word, sorted(spelt), 1)
@@ -155,48 +161,55 @@ class FactValues:
             return None
         return {columns.texts[number]: spelt[matches[0]][number] for number in wanted}
 
-    def _rows(self, name: str, network: Network) -> Iterable[Names]:
+    def _fact_texts(self, name: str, network: Network) -> Iterable[Names]:
+        """Return the texts of each fact of a predicate in a network; of a store, only the first facts."""
         limit = self.max_read if _is_read_one_by_one(network) else None
         sources, objects = islice(network.sources, limit), islice(network.objects, limit)
         return _TEXTS[name](_NetworkPart(network.different_motions, sources, objects, self._problem.utensils))
 
-    def _has(self, name: str, wanted: Mapping[int, Value], network: Network) -> bool:
+    def _has_fact(self, name: str, wanted: Mapping[int, Value], network: Network) -> bool:
+        """Whether a fact of a predicate has the ``wanted`` texts, given by index among its texts."""
         return any(
-            all(row[number] == value for number, value in wanted.items()) for row in self._rows(name, network)
+            all(row[number] == value for number, value in wanted.items())
+            for row in self._fact_texts(name, network)
         )
 
     @property
-    def _whole(self) -> Network | None:
-        """The whole network of a store, ``None`` where it is unknown."""
+    def _whole_network(self) -> Network | None:
+        """The whole network of a store; ``None`` if it is unknown."""
         origin = self._problem.origin
         return None if origin is None else origin.whole_network
 
-    def _may_have_beyond(self, name: str, wanted: Mapping[int, Value]) -> bool:
+    def _may_have_fact_outside_memory(self, name: str, wanted: Mapping[int, Value]) -> bool:
         """Whether the part of a store that is not in memory may have a fact with the ``wanted`` texts."""
-        whole = self._whole
-        if whole is None or self._has(name, wanted, whole):
+        network = self._whole_network
+        if network is None or self._has_fact(name, wanted, network):
             return True
-        is_cut = _is_read_one_by_one(whole) and max(len(whole), len(whole.objects)) > self.max_read
+        is_cut = _is_read_one_by_one(network) and max(len(network), len(network.objects)) > self.max_read
         return is_cut and name not in {"motion", "utensil"}
 
 
-def unknown_text(facts: Sequence[str], word: str, meant: str | None) -> str:
-    """Return a message about a name that occurs in no fact, with the similar name that may be meant."""
+def unknown_text_message(facts: Sequence[str], word: str, meant: str | None) -> str:
+    """Return the message that no fact of the predicates ``facts`` has the text ``word``.
+
+    It suggests ``meant`` as the intended name, unless this is ``None``.
+    """
     text = f"nothing in this network has the {' or '.join(facts)} {quote(word)}"
     return text if meant is None else f"{text}; did you mean {quote(meant)}?"
 
 
 def nearest_text(facts: Sequence[str], word: str, values: FactValues) -> str | None:
-    """Return the text in facts of the predicates that is most similar to a word; ``None`` if none is."""
+    """Return the text most similar to a word in facts of the predicates ``facts``; ``None`` if none is."""
     nearest = [values.nearest(fact, COLUMNS[fact, 2], {1: word}) for fact in facts]
     best = near_labels(word, sorted({match[1] for match in nearest if match is not None}), 1)
     return best[0] if best else None
 
 
 def has_text(facts: Sequence[str], word: str, values: FactValues) -> bool:
-    """Whether a fact of one of the predicates has the text ``word``."""
+    """Whether a fact of one of the predicates ``facts`` has the text ``word``."""
     return any(values.matches(fact, COLUMNS[fact, 2], {1: word}) for fact in facts)
 
 
 def _is_read_one_by_one(network: Network) -> bool:
+    """Whether the nodes of a network are read from a store, not kept in memory."""
     return not isinstance(network.objects, tuple)

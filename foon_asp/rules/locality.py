@@ -1,11 +1,11 @@
 """Locality of rules: whether they read facts about the tree alone, its units, object nodes and goals.
 
-A rule is local if its truth for a tree stays the same without the facts of units outside the tree and of
-object nodes that only such units have. So each fact that a local rule reads is about a subject that is known
-to be in the tree. In ``use(U)``, the unit U is in the tree. If U is in the tree, so is the object node O in
-``input(U,O)``. If O is in the tree, so is the label L in ``label(O,L)``. The node O in ``goal(O)`` always is
-in the tree. The arguments of an auxiliary predicate may be subjects: ``tainted(O) :- label(O,"nut").`` reads
-facts about O only.
+A rule is local if its truth for a tree does not depend on facts outside the tree. They are facts of units
+outside the tree, and of object nodes that only such units have. So each fact that a local rule reads is about
+a subject that is known to be in the tree. In ``use(U)``, the unit U is in the tree. If U is in the tree, so
+is the object node O in ``input(U,O)``. If O is in the tree, so is the label L in ``label(O,L)``. The node O
+in ``goal(O)`` always is in the tree. The arguments of an auxiliary predicate may be subjects: ``tainted(O) :-
+label(O,"nut").`` reads facts about O only.
 """
 
 from collections import defaultdict
@@ -15,7 +15,15 @@ from typing import NamedTuple
 from clingo.ast import AST, ASTType
 
 from foon_asp.network import Source
-from foon_asp.rules.clause import Aggregate, Clause, Conditional, Conjunct, Literal, Signature, Strange
+from foon_asp.rules.clause import (
+    Aggregate,
+    Clause,
+    Conditional,
+    Conjunct,
+    Literal,
+    Signature,
+    UnknownConjunct,
+)
 from foon_asp.rules.dependence import Dependence
 from foon_asp.rules.fact_subject import DECISIONS, SUBJECTS, Subject
 
@@ -24,14 +32,14 @@ _TreeTerms = dict[str, set[Subject]]  # by term: what it is known to stand for i
 
 
 class Nonlocality(NamedTuple):
-    """The reason why a rule is not local, and its place."""
+    """The reason why a rule is not local, and the place of that rule."""
 
     reason: str
     source: Source
 
 
 class Locality:
-    """Locality of each rule of a program, as a fixpoint over its auxiliary predicates."""
+    """Locality of each rule of a program, computed as a fixpoint over its auxiliary predicates."""
 
     def __init__(self, program: Sequence[Clause], dependence: Dependence) -> None:
         """Find the locality of all predicates that the clauses of a program derive."""
@@ -40,28 +48,32 @@ class Locality:
         for clause in program:
             for head in clause.heads:
                 self._rules[head.signature].append(clause)
-        self._leads_to = self._find_leads()
+        self._leads_to = self._find_leads_to()
         # of auxiliary predicates: what their arguments have to be in the tree, and which are not local at all
         self._about: dict[Signature, dict[int, Subject]] = {signature: {} for signature in self._rules}
         self._nonlocal: dict[Signature, Nonlocality] = {}
-        self._find_abouts(program)
+        self._find_about_arguments(program)
 
     def nonlocality(self, clause: Clause) -> Nonlocality | None:
-        """Return why a rule is not local, ``None`` where it is."""
+        """Return why a rule is not local; ``None`` if it is local."""
         if any(atom.signature[0].startswith("-") for atom in clause.heads):
             return Nonlocality(
                 "an atom with a minus rules out the one without, wherever that is", clause.source
             )
         tree_terms = self._tree_terms(clause.body)
-        lacking = self._lacking(clause.body, tree_terms, clause.source)
-        for atom, condition in clause.others:
-            lacking = lacking or self._lacking(
+        lacking = self._lacking_term(clause.body, tree_terms, clause.source)
+        for atom, condition in clause.head_elements:
+            lacking = lacking or self._lacking_term(
                 (atom, *condition), self._tree_terms(condition, tree_terms), clause.source
             )
         return lacking.nonlocality if lacking else None
 
-    def _find_leads(self) -> dict[Signature, dict[int, set[Subject]]]:
-        """Return the subjects of the arguments of auxiliary predicates that are always in the tree."""
+    def _find_leads_to(self) -> dict[Signature, dict[int, set[Subject]]]:
+        """Find the arguments of auxiliary predicates that are in the tree whenever an atom holds.
+
+        Return the subjects that each argument stands for then, by predicate and position. They are the
+        greatest fixpoint over the rules. The result is also set as ``_leads_to``.
+        """
         leads = {
             signature: {position: set(Subject) for position in range(signature[1])}
             for signature in self._rules
@@ -72,7 +84,7 @@ class Locality:
             changed = False
             for signature, clauses in self._rules.items():
                 for clause in clauses:
-                    for atom, condition in ((clause.head, ()), *clause.others):
+                    for atom, condition in ((clause.head, ()), *clause.head_elements):
                         if atom is None or atom.signature != signature:
                             continue
                         tree_terms = self._tree_terms(condition, self._tree_terms(clause.body))
@@ -82,13 +94,17 @@ class Locality:
                             leads[signature][position] = subjects
         return leads
 
-    def _find_abouts(self, program: Sequence[Clause]) -> None:
-        """Find the arguments of auxiliary predicates that must be in the tree; a rule is local only then."""
+    def _find_about_arguments(self, program: Sequence[Clause]) -> None:
+        """Fill ``_about`` and ``_nonlocal`` for all auxiliary predicates, as a fixpoint.
+
+        ``_about`` gets the arguments that have to be in the tree, so that the rules for a predicate are
+        local. ``_nonlocal`` gets the predicates with a rule that is not local whatever their arguments are.
+        """
         changed = True
         while changed:
             changed = False
             for clause in program:
-                if clause.constraint:
+                if clause.is_constraint:
                     continue
                 heads = clause.heads
                 loops = any(head.signature in self._dependence.loops for head in heads)
@@ -103,10 +119,13 @@ class Locality:
                         changed |= self._mark_nonlocal(head.signature, nonlocality)
                 else:
                     assert clause.head is not None
-                    changed |= self._find_about(clause, clause.head)
+                    changed |= self._add_about_arguments(clause, clause.head)
 
-    def _find_about(self, clause: Clause, head: Literal) -> bool:
-        """Find head arguments that must be in the tree to make a rule local; return whether any is new."""
+    def _add_about_arguments(self, clause: Clause, head: Literal) -> bool:
+        """Add the head arguments to ``_about`` that have to be in the tree so that a rule is local.
+
+        If that cannot make the rule local, mark its predicate as not local. Return whether anything changed.
+        """
         changed = False
         while head.signature not in self._nonlocal:
             about = self._about[head.signature]
@@ -114,19 +133,21 @@ class Locality:
             for position, subject in about.items():
                 if _has_one_value(head.arguments[position]):
                     tree_terms.setdefault(str(head.arguments[position]), set()).add(subject)
-            lacking = self._lacking(clause.body, self._tree_terms(clause.body, tree_terms), clause.source)
+            lacking = self._lacking_term(
+                clause.body, self._tree_terms(clause.body, tree_terms), clause.source
+            )
             if lacking is None:
                 return changed
             changed = True
-            places = [p for p, term in enumerate(head.arguments) if str(term) == lacking.term]
-            if places and places[0] not in about:
-                about[places[0]] = lacking.subject
+            positions = [p for p, term in enumerate(head.arguments) if str(term) == lacking.term]
+            if positions and positions[0] not in about:
+                about[positions[0]] = lacking.subject
             else:
                 self._mark_nonlocal(head.signature, lacking.nonlocality)
         return changed
 
     def _mark_nonlocal(self, signature: Signature, nonlocality: Nonlocality) -> bool:
-        """Record why rules for a predicate are not local; return whether that is new."""
+        """Record why a predicate is not local, unless a reason is known; return whether it is the first."""
         if signature in self._nonlocal:
             return False
         self._nonlocal[signature] = nonlocality
@@ -135,7 +156,7 @@ class Locality:
     def _tree_terms(
         self, conjuncts: Iterable[Conjunct], before: Mapping[str, set[Subject]] | None = None
     ) -> _TreeTerms:
-        """Return the terms that are in the tree wherever the conjuncts hold, as text, with their subjects.
+        """Return what terms stand for in the tree wherever the conjuncts hold: subjects by term, as text.
 
         ``before`` has terms that are known to be in the tree; they are in the result, too.
         """
@@ -153,7 +174,7 @@ class Locality:
         return tree_terms
 
     def _led_arguments(self, literal: Literal, tree_terms: _TreeTerms) -> list[tuple[int, Subject]]:
-        """Return the arguments that are in the tree if a literal holds, as positions with subjects.
+        """Return the arguments of a literal that are in the tree if it holds: positions with subjects.
 
         ``tree_terms`` has the terms that are known to be in the tree.
         """
@@ -168,64 +189,74 @@ class Locality:
             return []
         return list(facts.leads_to.items())
 
-    def _lacking(
+    def _lacking_term(
         self, conjuncts: Iterable[Conjunct], tree_terms: _TreeTerms, source: Source
-    ) -> "_Lacking | None":
-        """Return the first term that has to be in the tree but may be outside; ``None`` if there is none."""
+    ) -> "_LackingTerm | None":
+        """Return the first term that has to be in the tree but may be outside; ``None`` if there is none.
+
+        ``tree_terms`` has the terms that are known to be in the tree.
+        """
         for conjunct in conjuncts:
-            lacking = self._lacking_in(conjunct, tree_terms, source)
+            lacking = self._lacking_term_in_conjunct(conjunct, tree_terms, source)
             if lacking:
                 return lacking
         return None
 
-    def _lacking_in(self, conjunct: Conjunct, tree_terms: _TreeTerms, source: Source) -> "_Lacking | None":
-        """Return the reason why a conjunct is not local, with its term; ``None`` for a local conjunct."""
+    def _lacking_term_in_conjunct(
+        self, conjunct: Conjunct, tree_terms: _TreeTerms, source: Source
+    ) -> "_LackingTerm | None":
+        """Return the first term of a conjunct that must be in the tree but may be outside, else ``None``."""
         if isinstance(conjunct, Literal):
-            return self._lacking_of(conjunct, tree_terms, source)
+            return self._lacking_term_in_literal(conjunct, tree_terms, source)
         if isinstance(conjunct, Conditional):
             # it matters only where its condition holds and its literal does not
-            against = conjunct.literal
-            if isinstance(against, Literal) and against.negations == 1:
-                against = against._replace(negations=0)
-                met = self._tree_terms((against, *conjunct.condition), tree_terms)
+            literal = conjunct.literal
+            if isinstance(literal, Literal) and literal.negations == 1:
+                atom = literal._replace(negations=0)
+                inner_terms = self._tree_terms((atom, *conjunct.condition), tree_terms)
             else:
-                met = self._tree_terms(conjunct.condition, tree_terms)
-            return self._lacking((conjunct.literal, *conjunct.condition), met, source)
+                inner_terms = self._tree_terms(conjunct.condition, tree_terms)
+            return self._lacking_term((conjunct.literal, *conjunct.condition), inner_terms, source)
         if isinstance(conjunct, Aggregate):
             for element in conjunct.elements:
-                met = self._tree_terms(element.condition, tree_terms)
-                lacking = self._lacking(element.condition, met, source)
+                inner_terms = self._tree_terms(element.condition, tree_terms)
+                lacking = self._lacking_term(element.condition, inner_terms, source)
                 if lacking:
                     return lacking
-        if isinstance(conjunct, Strange):
-            return _Lacking(
+        if isinstance(conjunct, UnknownConjunct):
+            return _LackingTerm(
                 "", Subject.UNIT, Nonlocality(f"{conjunct.text} is nothing that is looked into", source)
             )
         return None
 
-    def _lacking_of(self, literal: Literal, tree_terms: _TreeTerms, source: Source) -> "_Lacking | None":
-        """Return the reason why a literal is not local, with its term; ``None`` for a local literal."""
+    def _lacking_term_in_literal(
+        self, literal: Literal, tree_terms: _TreeTerms, source: Source
+    ) -> "_LackingTerm | None":
+        """Return the first argument that has to be in the tree but may be outside, else ``None``.
+
+        The literal may also be not local whatever its arguments are; then the result has an empty term.
+        """
         signature = literal.signature
         if signature in self._nonlocal:
-            return _Lacking("", Subject.UNIT, self._nonlocal[signature])
+            return _LackingTerm("", Subject.UNIT, self._nonlocal[signature])
         if signature in self._about:
             about = self._about[signature]
         elif signature in _FACTS:
             about = _FACTS[signature].about
         else:
             doubt = self._dependence.doubt((literal,))
-            return _Lacking("", Subject.UNIT, Nonlocality(doubt.reason, source)) if doubt else None
+            return _LackingTerm("", Subject.UNIT, Nonlocality(doubt.reason, source)) if doubt else None
         for position, subject in about.items():
             term = literal.arguments[position]
             if subject not in tree_terms.get(str(term), ()):
-                reason = f"{_atom(literal)} is about {_ARTICLES[subject]} that the tree need not have"
-                return _Lacking(
+                reason = f"{_atom_text(literal)} is about {_ARTICLES[subject]} that the tree need not have"
+                return _LackingTerm(
                     str(term) if _has_one_value(term) else "", subject, Nonlocality(reason, source)
                 )
         return None
 
 
-class _Lacking(NamedTuple):
+class _LackingTerm(NamedTuple):
     """A term that has to be in the tree for a rule to be local, and the reason if it is not.
 
     ``term`` is empty if the rule is not local whatever terms are in the tree.
@@ -244,7 +275,8 @@ def _has_one_value(term: AST) -> bool:
     return term.ast_type == ASTType.SymbolicTerm or (term.ast_type == ASTType.Variable and term.name != "_")
 
 
-def _atom(literal: Literal) -> str:
+def _atom_text(literal: Literal) -> str:
+    """Return the atom of a literal as text, without ``not``."""
     name, arity = literal.signature
     arguments = ",".join(map(str, literal.arguments))
     return f"{name}({arguments})" if arity else name

@@ -1,4 +1,4 @@
-"""User measures: rules for the cost of each unit, and their evaluation by clingo."""
+"""User measures: rules that define the cost of each unit, and their evaluation by clingo."""
 
 import hashlib
 import re
@@ -45,25 +45,26 @@ class Measure:
 
     @property
     def digest(self) -> str:
-        """The SHA-256 digest of the rules."""
+        """The SHA-256 digest of the rules, in hexadecimal."""
         return hashlib.sha256(self.text.encode()).hexdigest()
 
     def costs(self, problem: Problem, deadline: Deadline | None = None) -> Sequence[Cost]:
-        """Return the cost of each unit of a problem, by id.
+        """Return the cost of each unit of a problem, by id; a unit without a rule costs 0.
 
         Clingo evaluates the rules until the deadline at most. The costs are cached for the network.
 
         Raises :class:`InputError` if rules give a unit two costs, or a cost other than a number from 0.
+        Raises :class:`UserError` if they read success rates and there are none.
         """
         from foon_asp.rules.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)
 
         rules = read_rules(self.text, self.place)
-        seen = problem.as_seen or problem
+        problem_seen = problem.as_seen or problem
         key: list[Hashable] = [self]
         if "rate" in rules.reads:
-            if seen.rates is None:
+            if problem_seen.rates is None:
                 raise UserError(f"{self.place}: the rules read rate/2: give a rates file, with --rates FILE")
-            key += [frozenset(seen.rates.items()), frozenset(seen.own_rates.items())]
+            key += [frozenset(problem_seen.rates.items()), frozenset(problem_seen.own_rates.items())]
         if not rules.reads.isdisjoint(("needs", "gives", "utensil")):
             key += [problem.containers, problem.utensils]
         costs_by_key = _costs_by_network.setdefault(problem.network, {})
@@ -77,18 +78,19 @@ def wrong_cost(
 ) -> str | None:
     """Return a message about the first unit whose cost differs from the stated cost; ``None`` if none does.
 
-    ``stated`` has costs by unit id. Each such unit is evaluated, even if others have the same facts.
-    Raises the errors of :meth:`Measure.costs`.
+    ``stated`` has costs by unit id. Each such unit is evaluated, even if another unit has the same facts.
+    There is also a message if the rules do not define the measure. Raises the errors of
+    :meth:`Measure.costs`.
     """
     from foon_asp.rules.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)
 
-    everything = measure.costs(problem, deadline)
+    costs = measure.costs(problem, deadline)
     rules = read_rules(measure.text, measure.place)
     if measure.name not in rules.names:
         return f"the rules say nothing of {measure.name}"
-    alone = _Evaluation(measure, rules, problem, deadline).cost_by_number(stated)
+    evaluated_costs = _Evaluation(measure, rules, problem, deadline).cost_by_number(stated)
     for unit, cost in stated.items():
-        for rule_cost in (everything[unit], alone.get(problem.network.unit_number(unit), 0)):
+        for rule_cost in (costs[unit], evaluated_costs.get(problem.network.unit_number(unit), 0)):
             if rule_cost != cost:
                 return f"unit {unit} costs {rule_cost} by the rules of {measure.name}, and not {cost}"
     return None
@@ -102,25 +104,26 @@ class _Evaluation:
     """Evaluation of a measure over the units of a problem."""
 
     def __init__(self, measure: Measure, rules: "MeasureRules", problem: Problem, deadline: Deadline) -> None:
+        """Prepare the evaluation of a measure; ``rules`` are its parsed rules."""
         self._measure, self._rules, self._problem, self._deadline = measure, rules, problem, deadline
         self._number = problem.network.unit_number
 
     def costs(self) -> Sequence[Cost]:
         """Return the cost of each unit, by id. Only one of several units with the same facts is evaluated."""
         units = range(len(self._problem.network))
-        alike = self._alike()
-        if alike is None:
+        fact_keys = self._fact_keys()
+        if fact_keys is None:
             cost_by_number = self.cost_by_number(units)
             return [cost_by_number.get(self._number(unit), 0) for unit in units]
-        first: dict[Hashable, int] = {}
-        for unit, key in enumerate(alike):
-            first.setdefault(key, unit)
-        cost_by_number = self.cost_by_number(first.values())
-        by_key = {key: cost_by_number.get(self._number(unit), 0) for key, unit in first.items()}
-        return list(map(by_key.__getitem__, alike))
+        first_unit: dict[Hashable, int] = {}
+        for unit, key in enumerate(fact_keys):
+            first_unit.setdefault(key, unit)
+        cost_by_number = self.cost_by_number(first_unit.values())
+        by_key = {key: cost_by_number.get(self._number(unit), 0) for key, unit in first_unit.items()}
+        return list(map(by_key.__getitem__, fact_keys))
 
-    def _alike(self) -> Sequence[Hashable] | None:
-        """Return a key for each unit.
+    def _fact_keys(self) -> Sequence[Hashable] | None:
+        """Return a key for each unit, by id.
 
         Units with equal keys have the same facts, except for numbers of units and nodes. ``None`` if the
         rules use these numbers, or read a fact that the keys do not cover.
@@ -129,7 +132,7 @@ class _Evaluation:
             return None
         problem, network = self._problem, self._problem.network
         objects = network.objects
-        looks: dict[str, Callable[[], Iterable[Hashable]]] = {
+        unit_columns: dict[str, Callable[[], Iterable[Hashable]]] = {
             "unit": lambda: (),
             "utensil": lambda: (),
             "motion": lambda: network.motions,
@@ -140,47 +143,53 @@ class _Evaluation:
             "rate": lambda: map((problem.as_seen or problem).rate, range(len(network))),
         }
         reads = self._rules.reads
-        nodes = reads.intersection(OBJECT_FACTS)
+        object_facts_read = reads.intersection(OBJECT_FACTS)
         objects_of = {
             "input": network.inputs,
             "output": network.outputs,
             "needs": problem.needs,
             "gives": problem.gives,
         }
-        if not reads <= looks.keys() | OBJECT_FACTS | objects_of.keys():
+        if not reads <= unit_columns.keys() | OBJECT_FACTS | objects_of.keys():
             return None
-        columns = [tuple(looks[name]()) for name in sorted(reads & looks.keys())]
-        if nodes or not reads.isdisjoint(objects_of):
+        columns = [tuple(unit_columns[name]()) for name in sorted(reads & unit_columns.keys())]
+        if object_facts_read or not reads.isdisjoint(objects_of):
             numbers: dict[Hashable, int] = {}
-            fact_rows = (tuple(object_facts(node, nodes)) for node in objects)
+            fact_rows = (tuple(object_facts(node, object_facts_read)) for node in objects)
             kinds = [numbers.setdefault(facts, len(numbers)) for facts in fact_rows]
-            chosen = [objects_of[name] for name in sorted(reads & objects_of.keys())]
-            columns.append(tuple(_shape(network, unit, chosen, kinds) for unit in range(len(network))))
+            object_lists = [objects_of[name] for name in sorted(reads & objects_of.keys())]
+            columns.append(
+                tuple(_nodes_key(network, unit, object_lists, kinds) for unit in range(len(network)))
+            )
         columns = [column for column in columns if column]
         return list(zip(*columns, strict=True)) if columns else [()] * len(network)
 
     def cost_by_number(self, units: Iterable[int]) -> dict[int, Cost]:
-        """Return the cost of each unit that the rules give a cost, by unit number (not id)."""
+        """Return the costs of units, given by id, that rules derive; the result is by unit number.
+
+        Raises :class:`InputError` for an invalid cost, and for a unit with two costs.
+        """
         by_number = {self._number(unit): unit for unit in units}
         values: dict[int, Cost] = {}
-        for world, name, number, value in self._derived(by_number.values(), self._rules.statements):
+        for world, name, number, value in self._derive_costs(by_number.values(), self._rules.statements):
             if name != (self._measure.name,):
                 continue
             assert isinstance(world, int)
-            cost = _cost(value) if number == world else None
+            cost = _exact_cost(value) if number == world else None
             if cost is None or cost != values.setdefault(world, cost):
-                self._refuse(by_number[world])
+                self._refuse_cost(by_number[world])
         return values
 
-    def _derived(
+    def _derive_costs(
         self, units: Iterable[int], statements: Iterable["Statement"]
     ) -> Sequence[tuple["Value", ...]]:
-        """Derive costs of units with clingo: rows of world, measure, unit number and cost.
+        """Return the costs of units that clingo derives, as rows of world, measure, unit number and cost.
 
-        Raises :class:`InputError` if clingo drops an instance of a rule.
+        The world is the number of the unit whose facts were used. Raises :class:`InputError` if clingo drops
+        an instance of a rule.
         """
         from foon_asp.encoding import derived  # noqa: PLC0415
-        from foon_asp.encoding.encoding import fault  # noqa: PLC0415 (takes clingo along)
+        from foon_asp.encoding.encoding import program_fault  # noqa: PLC0415 (takes clingo along)
         from foon_asp.rules.measure_rules import COST, WORLD  # noqa: PLC0415
 
         statements = list(statements)
@@ -198,64 +207,75 @@ class _Evaluation:
 
             return derive(text, name, arity, self._deadline)
         except ProgramError as refused:
-            raise self._placed(fault(refused.messages, refused.otherwise), statements) from None
+            raise self._with_places(program_fault(refused.messages, refused.otherwise), statements) from None
 
-    def _placed(self, error: UserError, statements: Sequence["Statement"]) -> UserError:
-        """Return an error in the text for clingo with its place in the rules."""
+    def _with_places(self, error: UserError, statements: Sequence["Statement"]) -> UserError:
+        """Return an error of clingo with places in the rules of the user, not in the text for clingo."""
         if not isinstance(error, InputError):
             return UserError(f"{self._measure.place}: {error}")
         return InputError(
             [
-                self._remark(
+                self._error_at(
                     diagnostic.code, diagnostic.message, statements[diagnostic.source.line - 1].source
                 )
                 for diagnostic in error.diagnostics
             ]
         )
 
-    def _remark(self, code: str, message: str, source: Source) -> Diagnostic:
-        from foon_asp.encoding.encoding import located  # noqa: PLC0415 (takes clingo along)
+    def _error_at(self, code: str, message: str, source: Source) -> Diagnostic:
+        """Return an error about the rules, with the line at its source."""
+        from foon_asp.encoding.encoding import located_diagnostic  # noqa: PLC0415 (takes clingo along)
 
         stated = Stated(self._measure.place, self._measure.text)
-        return located(Severity.ERROR, code, message, source, [stated])
+        return located_diagnostic(Severity.ERROR, code, message, source, [stated])
 
-    def _refuse(self, unit: int) -> None:
+    def _refuse_cost(self, unit: int) -> None:
         """Raise :class:`InputError` with the rules by which a unit has an invalid cost or several costs."""
         from foon_asp.rules.measure_rules import BEYOND  # noqa: PLC0415 (takes clingo along)
 
         network, number = self._problem.network, self._number(unit)
-        who = f"the unit {network.motions[unit]!r} ({number}, {network.sources[unit][0]})"
-        stated: dict[tuple[Value, Value], Source] = {}
+        unit_text = f"the unit {network.motions[unit]!r} ({number}, {network.sources[unit][0]})"
+        source_by_cost: dict[tuple[Value, Value], Source] = {}
         statements = self._rules.statements
         for rule in (statement for statement in statements if statement.is_cost):
             alone = [statement for statement in statements if statement is rule or not statement.is_cost]
-            for _, name, subject, value in self._derived([unit], alone):
+            for _, name, subject, value in self._derive_costs([unit], alone):
                 if name == (self._measure.name,):
-                    stated.setdefault((subject, value), rule.source)
-        large = {cost: source for cost, source in stated.items() if _text(cost[1]) == BEYOND}
+                    source_by_cost.setdefault((subject, value), rule.source)
+        large = {cost: source for cost, source in source_by_cost.items() if _value_text(cost[1]) == BEYOND}
         errors = []
-        for (subject, value), source in (large or stated).items():
+        for (subject, value), source in (large or source_by_cost).items():
             if large:
-                what = (
-                    f"found a number of more than 32 bits in the cost of {who}, and clingo has none such; "
+                message = (
+                    f"found a number of more than 32 bits in the cost of {unit_text}, "
+                    "and clingo has none such; "
                     'a large cost is given in a table, as text: "5000000000"'
                 )
             elif subject != number:
-                what = f"found a cost of {_text(subject)} among the facts of {who}: a rule is about one unit"
-            elif _cost(value) is None:
-                what = f'found the cost {_text(value)} of {who}, expected a number from 0: 5, or "2.50"'
+                message = (
+                    f"found a cost of {_value_text(subject)} among the facts of {unit_text}: "
+                    "a rule is about one unit"
+                )
+            elif _exact_cost(value) is None:
+                message = (
+                    f"found the cost {_value_text(value)} of {unit_text}, "
+                    'expected a number from 0: 5, or "2.50"'
+                )
             else:
-                what = f"found the cost {_text(value)} of {who}, expected one value for each unit"
-            errors.append(self._remark("cost", what, source))
+                message = (
+                    f"found the cost {_value_text(value)} of {unit_text}, expected one value for each unit"
+                )
+            errors.append(self._error_at("cost", message, source))
         raise InputError(errors)
 
 
-def _shape(
+def _nodes_key(
     network: Network, unit: int, object_lists: Sequence[Sequence[Sequence[int]]], kinds: Sequence[int]
 ) -> Hashable:
     """Return a key for the object nodes of a unit that does not depend on their numbers.
 
-    The key has the kind of each node, and the positions of the nodes in each of ``object_lists``.
+    The key has the kind of each node, and the positions of the nodes in each of ``object_lists``. ``kinds``
+    has the same number for nodes with the same facts.
     """
     nodes = dict.fromkeys((*network.inputs[unit], *network.outputs[unit]))
     positions = {o: position for position, o in enumerate(nodes)}
@@ -265,8 +285,11 @@ def _shape(
     )
 
 
-def _cost(value: "Value") -> Cost | None:
-    """Return a value as an exact cost, an ``int`` if possible; ``None`` if it is no number, or below 0."""
+def _exact_cost(value: "Value") -> Cost | None:
+    """Return a derived value as an exact cost: ``5``, or for ``"2.50"`` the fraction 5/2.
+
+    ``None`` if it is no number from 0.
+    """
     if isinstance(value, int):
         return value if value >= 0 else None
     if not isinstance(value, str) or not _DECIMAL.fullmatch(value):
@@ -275,7 +298,8 @@ def _cost(value: "Value") -> Cost | None:
     return int(cost) if cost.denominator == 1 else cost
 
 
-def _text(value: "Value") -> str:
+def _value_text(value: "Value") -> str:
+    """Return a derived value as it would be written in a rule."""
     if isinstance(value, str):
         return quote(value)
     return str(value) if isinstance(value, int) else value.text
@@ -284,9 +308,9 @@ def _text(value: "Value") -> str:
 def read_measures(rules: str | PathLike[str] | Iterable[str | PathLike[str]]) -> dict[str, Measure]:
     """Read measures from one or several files or texts of rules; return them by name.
 
-    A text that has ``:-``, or ends in a full stop, is rules, unless it is an existing path. Any other text is
-    the path of a file. Raises :class:`UserError` for an empty text, for faults in rules, and for a measure
-    that is defined twice.
+    An existing path is a file. Any other text is rules if it has ``:-``, or ends in a full stop; else it is a
+    path. Raises :class:`UserError` for an empty text, for faults in rules, and for a measure that is defined
+    twice.
     """
     rules = [rules] if isinstance(rules, str | PathLike) else list(rules)
     if not rules:
@@ -301,7 +325,7 @@ def read_measures(rules: str | PathLike[str] | Iterable[str | PathLike[str]]) ->
     measures: dict[str, Measure] = {}
     texts = [
         (source_text, f"measure {number}")
-        if isinstance(source_text, str) and _is_rules(source_text)
+        if isinstance(source_text, str) and _is_rule_text(source_text)
         else (read_plain_text(Path(source_text)), str(source_text))
         for number, source_text in enumerate(rules, 1)
     ]
@@ -314,5 +338,6 @@ def read_measures(rules: str | PathLike[str] | Iterable[str | PathLike[str]]) ->
     return measures
 
 
-def _is_rules(text: str) -> bool:
+def _is_rule_text(text: str) -> bool:
+    """Whether a text is rules, and not the path of a file."""
     return (":-" in text or text.rstrip().endswith(".")) and not exists(Path(text))

@@ -26,7 +26,14 @@ from clingo.ast import (
 )
 from clingo.symbol import SymbolType
 
-from foon_asp.encoding.encoding import PUBLIC_NAMES, Signature, fault, located, no_numbers, undefined
+from foon_asp.encoding.encoding import (
+    PUBLIC_NAMES,
+    Signature,
+    located_diagnostic,
+    non_numeric_terms,
+    program_fault,
+    undefined_message,
+)
 from foon_asp.encoding.encoding_file import check_text
 from foon_asp.encoding.fact_writer import FACT_PREDICATES, OBJECT_FACTS
 from foon_asp.encoding.messages import listener
@@ -34,7 +41,7 @@ from foon_asp.encoding.parsing import parse
 from foon_asp.encoding.stated import Stated
 from foon_asp.errors import UserError
 from foon_asp.network import Source
-from foon_asp.rules.number_limits import beyond
+from foon_asp.rules.number_limits import overflow_checks
 from foon_asp.rules.tuning import TUNING
 from foon_asp.rules.worlds import Worlds, unused_variable
 from foon_asp.text.diagnostics import Diagnostic, InputError, Severity
@@ -75,10 +82,11 @@ class MeasureRules(NamedTuple):
     """Rules of measures, translated for clingo.
 
     ``names``: the names of the measures, each with the place of its first occurrence.
-    ``reads``: the predicates of facts that the rules read.
-    ``nameless``: units whose facts differ only in numbers of units and object nodes cost the same.
-    ``plain``: no rule has an interval, a division, two tables or many atoms, so the grounding cannot be
-    large.
+    ``statements``: the program for clingo, one statement per line.
+    ``reads``: the names of the predicates of facts that the rules read.
+    ``nameless``: whether units cost the same if their facts differ only in numbers of units and object nodes.
+    ``plain``: whether the grounding cannot be large, since no rule has an interval, a division, two tables or
+    many atoms.
     """
 
     names: dict[str, Source]
@@ -90,7 +98,11 @@ class MeasureRules(NamedTuple):
 
 @lru_cache(maxsize=64)
 def read_rules(text: str, origin: str) -> MeasureRules:
-    """Read the rules of measures; raises :class:`InputError` unless they are over facts about one unit."""
+    """Parse and check the rules of measures; the results for the last texts are cached.
+
+    ``origin`` is the name of the text in messages. Raises :class:`InputError` for a syntax error, and unless
+    all rules are over facts about one unit.
+    """
     check_text(text, origin)
     stated = Stated(origin, text)
     statements: list[AST] = []
@@ -98,12 +110,15 @@ def read_rules(text: str, origin: str) -> MeasureRules:
     try:
         parse(stated, statements.append, listener(messages))
     except RuntimeError as error:
-        raise fault(messages, str(error), [stated]) from None
-    return _Reader(statements, stated).rules()
+        raise program_fault(messages, str(error), [stated]) from None
+    return _MeasureReader(statements, stated).rules()
 
 
-class _Reader:
-    """Checker of the rules of measures, and their translator for clingo."""
+class _MeasureReader:
+    """Checker of the rules of measures, and their translator for clingo.
+
+    The checks collect errors in ``_errors``, so that one exception has all of them.
+    """
 
     def __init__(self, statements: Sequence[AST], stated: Stated) -> None:
         """Sort the statements; raises :class:`InputError` for statements that are not allowed."""
@@ -121,13 +136,15 @@ class _Reader:
             elif kind is ASTType.Defined:
                 declared.add((statement.name, statement.arity))
             elif not (kind in _HARMLESS or (kind is ASTType.Program and statement.name == "base")):
-                self._error("statement", "found a statement that is no rule, expected rules", statement)
+                self._add_error_at(
+                    "statement", "found a statement that is no rule, expected rules", statement
+                )
         self._atoms = [_Atoms(rule) for rule in self._rules]
         self._declared = declared
-        self._refuse_errors()
+        self._raise_errors()
 
     def rules(self) -> MeasureRules:
-        """Check the rules and write them for clingo."""
+        """Return the rules translated for clingo; raises :class:`InputError` if a check finds an error."""
         names: dict[str, Source] = {}
         for rule, atoms in zip(self._rules, self._atoms, strict=True):
             self._check_head(rule, atoms, names)
@@ -135,30 +152,33 @@ class _Reader:
         self._check_names(names)
         self._check_numbers()
         self._check_loops()
-        self._refuse_errors()
-        dependent = self._dependent()
+        self._raise_errors()
+        dependent = self._dependent_predicates()
         world = unused_variable(self._stated.text, "W")
-        written = [_World(dependent, world).written(rule, self._source(rule)) for rule in self._rules]
-        written += self._beyond(names, dependent, world)
+        statements = [_WorldWriter(dependent, world).write(rule, self._source(rule)) for rule in self._rules]
+        statements += self._overflow_rules(names, dependent, world)
         constants = [
             Statement(f"{definition}", self._source(definition), False) for definition in self._constants
         ]
         return MeasureRules(
             names,
-            (*constants, *written),
-            frozenset(name for name, _ in self._read()),
-            _nameless(self._atoms),
-            all(self._is_plain(atoms, dependent) for atoms in self._atoms),
+            (*constants, *statements),
+            frozenset(name for name, _ in self._facts_read()),
+            _is_nameless(self._atoms),
+            all(self._has_small_grounding(atoms, dependent) for atoms in self._atoms),
         )
 
-    def _beyond(
+    def _overflow_rules(
         self, names: Iterable[str], dependent: frozenset[Signature], world: str
     ) -> Iterator[Statement]:
-        """Return rules that derive the cost ``BEYOND`` where arithmetic overflows 32 bits in clingo."""
+        """Yield rules that derive the cost ``BEYOND`` where arithmetic overflows 32 bits in clingo.
+
+        ``names`` are the measures, ``dependent`` the predicates that get a world, ``world`` its variable.
+        """
         statements: list[AST] = []
         sources: list[Source] = []
         for name in names:
-            for rule, text in beyond(self._rules, f"cost({name},{world},{BEYOND})".format):
+            for rule, text in overflow_checks(self._rules, f"cost({name},{world},{BEYOND})".format):
                 before = len(statements)
                 parse_string(text, statements.append)
                 sources += [self._source(rule)] * (len(statements) - before)
@@ -167,19 +187,22 @@ class _Reader:
             for rule, source in zip(statements, sources, strict=True)
             if rule.ast_type is ASTType.Rule
         ]
-        writer = _World(dependent, world)
-        yield from (writer.written(rule, source) for rule, source in rules)
+        writer = _WorldWriter(dependent, world)
+        yield from (writer.write(rule, source) for rule, source in rules)
 
     def _check_head(self, rule: AST, atoms: "_Atoms", names: dict[str, Source]) -> None:
-        """Refuse a head other than one atom of a permitted predicate; record the measure that it names."""
+        """Add an error for a head other than one atom of a permitted predicate.
+
+        The measure that the head names is added to ``names``.
+        """
         head = rule.head
         if head.ast_type is not ASTType.Literal or head.sign != Sign.NoSign:
-            self._error(
+            self._add_error_at(
                 "head", "found a choice or a disjunction, expected a rule with one atom in its head", rule
             )
         elif head.atom.ast_type is not ASTType.SymbolicAtom:
             message = "found a constraint, expected a rule for what units cost: pass it with --constraint"
-            self._error("head", message, rule)
+            self._add_error_at("head", message, rule)
         for atom in atoms.heads:
             name, arity = _signature(atom)
             if (name, arity) == COST:
@@ -187,42 +210,51 @@ class _Reader:
                 symbol = term.symbol if term.ast_type is ASTType.SymbolicTerm else None
                 if symbol is None or symbol.type is not SymbolType.Function or symbol.arguments:
                     message = f"found cost({term},...), expected the name of a measure: cost(mine,U,N)"
-                    self._error("measure-name", message, atom)
+                    self._add_error_at("measure-name", message, atom)
                 else:
                     names.setdefault(symbol.name, self._source(atom))
             elif FACT_PREDICATES.get(name) == arity or (name, arity) in _REFUSED:
-                self._error("owned-predicate", f"found a rule for {name}/{arity}: give it another name", atom)
+                self._add_error_at(
+                    "owned-predicate", f"found a rule for {name}/{arity}: give it another name", atom
+                )
 
     def _check_atoms(self, atoms: "_Atoms") -> None:
-        """Refuse atoms that are negated with a minus, reserved, undefined or not about one unit."""
+        """Add errors for atoms that are negated with a minus, reserved, undefined or not about one unit."""
         for minus in atoms.negated:
-            self._error("negation", "found an atom with a minus before it, expected one without", minus)
+            self._add_error_at(
+                "negation", "found an atom with a minus before it, expected one without", minus
+            )
         for atom in (*atoms.heads, *atoms.used):
             if atom.name.startswith("_"):
                 message = f"found {atom.name}, but names that begin with '_' are reserved: take another"
-                self._error("reserved-name", message, atom)
-        defined = {_signature(atom) for other in self._atoms for atom in other.heads} | self._declared
+                self._add_error_at("reserved-name", message, atom)
+        defined = {
+            _signature(atom) for rule_atoms in self._atoms for atom in rule_atoms.heads
+        } | self._declared
         readable = {(name, arity) for name, arity in FACT_PREDICATES.items()} - _REFUSED.keys()
         for atom in atoms.used:
             signature = _signature(atom)
-            shown = "{}/{}".format(*signature)
+            predicate = "{}/{}".format(*signature)
             if signature in _REFUSED:
-                self._error("not-of-a-unit", f"found {shown}, which {_REFUSED[signature]}", atom)
+                self._add_error_at("not-of-a-unit", f"found {predicate}, which {_REFUSED[signature]}", atom)
             elif signature not in defined | readable and not atom.name.startswith("_"):
-                self._error("undefined-atom", undefined(signature, defined | readable), atom)
+                self._add_error_at("undefined-atom", undefined_message(signature, defined | readable), atom)
 
     def _check_names(self, names: dict[str, Source]) -> None:
-        """Refuse reserved names of measures and constants, which have another meaning in the facts."""
+        """Add errors for names of measures and constants that have another meaning in the facts.
+
+        Raises :class:`UserError` if the rules define no measure and have no other error.
+        """
         for name, source in names.items():
             if name in PUBLIC_NAMES or name.startswith("_"):
                 message = f"found a measure {name!r}, which is a name of ours: give it another one"
-                self._note("measure-name", message, source)
+                self._add_error("measure-name", message, source)
         for definition in self._constants:
             if definition.name in PUBLIC_NAMES or definition.name in names or definition.name.startswith("_"):
                 message = (
                     f"found #const {definition.name}, but that is a name in the facts: give it another one"
                 )
-                self._error("taken-constant", message, definition)
+                self._add_error_at("taken-constant", message, definition)
         if not names and not self._errors:
             raise UserError(
                 f"{self._stated.place}: expected rules for what units cost, such as "
@@ -230,15 +262,20 @@ class _Reader:
             )
 
     def _check_numbers(self) -> None:
-        """Refuse comparisons of a number with a term that never is one, and ``cost`` with an arity not 3."""
-        for term, message in no_numbers(self._rules, [definition.name for definition in self._constants]):
-            self._error("no-number", message, term)
+        """Add errors for comparisons of a number with a term that never is one.
+
+        Also add errors for heads ``cost`` with another number of arguments than 3.
+        """
+        for term, message in non_numeric_terms(
+            self._rules, [definition.name for definition in self._constants]
+        ):
+            self._add_error_at("no-number", message, term)
         for atom in (head for atoms in self._atoms for head in atoms.heads):
             if atom.name == COST[0] and _signature(atom) != COST:
-                self._error("head", f"found {atom}, expected a cost such as cost(mine,U,5)", atom)
+                self._add_error_at("head", f"found {atom}, expected a cost such as cost(mine,U,5)", atom)
 
     def _check_loops(self) -> None:
-        """Refuse recursive rules, whose atoms may be infinitely many or undefined."""
+        """Add an error for recursive rules, whose atoms may be infinitely many or undefined."""
         graph: dict[Signature, set[Signature]] = {}
         for atoms in self._atoms:
             for head in map(_signature, atoms.heads):
@@ -251,19 +288,19 @@ class _Reader:
                 head for atoms in self._atoms for head in atoms.heads if _signature(head) == (name, arity)
             )
             message = f"found {name}/{arity}, which depends on itself, expected rules without loops"
-            self._error("loop", message, atom)
+            self._add_error_at("loop", message, atom)
 
-    def _read(self) -> Iterator[Signature]:
-        """Yield the predicates of facts that the rules read."""
-        derived = {_signature(atom) for other in self._atoms for atom in other.heads}
+    def _facts_read(self) -> Iterator[Signature]:
+        """Yield the predicates of facts that the rules read; one may be repeated."""
+        derived = {_signature(atom) for rule_atoms in self._atoms for atom in rule_atoms.heads}
         for atoms in self._atoms:
             for signature in map(_signature, atoms.used):
                 if FACT_PREDICATES.get(signature[0]) == signature[1] and signature not in derived:
                     yield signature
 
-    def _dependent(self) -> frozenset[Signature]:
-        """Return the predicates that depend on facts about units, and costs."""
-        dependent = {COST, *self._read()} - {("utensil", 1)}
+    def _dependent_predicates(self) -> frozenset[Signature]:
+        """Return ``cost/3``, the predicates of facts about units, and all predicates that depend on them."""
+        dependent = {COST, *self._facts_read()} - {("utensil", 1)}
         before = 0
         while len(dependent) > before:
             before = len(dependent)
@@ -272,8 +309,8 @@ class _Reader:
                     dependent.update(map(_signature, atoms.heads))
         return frozenset(dependent)
 
-    def _is_plain(self, atoms: "_Atoms", dependent: frozenset[Signature]) -> bool:
-        """Return whether the grounding of a rule cannot be large."""
+    def _has_small_grounding(self, atoms: "_Atoms", dependent: frozenset[Signature]) -> bool:
+        """Whether the grounding of a rule, given by its atoms, cannot be large."""
         tables = [atom for atom in atoms.used if _signature(atom) not in dependent]
         return (
             not (atoms.has_interval or atoms.divides)
@@ -281,17 +318,21 @@ class _Reader:
             and len(atoms.used) <= TUNING.plain_atoms
         )
 
-    def _source(self, at: AST) -> Source:
-        begin = at.location.begin
+    def _source(self, node: AST) -> Source:
+        """Return the place of a node of the syntax tree, in the file or text of the rules."""
+        begin = node.location.begin
         return Source(self._stated.place, begin.line, begin.column)
 
-    def _error(self, code: str, message: str, at: AST) -> None:
-        self._note(code, message, self._source(at))
+    def _add_error_at(self, code: str, message: str, node: AST) -> None:
+        """Add an error at a node of the syntax tree."""
+        self._add_error(code, message, self._source(node))
 
-    def _note(self, code: str, message: str, source: Source) -> None:
-        self._errors.append(located(Severity.ERROR, code, message, source, [self._stated]))
+    def _add_error(self, code: str, message: str, source: Source) -> None:
+        """Add an error at a place."""
+        self._errors.append(located_diagnostic(Severity.ERROR, code, message, source, [self._stated]))
 
-    def _refuse_errors(self) -> None:
+    def _raise_errors(self) -> None:
+        """Raise :class:`InputError` with the errors so far, if there are any."""
         if self._errors:
             raise InputError(self._errors)
 
@@ -300,14 +341,17 @@ _HARMLESS = {ASTType.ShowSignature, ASTType.Comment}
 
 
 def _signature(atom: AST) -> Signature:
+    """Return name and arity of an atom."""
     return atom.name, len(atom.arguments)
 
 
 class _Atoms(Transformer):
     """Visitor that collects the atoms of a rule, as terms, and the use of its variables.
 
-    ``compared`` are the variables that are used other than in tests for equality. ``divides`` says whether
-    the rule has a division: clingo's process crashes at -2147483648 / -1.
+    ``heads``, ``used``: the atoms in the head, and those in the body.
+    ``negated``: atoms with a minus before them.
+    ``compared``: the variables that are used other than in tests for equality.
+    ``divides``: whether the rule has a division; clingo's process crashes at -2147483648 / -1.
     """
 
     def __init__(self, rule: AST) -> None:
@@ -318,64 +362,70 @@ class _Atoms(Transformer):
         self.compared: set[str] = set()
         self.has_interval = False
         self.divides = False
-        self._noted = self.heads
+        self._collected = self.heads
         self.visit(rule.head)
-        self._noted = self.used
+        self._collected = self.used
         self.visit_sequence(rule.body)
 
     def visit_SymbolicAtom(self, atom: AST) -> AST:  # noqa: N802 (the name clingo looks for)
-        self._atom(atom.symbol)
+        """Collect an atom, and return it unchanged."""
+        self._collect_atom(atom.symbol)
         return atom
 
-    def _atom(self, symbol: AST) -> None:
+    def _collect_atom(self, symbol: AST) -> None:
+        """Collect an atom, or each atom of a pool, and visit its arguments."""
         if symbol.ast_type is ASTType.UnaryOperation:
             self.negated.append(symbol)
         elif symbol.ast_type is ASTType.Pool:
-            for one in symbol.arguments:
-                self._atom(one)
+            for argument in symbol.arguments:
+                self._collect_atom(argument)
         else:
-            self._noted.append(symbol)
-            self._terms(symbol.arguments)
+            self._collected.append(symbol)
+            self._visit_terms(symbol.arguments)
 
-    def _terms(self, terms: Iterable[AST]) -> None:
+    def _visit_terms(self, terms: Iterable[AST]) -> None:
         """Visit the terms that are not variables; as arguments, variables are only tested for equality."""
         for term in terms:
             if term.ast_type is not ASTType.Variable:
                 self.visit(term)
 
     def visit_BodyAggregate(self, aggregate: AST) -> AST:  # noqa: N802
-        weighs = aggregate.function != AggregateFunction.Count
+        """Visit an aggregate; its weights are compared, unlike its other terms."""
+        weight_count = int(aggregate.function != AggregateFunction.Count)
         for guard in (aggregate.left_guard, aggregate.right_guard):
             if guard is not None:
                 self.visit(guard)
         for element in aggregate.elements:
-            for term in element.terms[:weighs]:
+            for term in element.terms[:weight_count]:
                 self.visit(term)
-            self._terms(element.terms[weighs:])
+            self._visit_terms(element.terms[weight_count:])
             self.visit_sequence(element.condition)
         return aggregate
 
     def visit_Variable(self, variable: AST) -> AST:  # noqa: N802
+        """Add a variable to ``compared``."""
         self.compared.add(variable.name)
         return variable
 
     def visit_BinaryOperation(self, term: AST) -> AST:  # noqa: N802
+        """Set ``divides`` for a division or remainder; visit the operands."""
         self.divides |= term.operator_type in {BinaryOperator.Division, BinaryOperator.Modulo}
         self.visit_children(term)
         return term
 
     def visit_Interval(self, interval: AST) -> AST:  # noqa: N802
+        """Set ``has_interval``, and visit the bounds."""
         self.has_interval = True
         self.visit_children(interval)
         return interval
 
 
-def _nameless(rules: Sequence[_Atoms]) -> bool:
+def _is_nameless(rules: Sequence[_Atoms]) -> bool:
     """Whether rules compare units and object nodes for equality only.
 
     The argument positions of units and of object nodes are inferred from the facts, along the variables of
-    each rule. The answer is no if such a position has a constant or a variable of the other kind, or if such
-    a variable is compared.
+    each rule. The answer is ``False`` if such a position has a constant or a variable of the other kind. It
+    is ``False``, too, if such a variable is compared.
     """
     kinds: dict[tuple[Signature, int], str] = {(COST, 1): _UNIT}
     for name, arity in FACT_PREDICATES.items():
@@ -409,18 +459,22 @@ def _nameless(rules: Sequence[_Atoms]) -> bool:
     return (COST, 2) not in kinds
 
 
-class _World:
-    """Writer of rules with a world as first argument of the predicates that depend on facts."""
+class _WorldWriter:
+    """Writer of rules that adds a world as first argument to the predicates that depend on facts.
+
+    ``dependent`` are these predicates. ``world`` is a name of a variable that no rule has.
+    """
 
     def __init__(self, dependent: frozenset[Signature], world: str) -> None:
-        self._dependent, self._world = dependent, world
+        """Keep the predicates and the variable."""
+        self._dependent_predicates, self._world = dependent, world
 
-    def written(self, rule: AST, source: Source) -> Statement:
+    def write(self, rule: AST, source: Source) -> Statement:
         """Return a rule as a statement for clingo, with a world if its head depends on facts."""
         heads = _Atoms(rule).heads
         text = str(rule)
-        if any(_signature(atom) in self._dependent for atom in heads):
-            changed = Worlds(self._dependent, self._world).visit(rule)
+        if any(_signature(atom) in self._dependent_predicates for atom in heads):
+            changed = Worlds(self._dependent_predicates, self._world).visit(rule)
             location = rule.location
             world = Function(location, WORLD, [Variable(location, self._world)], 0)
             body = [*changed.body, Literal(location, Sign.NoSign, SymbolicAtom(world))]

@@ -1,4 +1,4 @@
-"""Overflow checks: rules that derive an atom where arithmetic of other rules silently leaves 32 bits."""
+"""Overflow checks: rules that derive an atom where arithmetic in other rules exceeds 32 bits."""
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -40,60 +40,67 @@ _AGGREGATES = {ASTType.BodyAggregate, ASTType.HeadAggregate}
 _CALCULATES = re.compile(r"[+*/\\^&?~|]|(?<!:)-|#sum")  # matches every rule with arithmetic, and some others
 
 Head = Callable[[AST], str]
-"""Returns the head of a rule that holds where a term overflows."""
+"""A function that returns, for a term, the head of the rule that holds where the term overflows."""
 
 
 def number_checks(statements: Iterable[AST]) -> str:
-    """Return rules that derive ``_beyond`` for terms that overflow; an empty text where no term can."""
-    return "".join(f"{text}\n" for _, text in beyond(statements, _placed))
+    """Return the text of rules that derive ``_beyond/4`` where a term overflows; empty where no term can."""
+    return "".join(f"{text}\n" for _, text in overflow_checks(statements, _overflow_atom))
 
 
-def _placed(term: AST) -> str:
+def _overflow_atom(term: AST) -> str:
+    """Return the atom ``_beyond(File,Line,Column,Term)`` for a term or a sum."""
     begin = term.location.begin
     shown = "the sum" if term.ast_type in _AGGREGATES else str(term).removeprefix("(").removesuffix(")")
     return f"{BEYOND[0]}({quote(begin.filename)},{begin.line},{begin.column},{quote(shown)})"
 
 
-def beyond(statements: Iterable[AST], head: Head) -> Iterator[tuple[AST, str]]:
-    """Return check rules, which derive ``head`` where a term overflows, each with the statement of the term.
+def overflow_checks(statements: Iterable[AST], head: Head) -> Iterator[tuple[AST, str]]:
+    """Yield pairs of a statement and a check rule, which holds where a term of the statement overflows.
 
-    The body of a check has the conditions of the statement that bind variables or have no arithmetic. The
-    check evaluates the term again only if a value in it is large enough for an overflow.
+    ``head`` returns the head of the rule. Its body has the conditions of the statement that bind variables or
+    have no arithmetic. The check evaluates the term again only if a value in it is large enough for an
+    overflow.
     """
     for statement in statements:
         if not _CALCULATES.search(str(statement)):
             continue
         if statement.ast_type == ASTType.Definition:
-            yield from ((statement, text) for text in _checks(statement.value, [], head))
+            yield from ((statement, text) for text in _term_checks(statement.value, [], head))
         elif statement.ast_type in {ASTType.Rule, ASTType.Minimize}:
             for variant in statement.unpool(condition=True):
-                with_names = _Naming().visit(variant)
+                with_names = _AnonymousVariableNamer().visit(variant)
                 for node, conditions in _terms_with_conditions(with_names):
-                    yield from ((statement, text) for text in _checks(node, conditions, head))
-                for aggregate, elements in _sums(with_names):
+                    yield from ((statement, text) for text in _term_checks(node, conditions, head))
+                for aggregate, elements in _sum_aggregates(with_names):
                     total = f"#sum {{ {'; '.join(elements)} }} > {LARGEST}"
                     yield (
                         statement,
-                        f"{head(aggregate)} :- {_joined([*_conditions(with_names.body), total])}.",
+                        f"{head(aggregate)} :- {_body_text([*_check_conditions(with_names.body), total])}.",
                     )
 
 
-def _checks(node: AST, conditions: Sequence[AST], head: Head) -> Iterator[str]:
-    """Yield rules whose head holds where a term is beyond clingo's numbers."""
-    for term in _terms(node):
+def _term_checks(node: AST, conditions: Sequence[AST], head: Head) -> Iterator[str]:
+    """Yield the check rules for the terms in a node that can overflow.
+
+    The head of a rule is ``head`` of the term. Its body has ``conditions``, perhaps a test for a large value,
+    and a call of ``@_exact``.
+    """
+    for term in _arithmetic_terms(node):
         leaves: dict[str, AST] = {}
         text = " ".join(_postfix(term, leaves))
         call = f"1 = @_exact({','.join([quote(text), *leaves])})"
         limit = _safe_magnitude(term)
         if limit < 0 or any(_has_interval(leaf) for leaf in leaves.values()):
-            yield f"{head(term)} :- {_joined([*conditions, call])}."
+            yield f"{head(term)} :- {_body_text([*conditions, call])}."
             continue
         numbers = [_number(leaf) for leaf in leaves.values()]
         if None not in numbers and not is_beyond(text, [n for n in numbers if n is not None]):
             continue
         for leaf, leaf_term in leaves.items():
             if _number(leaf_term) is None:
-                yield f"{head(term)} :- {_joined([*conditions, f'not -{limit} <= {leaf} <= {limit}', call])}."
+                large = f"not -{limit} <= {leaf} <= {limit}"
+                yield f"{head(term)} :- {_body_text([*conditions, large, call])}."
 
 
 def _postfix(term: AST, leaves: dict[str, AST]) -> Iterator[str]:
@@ -114,21 +121,23 @@ def _postfix(term: AST, leaves: dict[str, AST]) -> Iterator[str]:
 
 
 def _safe_magnitude(term: AST) -> int:
-    """Return the magnitude up to which values in a term cannot make the term overflow; -1 without one."""
-    return next((limit for limit in (LARGEST >> n for n in range(32)) if _size(term, limit) <= LARGEST), -1)
+    """Return a magnitude; a term cannot overflow if no value in it is larger. -1 if there is none."""
+    return next(
+        (limit for limit in (LARGEST >> n for n in range(32)) if _max_magnitude(term, limit) <= LARGEST), -1
+    )
 
 
-def _size(term: AST, limit: int) -> int:
+def _max_magnitude(term: AST, limit: int) -> int:
     """Return an upper bound on the magnitude of a term and its subterms.
 
     The values in the term are assumed to have at most the magnitude ``limit``.
     """
     if term.ast_type == ASTType.UnaryOperation:
-        return _size(term.argument, limit) + int(term.operator_type == UnaryOperator.Negation)
+        return _max_magnitude(term.argument, limit) + int(term.operator_type == UnaryOperator.Negation)
     if term.ast_type != ASTType.BinaryOperation:
         number = _number(term)
         return limit if number is None else abs(number)
-    a, b = _size(term.left, limit), _size(term.right, limit)
+    a, b = _max_magnitude(term.left, limit), _max_magnitude(term.right, limit)
     kind = term.operator_type
     if kind == BinaryOperator.Power:
         power = _number(term.right)
@@ -139,17 +148,22 @@ def _size(term: AST, limit: int) -> int:
 
 
 def _number(term: AST) -> int | None:
+    """Return the number that a term is; ``None`` for any other term."""
     if term.ast_type == ASTType.SymbolicTerm and term.symbol.type is SymbolType.Number:
         return int(term.symbol.number)
     return None
 
 
 def _has_interval(term: AST) -> bool:
+    """Whether a term has an interval such as ``1..9``."""
     return any(node.ast_type == ASTType.Interval for node in nodes(term))
 
 
-def _sums(rule: AST) -> Iterator[tuple[AST, list[str]]]:
-    """Return the sums of a rule, each with its elements as text, in which weights become magnitudes."""
+def _sum_aggregates(rule: AST) -> Iterator[tuple[AST, list[str]]]:
+    """Yield each sum of a rule with its elements as text, where weights are replaced by magnitudes.
+
+    A sum whose weights are all 1 is left out.
+    """
     for body_part in rule.body if rule.ast_type == ASTType.Minimize else [rule.head, *rule.body]:
         aggregate = body_part.atom if body_part.ast_type == ASTType.Literal else body_part
         if aggregate.ast_type not in _AGGREGATES:
@@ -157,11 +171,11 @@ def _sums(rule: AST) -> Iterator[tuple[AST, list[str]]]:
         if aggregate.function in _SUMS and any(
             _number(element.terms[0]) != 1 for element in aggregate.elements
         ):
-            yield aggregate, [text for element in aggregate.elements for text in _sizes(element)]
+            yield aggregate, [text for element in aggregate.elements for text in _magnitude_elements(element)]
 
 
-def _sizes(element: AST) -> Iterator[str]:
-    """Return two elements, as text, that add the magnitude of a positive and of a negative weight."""
+def _magnitude_elements(element: AST) -> Iterator[str]:
+    """Yield two elements, as text: one adds a positive weight, one the magnitude of a negative weight."""
     inner = element.condition
     condition = list(inner.condition) if isinstance(inner, AST) else list(inner)
     weight = "_Weight"
@@ -172,8 +186,8 @@ def _sizes(element: AST) -> Iterator[str]:
 
 
 def _terms_with_conditions(statement: AST) -> Iterator[tuple[AST, Sequence[AST]]]:
-    """Return the terms and conjuncts of a statement, each with the conditions that bind its variables."""
-    conditions = _conditions(statement.body)
+    """Yield the terms and conjuncts of a statement, each with the conditions that bind its variables."""
+    conditions = _check_conditions(statement.body)
     if statement.ast_type == ASTType.Minimize:
         yield from ((term, conditions) for term in (statement.weight, statement.priority, *statement.terms))
         outer = list(statement.body)
@@ -194,13 +208,13 @@ def _terms_with_conditions(statement: AST) -> Iterator[tuple[AST, Sequence[AST]]
         elif atom.ast_type == ASTType.ConditionalLiteral:
             yield from _element_terms(atom, conditions)
         else:
-            yield conjunct, _without(conjunct, conditions)
+            yield conjunct, _conditions_without(conjunct, conditions)
 
 
 def _element_terms(
     element: AST, conditions: Sequence[AST], counted: bool = False
 ) -> Iterator[tuple[AST, Sequence[AST]]]:
-    """Return the terms and literals of an element, each with the conditions that bind its variables.
+    """Yield the terms and literals of an element, each with the conditions that bind its variables.
 
     The element is of an aggregate, a choice or a disjunction, or is a conditional literal. With ``counted``,
     its literal is one of the conditions.
@@ -210,55 +224,58 @@ def _element_terms(
     if isinstance(conditional, AST) and conditional.ast_type == ASTType.ConditionalLiteral:
         terms.append(conditional.literal)
         conditional = [*conditional.condition, *([conditional.literal] if counted else ())]
-    inner = [*conditions, *_conditions(conditional)]
-    yield from ((node, _without(node, inner)) for node in dict.fromkeys((*terms, *conditional)))
+    inner = [*conditions, *_check_conditions(conditional)]
+    yield from ((node, _conditions_without(node, inner)) for node in dict.fromkeys((*terms, *conditional)))
 
 
-def _terms(node: AST) -> Iterator[AST]:
-    """Return the maximal terms with arithmetic in a node of the syntax tree."""
+def _arithmetic_terms(node: AST) -> Iterator[AST]:
+    """Yield the maximal terms with arithmetic in a node of the syntax tree."""
     if node.ast_type == ASTType.SymbolicAtom:
         symbol = node.symbol
         while symbol.ast_type == ASTType.UnaryOperation:  # p with a minus before it
             symbol = symbol.argument
         for argument in symbol.arguments:
-            yield from _terms(argument)
+            yield from _arithmetic_terms(argument)
         return
     if node.ast_type in {ASTType.BinaryOperation, ASTType.UnaryOperation}:
         leaves: dict[str, AST] = {}
         if any(word in _BINARY.values() for word in _postfix(node, leaves)):
             yield node
         for leaf in leaves.values():
-            yield from _terms(leaf)
+            yield from _arithmetic_terms(leaf)
         return
     for key in node.child_keys:
         child = getattr(node, key)
         for child_node in [child] if isinstance(child, AST) else child or ():
-            yield from _terms(child_node)
+            yield from _arithmetic_terms(child_node)
 
 
-def _conditions(body: Iterable[AST]) -> list[AST]:
-    """Return the conditions that bind variables or have neither arithmetic nor aggregates."""
+def _check_conditions(body: Iterable[AST]) -> list[AST]:
+    """Return the conjuncts of a body that bind variables or have neither arithmetic nor aggregates."""
     return [
-        condition for condition in body if _binds(condition) or not any(map(_calculates, nodes(condition)))
+        condition
+        for condition in body
+        if _binds(condition) or not any(map(_is_calculation, nodes(condition)))
     ]
 
 
-def _without(node: AST, conditions: Sequence[AST]) -> Sequence[AST]:
+def _conditions_without(node: AST, conditions: Sequence[AST]) -> Sequence[AST]:
     """Return the conditions for the check of a node, without the node itself if others bind its variables.
 
     Clingo drops an instance in which an equation overflows. A check with this equation would be dropped, too.
+    Without the node, conditions with variables that nothing else binds are left out as well.
     """
-    others = [condition for condition in conditions if condition != node]
-    bound = _bound(others)
-    inside = {name for term in _terms(node) for name in variables(term)}
+    other_conditions = [condition for condition in conditions if condition != node]
+    bound = _bound_variables(other_conditions)
+    inside = {name for term in _arithmetic_terms(node) for name in variables(term)}
     return (
-        [condition for condition in others if bound.issuperset(variables(condition))]
+        [condition for condition in other_conditions if bound.issuperset(variables(condition))]
         if inside <= bound
         else conditions
     )
 
 
-def _bound(conditions: Sequence[AST]) -> set[str]:
+def _bound_variables(conditions: Sequence[AST]) -> set[str]:
     """Return the variables bound by positive atoms, or by equations with terms of bound variables."""
     bound: set[str] = set()
     comparisons: list[tuple[AST, AST]] = []
@@ -267,32 +284,33 @@ def _bound(conditions: Sequence[AST]) -> set[str]:
             bound.update(variables(condition))
             continue
         terms = [condition.atom.term, *(guard.term for guard in condition.atom.guards)]
-        for guard, first, second in zip(condition.atom.guards, terms, terms[1:], strict=False):
+        for guard, left_term, right_term in zip(condition.atom.guards, terms, terms[1:], strict=False):
             if guard.comparison == ComparisonOperator.Equal:
-                comparisons += [(first, second), (second, first)]
+                comparisons += [(left_term, right_term), (right_term, left_term)]
     before = -1
     while before < len(bound):
         before = len(bound)
         bound.update(
             name
-            for one, other in comparisons
-            if bound.issuperset(variables(other))
-            for name in _solved_for(one)
+            for solved_term, value_term in comparisons
+            if bound.issuperset(variables(value_term))
+            for name in _solvable_variables(solved_term)
         )
     return bound
 
 
-def _solved_for(term: AST) -> Iterator[str]:
-    """Return the variable for which clingo solves an equation with a linear term such as ``2*X+1``."""
+def _solvable_variables(term: AST) -> Iterator[str]:
+    """Yield the variable for which clingo solves an equation with a linear term such as ``2*X+1``."""
     if term.ast_type == ASTType.Variable:
         yield term.name
     elif term.ast_type == ASTType.BinaryOperation and term.operator_type in _LINEAR:
         operands = (term.left, term.right)
         if any(_number(operand) is not None for operand in operands):
-            yield from (name for operand in operands for name in _solved_for(operand))
+            yield from (name for operand in operands for name in _solvable_variables(operand))
 
 
-def _calculates(node: AST) -> bool:
+def _is_calculation(node: AST) -> bool:
+    """Whether a node is an operation with two operands or an aggregate."""
     return node.ast_type in {ASTType.BinaryOperation, ASTType.Aggregate, ASTType.BodyAggregate}
 
 
@@ -306,28 +324,32 @@ def _binds(condition: AST) -> bool:
     elif atom.ast_type in {ASTType.BodyAggregate, ASTType.Aggregate}:
         sides = [guard for guard in (atom.left_guard, atom.right_guard) if guard is not None]
         guards = [guard for guard in sides if any(variables(guard.term))]
-    equal = any(guard.comparison == ComparisonOperator.Equal for guard in guards)
-    return equal or bool(atom.ast_type == ASTType.SymbolicAtom)
+    has_equation = any(guard.comparison == ComparisonOperator.Equal for guard in guards)
+    return has_equation or bool(atom.ast_type == ASTType.SymbolicAtom)
 
 
-def _joined(conditions: Sequence[AST | str]) -> str:
+def _body_text(conditions: Sequence[AST | str]) -> str:
+    """Return conditions as the body of a rule; ``#true`` if there are none."""
     return "; ".join(map(str, conditions)) or "#true"
 
 
-class _Naming(Transformer):
+class _AnonymousVariableNamer(Transformer):
     """Rewriter that names each ``_`` in a term with arithmetic, so that a check can refer to it."""
 
     def __init__(self) -> None:
+        """Begin with the name ``_Any1``."""
         self._number = count(1)
         self._in_term = False
 
     def visit_BinaryOperation(self, term: AST) -> AST:  # noqa: N802 (the name clingo looks for)
+        """Rename each ``_`` within an operation."""
         before, self._in_term = self._in_term, True
         changed = term.update(**self.visit_children(term))
         self._in_term = before
         return changed
 
     def visit_Variable(self, variable: AST) -> AST:  # noqa: N802
+        """Return a variable, under a new name such as ``_Any1`` if it is ``_`` within an operation."""
         if self._in_term and variable.name == "_":
             return variable.update(name=f"_Any{next(self._number)}")
         return variable

@@ -1,4 +1,4 @@
-"""Rules that name units by their numbers."""
+"""Search for rules that name a unit by its number, such as ``:- use(7).``"""
 
 from collections.abc import Iterable
 from typing import NamedTuple
@@ -12,43 +12,48 @@ from foon_asp.rules.fact_values import COLUMNS, Columns
 
 
 class NumberedUnit(NamedTuple):
-    """The atom or comparison of a rule that names a unit by its number, as text, and its rule's source."""
+    """The atom or comparison that names a unit by its number, as text, and the place of its rule."""
 
     text: str
     source: Source
 
 
 def numbered_unit(statements: Iterable[AST]) -> NumberedUnit | None:
-    """Return the first atom or comparison that names a unit by its number; ``None`` without one.
+    """Return the first atom or comparison that names a unit by its number, as ``use(7)`` does, else ``None``.
 
     A number that is matched with a unit only through a user predicate is not found.
     """
     for statement in statements:
         if statement.ast_type == ASTType.Rule:
             for clause in clauses(statement, 0, {}):
-                text = _named_in(clause)
+                text = _numbered_unit_text(clause)
                 if text:
                     return NumberedUnit(text, source_of(statement))
     return None
 
 
-def _named_in(clause: Clause) -> str:
+def _numbered_unit_text(clause: Clause) -> str:
     """Return the atom or comparison of a clause that names a unit by its number; empty without one."""
-    conditions: list[Conjunct] = [conjunct for _, condition in clause.others for conjunct in condition]
+    conditions: list[Conjunct] = [conjunct for _, condition in clause.head_elements for conjunct in condition]
     conjuncts = [*clause.body, *conditions]
     units: set[str] = set()
     for literal in literals(conjuncts):
         for position in COLUMNS.get(literal.signature, Columns()).units:
             argument = literal.arguments[position]
             units.update(variables(argument))
-            if _has_number(argument):
+            if _has_constant(argument):
                 return literal.text
     tests = (conjunct for conjunct in conjuncts if isinstance(conjunct, Test))
     return next(
-        (test.text for test in tests if _has_number(test.ast) and not units.isdisjoint(variables(test.ast))),
+        (
+            test.text
+            for test in tests
+            if _has_constant(test.ast) and not units.isdisjoint(variables(test.ast))
+        ),
         "",
     )
 
 
-def _has_number(piece: AST) -> bool:
-    return any(node.ast_type == ASTType.SymbolicTerm for node in nodes(piece))
+def _has_constant(syntax_node: AST) -> bool:
+    """Whether a node of the syntax tree has a number, text or word in it."""
+    return any(node.ast_type == ASTType.SymbolicTerm for node in nodes(syntax_node))

@@ -1,4 +1,4 @@
-"""Warnings for names in parameters of ready-made constraints that do not occur in the network."""
+"""Warnings about parameters of ready-made constraints that name nothing in the network."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -7,7 +7,14 @@ from typing import Final
 from foon_asp.encoding.encoding_file import string_constant
 from foon_asp.encoding.own_encodings import is_own
 from foon_asp.proof.rule_meaning import LIBRARY
-from foon_asp.rules.fact_values import CONTENTS, MOTIONS, FactValues, has_text, nearest_text, unknown_text
+from foon_asp.rules.fact_values import (
+    CONTENTS,
+    MOTIONS,
+    FactValues,
+    has_text,
+    nearest_text,
+    unknown_text_message,
+)
 from foon_asp.rules.passed_constraint import Constraint, LibraryUse, find_constraint
 from foon_asp.rules.ready_made import LISTED
 
@@ -29,7 +36,11 @@ PARAMETERS: Final[Mapping[str, tuple[str, ...]]] = {
 def unknown_parameters(
     constraints: Sequence[Constraint], settings: Sequence[str], values: FactValues
 ) -> Iterator[str]:
-    """Return a warning for each parameter whose name is not in the network, with the most similar name."""
+    """Yield a warning for each parameter whose value names nothing in the network, with a similar name.
+
+    Only unchanged ready-made constraints are checked. ``settings``, as ``NAME=VALUE``, are the parameters of
+    those that are passed without constants of their own.
+    """
     shared = dict(setting.partition("=")[::2] for setting in settings)
     for constraint in dict.fromkeys(map(find_constraint, constraints)):
         file = constraint.file if isinstance(constraint, LibraryUse) else constraint
@@ -42,4 +53,4 @@ def unknown_parameters(
             if word and not has_text(PARAMETERS[parameter], word, values):
                 use = constraint if isinstance(constraint, LibraryUse) else f"{file.stem}:{parameter}={word}"
                 meant = nearest_text(PARAMETERS[parameter], word, values)
-                yield f"{use}: warning: {unknown_text(PARAMETERS[parameter], word, meant)}"
+                yield f"{use}: warning: {unknown_text_message(PARAMETERS[parameter], word, meant)}"

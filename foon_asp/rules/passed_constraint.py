@@ -1,4 +1,4 @@
-"""Constraints as they are passed: a file, a rule as text, a ready-made one with constants of its own."""
+"""Constraints as users pass them: a file, a rule as text, or a ready-made one with constants of its own."""
 
 import re
 from os import PathLike
@@ -23,13 +23,14 @@ class RuleText(NamedTuple):
         return "rule"
 
     def __str__(self) -> str:
+        """Return the rules."""
         return self.text
 
 
 class LibraryUse(NamedTuple):
-    """A ready-made constraint with constants of its own.
+    """A ready-made constraint with constants of its own, as ``forbid_motion:forbidden_motion=fry``.
 
-    ``file`` is its file, and ``written`` the text of its option.
+    ``file`` is the file of the constraint, and ``written`` this text of the option.
     """
 
     file: Path
@@ -37,15 +38,16 @@ class LibraryUse(NamedTuple):
 
     @property
     def name(self) -> str:
-        """The name of the use in messages, in place of a file's name."""
+        """The text of the option, which messages have in place of a file's name."""
         return self.written
 
     def __str__(self) -> str:
+        """Return the text of the option."""
         return self.written
 
     @property
     def constants(self) -> dict[str, str]:
-        """The constants with their values as written; raises :class:`UserError` for wrong syntax."""
+        """The values of the constants by name, as written; raises :class:`UserError` for wrong syntax."""
         name, _, remaining = self.written.partition(":")
         values: dict[str, str] = {}
         while True:
@@ -59,16 +61,16 @@ class LibraryUse(NamedTuple):
                 raise UserError(f"found two values of {constant} in {self.written!r}, expected one")
             quoted = _QUOTED.match(remaining)
             end = quoted.end() if quoted else (remaining + ",").index(",")
-            values[constant], after, remaining = (
+            values[constant], separator, remaining = (
                 remaining[:end],
                 remaining[end : end + 1],
                 remaining[end + 1 :],
             )
-            if not after:
+            if not separator:
                 return values
-            if after != ",":
+            if separator != ",":
                 raise UserError(
-                    f"found {after}{remaining[:40]} after {values[constant]} in {self.written!r}, "
+                    f"found {separator}{remaining[:40]} after {values[constant]} in {self.written!r}, "
                     "expected a comma"
                 )
 
@@ -80,8 +82,9 @@ Constraint = Path | RuleText | LibraryUse
 def given_constraint(constraint: str | PathLike[str] | Constraint) -> Constraint:
     """Return the constraint that a Python argument stands for.
 
-    A text that has ``:-``, or ends in a full stop, is a rule, unless it is an existing path or the name of a
-    ready-made constraint; a path is always a path. Raises :class:`UserError` for an empty text.
+    A text that is an existing path, or names a ready-made constraint, stands for that. Any other text is a
+    rule if it has ``:-``, or ends in a full stop; else it is a path. Raises :class:`UserError` for an empty
+    text.
     """
     if isinstance(constraint, RuleText | LibraryUse):
         return constraint
@@ -103,10 +106,13 @@ def given_constraint(constraint: str | PathLike[str] | Constraint) -> Constraint
 
 
 def named_constraint(text: str, path: type[Path] = Path) -> Path | LibraryUse:
-    """Return the ready-made constraint that ``NAME:CONSTANT=VALUE`` stands for; any other text is a path."""
+    """Return a text as use of a ready-made constraint if it is ``NAME:CONSTANT=VALUE``, else as a path.
+
+    An existing path is always a path. ``path`` is the class of paths that are returned.
+    """
     name, colon, _ = text.partition(":")
     if colon and not exists(Path(text)):
-        file = _bundled(Path(name))
+        file = _ready_made_file(Path(name))
         if file is not None:
             return LibraryUse(file, text)
     return path(text)
@@ -121,7 +127,7 @@ def find_constraint(constraint: Constraint) -> Constraint:
         return constraint
     if exists(constraint) and constraint.is_file():
         return constraint
-    bundled = _bundled(constraint)
+    bundled = _ready_made_file(constraint)
     if bundled is not None:
         return bundled
     name = str(constraint).partition(":")[0]
@@ -130,27 +136,28 @@ def find_constraint(constraint: Constraint) -> Constraint:
             f"{constraint}: constants can follow the name of a ready-made constraint only; set those of a "
             "file with -c CONSTANT=VALUE"
         )
-    names = ", ".join(sorted(file.stem for file in _library().glob(f"*{_SUFFIX}")))
+    names = ", ".join(sorted(file.stem for file in _constraints_folder().glob(f"*{_SUFFIX}")))
     rule = "; a rule is given with --rule" if ":-" in str(constraint) else ""
     raise UserError(
         f"{constraint}: no such file; expected an encoding (.lp) or a ready-made one: {names}{rule}"
     )
 
 
-def _library() -> Path:
+def _constraints_folder() -> Path:
+    """Return the folder of the ready-made constraints."""
     return encodings_folder() / "constraints"
 
 
-def _bundled(path: Path) -> Path | None:
+def _ready_made_file(path: Path) -> Path | None:
     """Return the file of the ready-made constraint with this name (``.lp`` may be missing), else ``None``."""
     if path.name != str(path):
         return None
-    file = _library() / (path.name.removesuffix(_SUFFIX) + _SUFFIX)
+    file = _constraints_folder() / (path.name.removesuffix(_SUFFIX) + _SUFFIX)
     return file if exists(file) else None
 
 
 def exists(path: Path) -> bool:
-    """Whether a path exists; a text that cannot be a path does not."""
+    """Whether a path exists; ``False`` for a text that cannot be a path."""
     try:
         return path.exists()
     except (OSError, ValueError):

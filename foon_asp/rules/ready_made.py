@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from foon_asp.deadline import Deadline
 from foon_asp.encoding.exact import LARGEST
-from foon_asp.encoding.fact_writer import hundredths
+from foon_asp.encoding.fact_writer import prices_in_hundredths
 from foon_asp.encoding.own_encodings import is_own
 from foon_asp.errors import UserError
 from foon_asp.problem import Contradiction, LinearRow, Problem, Restriction
@@ -39,18 +39,23 @@ _REQUIRING_PREFIX = "require_"  # prefix of the names of constraints that requir
 
 
 class ReadyMade:
-    """Ready-made constraints of one question, with the meaning by which certificates are checked.
+    """Ready-made constraints of one question, which are evaluated without clingo.
 
-    They are local. A tree needs redundant units for them only as members of required sets.
+    ``local``: the constraints read facts about the tree alone.
+    ``redundant``: ``False``, as a tree needs redundant units only where a required set demands them.
     ``unsettled``: some constraints do more than to remove and require units; these are antimonotone.
     ``shrinking``: all constraints are antimonotone: if a tree keeps to them, so does every subtree.
-    ``constants``: the constants by name, as terms. ``files``: the files of the constraints.
+    ``constants``: the constants by name, as terms of clingo. ``files``: the files of the constraints.
     """
 
     local: Final = True
     redundant: Final = False
 
     def __init__(self, rules: Sequence[Rule], constants: Mapping[str, str], files: Sequence[Path]) -> None:
+        """Find out from the names of the constraints whether they are unsettled or shrinking.
+
+        ``rules`` are the constraints with the values of their constants, as in certificates.
+        """
         self.rules, self.constants, self.files = tuple(rules), constants, tuple(files)
         names = [rule["rule"] for rule in rules]
         self.unsettled = not _WITH_UNSETTLED.isdisjoint(names)
@@ -62,8 +67,8 @@ class ReadyMade:
         """The predicates that the constraints read, in addition to those of the built-in encodings."""
         return READ | {_PRICE} if "max_price" in self.constants else READ
 
-    def fit(self, problem: Problem) -> bool:
-        """Whether the constraints have the same meaning for a problem here as in clingo.
+    def has_same_meaning(self, problem: Problem) -> bool:
+        """Whether the constraints mean the same for a problem here as in clingo.
 
         ``False`` if some are ``unsettled`` and the rules see less than the kitchen (``kitchen_seen``), and
         for prices that clingo refuses.
@@ -72,7 +77,7 @@ class ReadyMade:
             return False
         try:
             if "max_price" in self.constants:
-                hundredths(problem, range(len(problem.network)), [_PRICE])
+                prices_in_hundredths(problem, range(len(problem.network)), [_PRICE])
         except UserError:
             return False
         return True
@@ -81,7 +86,7 @@ class ReadyMade:
         """Return ``False``: the search is never left to enforce the constraints."""
         return False
 
-    def applied(self, problem: Problem, deadline: Deadline) -> Restriction | Contradiction:
+    def restriction_of(self, problem: Problem, deadline: Deadline) -> Restriction | Contradiction:
         """Return the units removed from a problem and the sets required, or a contradiction."""
         meanings, _ = self._meanings(problem)
         # what is needed by a unit of the last set is made by one of the others, as the tree executes
@@ -95,21 +100,24 @@ class ReadyMade:
         removed: frozenset[int] = frozenset().union(*(meaning.removed for meaning in meanings))
         return Restriction(removed.__contains__, required)
 
-    def counted(self, problem: Problem, deadline: Deadline) -> Iterator[LinearRow]:
-        """Return the limits on sums over units."""
+    def upper_limits(self, problem: Problem, deadline: Deadline) -> Iterator[LinearRow]:
+        """Yield the upper limits on sums of amounts of single units."""
         for rule_meaning in self._meanings(problem)[0]:
             if rule_meaning.max_sum is not None and all(len(units) == 1 for units, _ in rule_meaning.things):
                 amounts = {unit: int(amount) for units, amount in rule_meaning.things for unit in units}
                 yield LinearRow(amounts, int(rule_meaning.max_sum))
 
     def keeps(self, problem: Problem, units: Collection[int]) -> bool:
-        """Whether a tree keeps to all constraints."""
+        """Whether a tree, given by the ids of its units, keeps to all constraints."""
         _, ruled = self._meanings(problem)
         tree = frozenset(units)
         return ruled.fault(tree, frozenset(range(len(problem.network))) - tree) is None
 
     def _meanings(self, problem: Problem) -> tuple[tuple[Meaning, ...], Ruled]:
-        """Return the meanings of the constraints for a problem, and a checker of trees against these."""
+        """Return the meanings of the constraints for a problem, and a checker of trees against these.
+
+        The result for the last problem is cached.
+        """
         if self._last is None or self._last[0] is not problem:
             question, nodes = question_of(problem), len(problem.network.objects)
             meanings = tuple(meaning(rule, question) for rule in self.rules)
@@ -121,7 +129,7 @@ def ready_made(constraints: Sequence[Constraint], settings: Sequence[str]) -> Re
     """Return the constraints if each is ready-made, unchanged, used once, and has all its constants set.
 
     ``settings``, as ``NAME=VALUE``, set the constants of constraints that are passed without constants.
-    ``None`` for any other constraints, and if a value is not a plain text or number.
+    ``None`` for any other constraints, for one with an error, and if a value is not a plain text or number.
     """
     shared = dict(setting.partition("=")[::2] for setting in settings)
     files: list[Path] = []
@@ -133,26 +141,31 @@ def ready_made(constraints: Sequence[Constraint], settings: Sequence[str]) -> Re
                 return None
             files.append(file)
             uses.append((file.stem, constraint.constants if isinstance(constraint, LibraryUse) else shared))
-        rules = _values(uses, shared)
+        rules = _rules_with_values(uses, shared)
         return None if rules is None or len(set(files)) < len(files) else ReadyMade(*rules, files)
     return None
 
 
-def _values(
+def _rules_with_values(
     uses: Sequence[tuple[str, Mapping[str, str]]], shared: Mapping[str, str]
 ) -> tuple[Sequence[Rule], Mapping[str, str]] | None:
-    """Return constraints with their values, and all constants as terms; ``None`` if a value is not plain."""
+    """Return constraints with the values of their constants, and all constants as terms of clingo.
+
+    ``uses`` are the names of constraints with their constants; these are ``shared`` where a use has none of
+    its own. The result is ``None`` if a value is not a plain text or number, or is missing. It is ``None``,
+    too, if a setting in ``shared`` is not used.
+    """
     facts: dict[str, set[str]] = {name: set() for name in LISTED}
     constants: dict[str, str] = {}
     used_names: set[str] = set()
     rules: list[dict[str, Any]] = []
     for name, constants_given in uses:
         rule: dict[str, Any] = {"rule": name}
-        read = {LISTED.get(value, value): (value, kind) for value, kind in LIBRARY[name].values.items()}
-        read.pop("", None)
-        if constants_given is not shared and constants_given.keys() != read.keys():
+        parameters = {LISTED.get(value, value): (value, kind) for value, kind in LIBRARY[name].values.items()}
+        parameters.pop("", None)
+        if constants_given is not shared and constants_given.keys() != parameters.keys():
             return None
-        for constant, (value, kind) in read.items():
+        for constant, (value, kind) in parameters.items():
             written = constants_given.get(constant, "")
             match = _INTEGER.fullmatch(written) if kind is int else _QUOTED_TEXT.fullmatch(written)
             if match is None or not written.isprintable() or (kind is int and abs(int(written)) > LARGEST):
@@ -176,14 +189,14 @@ def _values(
 
 
 def question_of(problem: Problem) -> Question:
-    """Return the view of a problem that constraints read."""
-    seen = problem.as_seen or problem
+    """Return the parts of a problem that constraints read: its network, kitchen, goals, rates and prices."""
+    problem_seen = problem.as_seen or problem
     return Question(
         problem.network,
         problem.kitchen,
         problem.goals,
         problem.utensils,
-        lambda unit: None if seen.rates is None else seen.rate(unit),
+        lambda unit: None if problem_seen.rates is None else problem_seen.rate(unit),
         problem.prices.__getitem__,
         lambda unit: frozenset(problem.needs[unit]),
         lambda unit: frozenset(problem.gives[unit]),

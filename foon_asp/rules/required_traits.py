@@ -1,4 +1,4 @@
-"""Traits of the units that a rule requires: the names that the rule states for each such unit."""
+"""Traits of the units that a rule requires: the motions and items that the rule names for them."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import count, product
@@ -22,14 +22,22 @@ _Atom = tuple[Signature, int, tuple[_Term, ...]]  # with its negations
 
 
 class TraitReader:
-    """Reader of traits in conjunctions about one unit of the tree; it unfolds auxiliary predicates."""
+    """Reader of traits in conjunctions about one unit of the tree; it unfolds auxiliary predicates.
+
+    ``clauses`` are the rules by the predicate that they derive.
+    """
 
     def __init__(self, clauses: Mapping[Signature, Sequence[Clause]], constants: Constants) -> None:
+        """Keep the rules and the values of constants."""
         self._clauses, self._constants = clauses, constants
         self._fresh = count()
 
     def rows(self, conjuncts: Iterable[Conjunct]) -> list[list[Trait]]:
-        """Unfold a conjunction into disjuncts; return for each the traits of all units for which it holds."""
+        """Return the traits that a conjunction requires of a unit: one list for each of its disjuncts.
+
+        To get the disjuncts, auxiliary predicates in the conjunction are replaced by the bodies of their
+        rules.
+        """
         return [list(_traits(atoms)) for atoms in self._disjuncts(conjuncts, {}, ())]
 
     def _disjuncts(
@@ -37,19 +45,24 @@ class TraitReader:
     ) -> list[list[_Atom]]:
         """Return the disjuncts of a conjunction, with its variables replaced by the terms in ``names``.
 
-        ``above`` has the auxiliary predicates that are being unfolded.
+        Conjuncts other than literals are left out. ``above`` has the auxiliary predicates that are being
+        unfolded.
         """
         alternatives = []
         for conjunct in conjuncts:
             if isinstance(conjunct, Literal):
-                terms = tuple(self._term(argument, names) for argument in conjunct.arguments)
-                alternatives.append(self._unfolded(conjunct, terms, above))
+                terms = tuple(self._replace_term(argument, names) for argument in conjunct.arguments)
+                alternatives.append(self._unfold_literal(conjunct, terms, above))
         return [[atom for atoms in chosen for atom in atoms] for chosen in product(*alternatives)]
 
-    def _unfolded(
+    def _unfold_literal(
         self, literal: Literal, terms: tuple[_Term, ...], above: tuple[Signature, ...]
     ) -> list[list[_Atom]]:
-        """Return the disjuncts of a literal, with auxiliary predicates replaced by the bodies of rules."""
+        """Return the disjuncts of a literal, with auxiliary predicates replaced by the bodies of rules.
+
+        A negated literal, a fact and a recursive predicate are not replaced. ``available(O)`` becomes
+        ``use(U), gives(U,O)``.
+        """
         signature = literal.signature
         if literal.negations or signature in SUBJECTS or signature in {USE, TIMES} or signature in above:
             return [[(signature, literal.negations, terms)]]
@@ -60,11 +73,15 @@ class TraitReader:
         for clause in self._clauses.get(signature, ()):
             assert clause.head is not None
             pairs = zip(clause.head.arguments, terms, strict=True)
-            names = {str(one): term for one, term in pairs if one.ast_type == ASTType.Variable}
+            names = {str(argument): term for argument, term in pairs if argument.ast_type == ASTType.Variable}
             disjuncts += self._disjuncts(clause.body, names, (*above, signature))
         return disjuncts
 
-    def _term(self, term: AST, names: dict[str, _Term]) -> _Term:
+    def _replace_term(self, term: AST, names: dict[str, _Term]) -> _Term:
+        """Return the value of a constant, or the term that ``names`` has for a variable.
+
+        A variable that is not in ``names`` gets a new name there.
+        """
         symbol = value(term, self._constants)
         if symbol is not None:
             return symbol
@@ -73,7 +90,10 @@ class TraitReader:
 
 
 def _traits(atoms: Sequence[_Atom]) -> Iterator[Trait]:
-    """Return the traits that a conjunction of atoms states for its unit."""
+    """Yield the traits that a conjunction of atoms states for the unit that it uses.
+
+    For an input that the rule keeps out of the kitchen, the trait is ``Having.MADE``.
+    """
     units = {terms[0] for signature, negations, terms in atoms if signature in {USE, TIMES} and not negations}
     facts = [(signature[0], terms) for signature, negations, terms in atoms if not negations]
     outside = {terms[0] for signature, negations, terms in atoms if signature == _KITCHEN and negations == 1}
@@ -82,7 +102,11 @@ def _traits(atoms: Sequence[_Atom]) -> Iterator[Trait]:
             continue
         role, words = _HAVING[name], [terms[-1]]
         if role is not Role.MOTION:
-            words = [of[-1] for other, of in facts if other in {"label", "ingredient"} and of[0] == terms[-1]]
+            words = [
+                fact_terms[-1]
+                for fact_name, fact_terms in facts
+                if fact_name in {"label", "ingredient"} and fact_terms[0] == terms[-1]
+            ]
             if role is Role.INPUT and terms[-1] in outside:
                 role = Role.MADE
         for word in words:

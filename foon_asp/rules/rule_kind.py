@@ -1,9 +1,9 @@
 """Kind and locality of the rules of one question, inferred from clingo's syntax tree.
 
-All rules of a question are analysed together, since a rule in one file may change the effect of a rule in
-another. A rule whose effect is unknown is ``OTHER``; docs/writing-constraints.md explains the consequences.
-The kinds serve to cut the search. Rules known to remove units or to require one of a set can be applied
-before the search; clingo enforces all other rules.
+All rules of a question are analysed together: a rule in one file may change the effect of a rule in another.
+A rule whose effect is unknown is ``OTHER``; docs/writing-constraints.md explains the consequences. The kinds
+serve to cut the search. Rules known to remove units or to require one of a set can be applied before the
+search; clingo enforces all other rules.
 """
 
 from collections.abc import Collection, Iterable, Sequence
@@ -29,20 +29,21 @@ from foon_asp.rules.clause import (
     source_of,
     value,
 )
-from foon_asp.rules.dependence import Dependence, Depends, Doubt
-from foon_asp.rules.fact_values import COLUMNS, misplaced
+from foon_asp.rules.dependence import Dependence, Doubt, Monotonicity
+from foon_asp.rules.fact_values import COLUMNS, position_of_wrong_type
 from foon_asp.rules.locality import Locality
-from foon_asp.rules.understood import AtLeastOne, Removes, Row, Translator
+from foon_asp.rules.understood import AtLeastOne, Removal, Row, Translator
 
 
 class Kind(StrEnum):
     """The effect of a rule on the set of trees.
 
-    ``FACT``: it is independent of the tree, and allows every tree or none. ``DELETING``: it excludes the
-    trees with one of certain units, which are known without clingo. ``SHRINKING``: it is antimonotone: if it
-    allows a tree, it allows every subset. ``REQUIRING``: it is monotone: if it allows a tree, it allows every
-    superset. ``OTHER``: its kind is unknown. ``HELPER``: it derives an auxiliary predicate, and excludes
-    nothing by itself.
+    ``FACT``: it is independent of the tree, and allows every tree or none.
+    ``DELETING``: it excludes the trees with one of certain units, which are known without clingo.
+    ``SHRINKING``: it is antimonotone: if it allows a tree, it allows every subset.
+    ``REQUIRING``: it is monotone: if it allows a tree, it allows every superset.
+    ``OTHER``: its kind is unknown.
+    ``HELPER``: it derives an auxiliary predicate, and excludes nothing by itself.
     """
 
     FACT = "fact"
@@ -73,11 +74,10 @@ class Rule(NamedTuple):
     """A rule of one question, with its kind and locality.
 
     ``reason``, at ``reason_source``: why the kind is ``OTHER``, or why the rule has no effect; else empty.
-    ``nonlocality``, at ``nonlocality_source``: the facts outside the tree that the rule reads. It is empty
-    for a local rule, whose truth for a tree stays the same without the facts of units outside the tree and of
-    object nodes that only such units have. A ``HELPER`` is always local: its facts count for the rules that
-    use it.
-    ``one_of``: the rule requires a unit of each of one or several sets; the sets are found before the search.
+    ``nonlocality``, at ``nonlocality_source``: the facts outside the tree that the rule reads; empty for a
+    local rule (:mod:`foon_asp.rules.locality`). A ``HELPER`` is always local: its facts count for the rules
+    that use it.
+    ``one_of``: the rule requires a unit of each of one or several sets, which are found before the search.
     """
 
     source: Source
@@ -90,12 +90,12 @@ class Rule(NamedTuple):
 
     @property
     def local(self) -> bool:
-        """Whether it reads facts about the tree alone."""
+        """Whether the rule reads facts about the tree alone."""
         return not self.nonlocality
 
     @property
     def without_effect(self) -> bool:
-        """Whether it allows every tree, since a condition in it never holds."""
+        """Whether the rule allows every tree, since a condition in it never holds."""
         return bool(self.reason) and self.kind is not Kind.OTHER
 
 
@@ -103,9 +103,9 @@ class Analysis:
     """The rules of one question as clauses, each with its kind.
 
     ``rules``: the rules, in the order of the files.
-    ``live``: the clauses that can have an effect, which excludes those with a condition that never holds.
-    ``of_rule``: the live clauses of each rule, by its index in ``rules``.
-    ``removals``, ``at_least_ones``, ``rows``: the rules that ``translator`` could translate, by the same
+    ``live_clauses``: the clauses of rules and built-in rules, except those with a condition that never holds.
+    ``clauses_of_rule``: the live clauses of each rule, by its index in ``rules``.
+    ``removals``, ``at_least_ones``, ``rows``: the translations of rules, where there is one, by the same
     index.
     ``constant_texts``: ``#const`` statements for the constants in these translations.
     """
@@ -115,7 +115,8 @@ class Analysis:
     ) -> None:
         """Analyse parsed statements.
 
-        ``settings`` are the constants that are set, as ``name=value`` for clingo.
+        ``settings`` are the constants that are set, as ``name=value`` for clingo. ``varied`` are predicates
+        whose facts vary within the question.
         """
         statements = tuple(statements)
         self.definitions = [statement for statement in statements if statement.ast_type == ASTType.Definition]
@@ -127,24 +128,31 @@ class Analysis:
             list(clauses(statement, number, self.constants)) if statement.ast_type == ASTType.Rule else []
             for number, statement in enumerate(self.statements)
         ]
-        self.of_rule = [
+        self.clauses_of_rule = [
             [clause for clause in rule_clauses if self._why_never(clause.body) is None]
             for rule_clauses in clauses_by_rule
         ]
-        self.live = [clause for rule_clauses in (*self.of_rule, _implied()) for clause in rule_clauses]
-        self.dependence = Dependence(self.live, self.constants, varied)
-        self._locality = Locality(self.live, self.dependence)
-        self.translator = Translator(self.live, self.constants, self.dependence)
-        self.removals: dict[int, Removes] = {}
+        self.live_clauses = [
+            clause for rule_clauses in (*self.clauses_of_rule, _implied_clauses()) for clause in rule_clauses
+        ]
+        self.dependence = Dependence(self.live_clauses, self.constants, varied)
+        self._locality = Locality(self.live_clauses, self.dependence)
+        self.translator = Translator(self.live_clauses, self.constants, self.dependence)
+        self.removals: dict[int, Removal] = {}
         self.at_least_ones: dict[int, tuple[AtLeastOne, ...]] = {}
         self.rows: dict[int, Row] = {}
         self.rules = tuple(
-            self._understood(number, self._rule(statement, live))
-            for number, (statement, live) in enumerate(zip(self.statements, self.of_rule, strict=True))
+            self._translate_rule(number, self._classify_statement(statement, live_clauses))
+            for number, (statement, live_clauses) in enumerate(
+                zip(self.statements, self.clauses_of_rule, strict=True)
+            )
         )
 
     def kind(self, clause: Clause) -> tuple[Kind, Doubt | None]:
-        """Return the kind of a clause, and the reason if the kind is ``OTHER``, else ``None``."""
+        """Return the kind of a clause, and the reason if the kind is ``OTHER``.
+
+        The reason is ``None`` for any other kind.
+        """
         dependence = self.dependence
         doubt: Doubt | None
         if not clause.plain:
@@ -159,18 +167,20 @@ class Analysis:
         if clause.head is not None:
             return Kind.HELPER, None
         kinds = {
-            Depends.NOT: Kind.FACT,
-            Depends.GROWS: Kind.SHRINKING,
-            Depends.SHRINKS: Kind.REQUIRING,
-            Depends.BOTH: Kind.OTHER,
+            Monotonicity.NOT: Kind.FACT,
+            Monotonicity.GROWS: Kind.SHRINKING,
+            Monotonicity.SHRINKS: Kind.REQUIRING,
+            Monotonicity.BOTH: Kind.OTHER,
         }
         kind = kinds[dependence.of_body(clause.body)]
-        return kind, self._why_both(clause) if kind is Kind.OTHER else None
+        return kind, self._why_not_monotone(clause) if kind is Kind.OTHER else None
 
     def reads(self, signature: Signature) -> bool:
-        """Whether some rule reads a predicate."""
+        """Whether the body of some rule has a predicate."""
         return any(
-            literal.signature == signature for clause in self.live for literal in literals(clause.body)
+            literal.signature == signature
+            for clause in self.live_clauses
+            for literal in literals(clause.body)
         )
 
     def _why_never(self, body: Iterable[Conjunct]) -> str | None:
@@ -188,7 +198,7 @@ class Analysis:
                     for position, symbol in symbols.items()
                     if symbol is not None
                 }
-                misfit = misplaced(COLUMNS[conjunct.signature], values)
+                misfit = position_of_wrong_type(COLUMNS[conjunct.signature], values)
                 if misfit is not None:
                     texts = misfit in COLUMNS[conjunct.signature].texts
                     kind = (
@@ -199,31 +209,35 @@ class Analysis:
                     return f"{conjunct.text} never holds, since {kind}"
         return None
 
-    def _why_both(self, clause: Clause) -> Doubt:
+    def _why_not_monotone(self, clause: Clause) -> Doubt:
         """Return why a rule is neither monotone nor antimonotone."""
         for conjunct in clause.body:
-            if self.dependence.of_conjunct(conjunct) is Depends.BOTH:
+            if self.dependence.of_conjunct(conjunct) is Monotonicity.BOTH:
                 return Doubt(f"more units may make `{conjunct.text}` true or false", clause.source)
         return Doubt("more units may break it, and others may mend it", clause.source)
 
-    def _rule(self, statement: AST, live: Sequence[Clause]) -> Rule:
-        """Return a statement as a rule with its kind and locality."""
+    def _classify_statement(self, statement: AST, live_clauses: Sequence[Clause]) -> Rule:
+        """Return a statement as a rule with its kind and locality.
+
+        ``live_clauses`` are its clauses that can have an effect.
+        """
         source = source_of(statement)
         if statement.ast_type != ASTType.Rule:
             reason = f"{str(statement).split(maxsplit=1)[0]} is nothing that is looked into"
             return Rule(source, Kind.OTHER, reason, source, reason, source)
-        if not live:
-            idle = list(clauses(statement, 0, self.constants))
-            off = next((why for clause in idle if (why := self._why_never(clause.body))), _NEVER)
-            kind = Kind.FACT if any(clause.constraint for clause in idle) else Kind.HELPER
-            return Rule(source, kind, f"{off}, so it has no effect", source)
-        kinds = [self.kind(clause) for clause in live]
+        if not live_clauses:
+            idle_clauses = list(clauses(statement, 0, self.constants))
+            reasons = map(self._why_never, (clause.body for clause in idle_clauses))
+            why_never = next(filter(None, reasons), _NEVER)
+            kind = Kind.FACT if any(clause.is_constraint for clause in idle_clauses) else Kind.HELPER
+            return Rule(source, kind, f"{why_never}, so it has no effect", source)
+        kinds = [self.kind(clause) for clause in live_clauses]
         kind = _conjunction_kind(kind for kind, _ in kinds)
         doubt = next((doubt for _, doubt in kinds if doubt), None)
         if kind is Kind.OTHER and doubt is None:
             doubt = Doubt("read in one way it rules units out, in another it requires some", source)
         nonlocality = None
-        for clause in live if kind is not Kind.HELPER else ():
+        for clause in live_clauses if kind is not Kind.HELPER else ():
             nonlocality = nonlocality or self._locality.nonlocality(clause)
         return Rule(
             source,
@@ -234,24 +248,32 @@ class Analysis:
             nonlocality.source if nonlocality else None,
         )
 
-    def _understood(self, number: int, rule: Rule) -> Rule:
-        """Record the translations of a rule; return the rule with the kind that follows from them."""
-        live = self.of_rule[number]
+    def _translate_rule(self, number: int, rule: Rule) -> Rule:
+        """Return a rule with the kind that follows from its translations.
+
+        The translations are added to ``removals``, ``at_least_ones`` and ``rows``, under the index of the
+        rule (``number``).
+        """
+        live_clauses = self.clauses_of_rule[number]
         if not rule.local or rule.kind in {Kind.HELPER, Kind.OTHER}:
             return rule
-        if rule.kind is not Kind.FACT and len(live) == 1 and (row := self.translator.row(live[0])):
+        if (
+            rule.kind is not Kind.FACT
+            and len(live_clauses) == 1
+            and (row := self.translator.row(live_clauses[0]))
+        ):
             self.rows[number] = row
         if rule.kind is Kind.REQUIRING:
-            readings = [self.translator.at_least_one(clause) for clause in live]
-            at_least_ones = tuple(one for one in readings if one is not None)
-            if len(at_least_ones) < len(readings):
+            translations = [self.translator.at_least_one(clause) for clause in live_clauses]
+            at_least_ones = tuple(translation for translation in translations if translation is not None)
+            if len(at_least_ones) < len(translations):
                 return rule
             self.at_least_ones[number] = at_least_ones
             return rule._replace(one_of=True)
-        removes = self.translator.removes(live)
-        if removes is None:
+        removal = self.translator.removal(live_clauses)
+        if removal is None:
             return rule
-        self.removals[number] = removes
+        self.removals[number] = removal
         return rule._replace(kind=Kind.FACT if rule.kind is Kind.FACT else Kind.DELETING)
 
 
@@ -264,7 +286,7 @@ def _conjunction_kind(kinds: Iterable[Kind]) -> Kind:
 
 
 @cache
-def _implied() -> list[Clause]:
+def _implied_clauses() -> list[Clause]:
     """Return the rules of the built-in encoding that user rules can read."""
     statements: list[AST] = []
     parse_string(_IMPLIED, statements.append)

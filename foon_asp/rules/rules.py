@@ -1,4 +1,4 @@
-"""The rules added to one question, from the user and the library, analysed without clingo where possible."""
+"""The user and ready-made rules of one question, analysed without clingo where possible."""
 
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import replace
@@ -13,18 +13,18 @@ from foon_asp.encoding.encoding import Encoding, read_encoding
 from foon_asp.encoding.stated import Stated
 from foon_asp.network import Source
 from foon_asp.problem import Contradiction, LinearRow, Problem, RequiredUnit, Restriction, reach
-from foon_asp.rules.clause import Signature, literals, written
+from foon_asp.rules.clause import Signature, literals, statement_text
 from foon_asp.rules.dependence import TIMES
 from foon_asp.rules.rule_kind import Analysis, Kind, Rule
 from foon_asp.rules.tuning import TUNING
 from foon_asp.rules.understood import AtLeastOne, Understood
-from foon_asp.rules.unit_answers import UnitAnswers, ask_units, candidates
+from foon_asp.rules.unit_answers import UnitAnswers, ask_units, candidate_units
 
 _SHRINKING = {Kind.HELPER, Kind.FACT, Kind.DELETING, Kind.SHRINKING}
 
 
 class ShownRule(NamedTuple):
-    """A rule as it is shown: its text, and places in files.
+    """A rule as users see it: its text, and places in files.
 
     ``use`` is the option text of a ready-made constraint with constants of its own, else empty.
     """
@@ -40,9 +40,11 @@ class ShownRule(NamedTuple):
 class Together(StrEnum):
     """The reductions that stay valid under rules.
 
-    ``REDUCED``: all, since the rules only remove units. ``REQUIRED``: all, with the required sets as further
-    goals. ``CUT``: exclusion of units that cannot matter for the goals, or that bounds exclude. ``BOUNDED``:
-    only exclusion by bounds. ``PLAIN``: none.
+    ``REDUCED``: all, since the rules only remove units.
+    ``REQUIRED``: all, with the required sets as further goals.
+    ``CUT``: exclusion of units that cannot matter for the goals, or that bounds exclude.
+    ``BOUNDED``: only exclusion by bounds.
+    ``PLAIN``: none.
     """
 
     REDUCED = "reduced"
@@ -69,7 +71,8 @@ class Rules:
     ) -> None:
         """Analyse encodings, under constants that are set as ``name=value`` for clingo.
 
-        ``endless`` says that grounding them may not terminate.
+        ``varied`` are predicates of facts that the question derives or varies. ``endless`` says that
+        grounding the rules may not terminate.
         """
         self._encodings, self._constants, self._endless = tuple(encodings), tuple(constants), endless
         self._last: tuple[Problem, Collection[int] | None, UnitAnswers | None] | None = None
@@ -82,8 +85,8 @@ class Rules:
         return Rules(self._encodings, self._constants, varied, self._endless)
 
     @cached_property
-    def shown(self) -> tuple["ShownRule", ...]:
-        """The rules as they are shown to users; those of a ready-made constraint as in its file."""
+    def shown_rules(self) -> tuple["ShownRule", ...]:
+        """The rules as users see them; those of a ready-made constraint as in its file."""
         texts: dict[int, str] = {}
         uses: dict[str, Stated] = {}
         for encoding in self._encodings:
@@ -93,9 +96,10 @@ class Rules:
                 uses[rules.place] = rules
                 file, originals = rules.file, read_encoding(rules.file).statements
             pairs = zip(_rule_statements(encoding.statements), _rule_statements(originals), strict=True)
-            texts.update((id(statement), written(original, file)) for statement, original in pairs)
+            texts.update((id(statement), statement_text(original, file)) for statement, original in pairs)
 
         def source_in_file(source: Source | None) -> Source | None:
+            """Return a place; in a ready-made constraint, with its file instead of the name of its use."""
             use = None if source is None else uses.get(source.file)
             return source if source is None or use is None else source._replace(file=str(use.file))
 
@@ -140,7 +144,7 @@ class Rules:
 
     @cached_property
     def unsettled(self) -> tuple[Rule, ...]:
-        """The rules that clingo has to enforce: the restriction by :meth:`applied` does not cover them."""
+        """The rules that clingo has to enforce, since :meth:`restriction_of` does not cover them."""
         settled = self._analysis.removals.keys() | self._analysis.at_least_ones.keys()
         return tuple(
             rule
@@ -156,11 +160,12 @@ class Rules:
         """
         if not self.local or self.unsettled:
             return None
-        return [one.wanted for one in self._at_least_ones]
+        return [constraint.wanted for constraint in self._at_least_ones]
 
     @property
     def _at_least_ones(self) -> list[AtLeastOne]:
-        return [one for of_rule in self._analysis.at_least_ones.values() for one in of_rule]
+        """The at-least-one constraints of all rules."""
+        return [constraint for of_rule in self._analysis.at_least_ones.values() for constraint in of_rule]
 
     @property
     def only_limits(self) -> bool:
@@ -168,7 +173,7 @@ class Rules:
         at_most = {number for number, bound in self._analysis.rows.items() if not bound.at_least}
         others = (
             clause
-            for number, rule_clauses in enumerate(self._analysis.of_rule)
+            for number, rule_clauses in enumerate(self._analysis.clauses_of_rule)
             if number not in at_most
             for clause in rule_clauses
         )
@@ -177,7 +182,7 @@ class Rules:
     def limits(self, problem: Problem, deadline: Deadline) -> list[LinearRow]:
         """Return the linear limits on executions that rules state, over the units that can execute.
 
-        Raises :class:`UserError` as :meth:`applied` does.
+        Empty if clingo refuses a rule. Raises :class:`UserError` as :meth:`restriction_of` does.
         """
         answers = self._answers(problem, deadline) if self._analysis.rows else None
         limits: list[LinearRow] = []
@@ -190,12 +195,12 @@ class Rules:
                 limits.append(LinearRow(weights, row.bound, row.at_least, row.used))
         return limits
 
-    def counted(self, problem: Problem, deadline: Deadline) -> Iterator[LinearRow]:
-        """Return the upper limits on sums over units, where the network is not large."""
+    def upper_limits(self, problem: Problem, deadline: Deadline) -> Iterator[LinearRow]:
+        """Yield the upper limits on sums over units; none if the rules are left to the search."""
         if not self.leave_to_search(problem):
             yield from (row for row in self.limits(problem, deadline) if not row.at_least)
 
-    def applied(
+    def restriction_of(
         self, problem: Problem, deadline: Deadline, units: Collection[int] | None = None
     ) -> Restriction | Contradiction | None:
         """Return the restriction of a problem by the rules that remove units or require one of a set.
@@ -216,19 +221,22 @@ class Rules:
     def _answers(
         self, problem: Problem, deadline: Deadline, units: Collection[int] | None = None
     ) -> UnitAnswers | None:
-        """Return the evaluation of the rules on single units; ``None`` where clingo refuses a rule."""
+        """Return the evaluation of the rules on single units; ``None`` where clingo refuses a rule.
+
+        The result for the last problem and units is cached.
+        """
         analysis = self._analysis
         if self._last is None or self._last[0] is not problem or self._last[1] is not units:
-            stated: list[Understood] = [*analysis.removals.values(), *self._at_least_ones]
-            stated += analysis.rows.values()
+            understood: list[Understood] = [*analysis.removals.values(), *self._at_least_ones]
+            understood += analysis.rows.values()
             answers: UnitAnswers | None = UnitAnswers(Restriction(lambda _: False), {})
-            if stated:
+            if understood:
                 numbers = analysis.removals.keys() | analysis.at_least_ones.keys() | analysis.rows.keys()
-                clauses = [clause for number in numbers for clause in analysis.of_rule[number]]
-                programs = [line for one in stated for line in one.program]
-                rules, read = analysis.translator.support(programs, clauses)
+                clauses = [clause for number in numbers for clause in analysis.clauses_of_rule[number]]
+                programs = [line for rule in understood for line in rule.program]
+                rules, read = analysis.translator.complete_program(programs, clauses)
                 plain = problem if problem.restriction is None else replace(problem, restriction=None)
-                among = self._readable(plain) if units is None else units
+                among = self._evaluated_units(plain) if units is None else units
                 answers = ask_units(
                     plain,
                     among,
@@ -239,7 +247,7 @@ class Rules:
             self._last = problem, units, answers
         return self._last[2]
 
-    def _readable(self, problem: Problem) -> Collection[int]:
+    def _evaluated_units(self, problem: Problem) -> Collection[int]:
         """Return the units to evaluate rules on: all that can execute.
 
         In a large network, they are only the units that at-least-one constraints name, if no other rules are
@@ -247,9 +255,9 @@ class Rules:
         """
         network = problem.network
         if len(network) > TUNING.evaluated_units and not (self._analysis.removals or self._analysis.rows):
-            named = candidates(network, (one.wanted for one in self._at_least_ones))
-            if named is not None:
-                return named
+            named_units = candidate_units(network, (constraint.wanted for constraint in self._at_least_ones))
+            if named_units is not None:
+                return named_units
         return reach(problem).units
 
 

@@ -1,4 +1,4 @@
-"""Texts for clingo of constraints: files, rules, and ready-made constraints with renamed predicates."""
+"""Texts of constraints for clingo: files, rules, and ready-made constraints with renamed predicates."""
 
 from collections.abc import Collection, Sequence
 from typing import cast
@@ -13,8 +13,8 @@ from foon_asp.errors import UserError
 from foon_asp.rules.passed_constraint import Constraint, LibraryUse, RuleText
 
 
-def loaded(constraints: Sequence[Constraint]) -> dict[Constraint, Loaded]:
-    """Return the file or text that clingo loads for each constraint.
+def load_constraints(constraints: Sequence[Constraint]) -> dict[Constraint, Loaded]:
+    """Return what clingo loads for each constraint: a file or a text.
 
     Rules given as text are called ``rule 1``, ``rule 2`` and so on; ready-made constraints with constants of
     their own ``use 1``, ``use 2``. Raises :class:`UserError` for constants that a ready-made constraint does
@@ -30,16 +30,17 @@ def loaded(constraints: Sequence[Constraint]) -> dict[Constraint, Loaded]:
             loaded_by_constraint[constraint] = Stated(f"rule {rules}", constraint.text)
         elif isinstance(constraint, LibraryUse):
             uses += 1
-            loaded_by_constraint[constraint] = _renamed(constraint, uses)
+            loaded_by_constraint[constraint] = _renamed_constraint(constraint, uses)
         else:
             loaded_by_constraint[constraint] = constraint
     return loaded_by_constraint
 
 
-def _renamed(use: LibraryUse, number: int) -> Stated:
-    """Return the text of a ready-made constraint with constants set, and constants and predicates renamed.
+def _renamed_constraint(use: LibraryUse, number: int) -> Stated:
+    """Return a ready-made constraint with its constants set, as text in which names end in a number.
 
-    Each statement is on the same line as its beginning in the file.
+    Constants and predicates of its own are renamed, so that a constraint can be used twice. Each statement is
+    on the same line as its beginning in the file. ``number`` is that of the use.
     """
     encoding = read_encoding(use.file)
     values = use.constants
@@ -48,7 +49,7 @@ def _renamed(use: LibraryUse, number: int) -> Stated:
             names_known = ", ".join(encoding.constants) or "none"
             raise UserError(f"{use}: {use.file.stem} has no constant {name!r}; it has {names_known}")
     own = {*encoding.defined, *encoding.declared} - PUBLIC - EXTENDED
-    renaming = _Renaming(own, encoding.constants, number)
+    renaming = _Renamer(own, encoding.constants, number)
     statements: list[AST] = []
     parse(use.file, statements.append, lambda *_: None)
     lines: dict[int, list[str]] = {}
@@ -57,7 +58,7 @@ def _renamed(use: LibraryUse, number: int) -> Stated:
             continue
         if statement.ast_type == ASTType.Definition and statement.name in values:
             default, value = str(statement.value), values[statement.name]
-            changed = statement.update(value=_term(constant_value(statement.name, default, value)))
+            changed = statement.update(value=_parse_term(constant_value(statement.name, default, value)))
         else:
             changed = statement
         lines.setdefault(statement.location.begin.line, []).append(str(renaming.visit(changed)))
@@ -66,16 +67,21 @@ def _renamed(use: LibraryUse, number: int) -> Stated:
     return Stated(f"use {number}", f"{text}\n", use.file, use.written, tuple(names.items()))
 
 
-def _term(text: str) -> AST:
+def _parse_term(text: str) -> AST:
+    """Return a term as syntax tree."""
     statements: list[AST] = []
     parse_string(f"#const _value = {text}.", statements.append)
     return cast("AST", statements[-1].value)
 
 
-class _Renaming(Transformer):
-    """Rewriter that renames predicates and constants."""
+class _Renamer(Transformer):
+    """Rewriter that renames some predicates and constants: ``tainted`` becomes ``_tainted_1``.
+
+    ``number`` is the number at the end of new names.
+    """
 
     def __init__(self, predicates: Collection[Signature], constants: Collection[str], number: int) -> None:
+        """Keep the predicates and constants to rename."""
         self._predicates, self._constants, self._number = predicates, constants, number
 
     def name(self, name: str) -> str:
@@ -83,33 +89,39 @@ class _Renaming(Transformer):
         return f"_{name.lstrip('_')}_{self._number}"
 
     def visit_SymbolicAtom(self, atom: AST) -> AST:  # noqa: N802 (the name clingo looks for)
-        return atom.update(symbol=self._symbol(atom.symbol))
+        """Return an atom, with the new name of its predicate if it has one."""
+        return atom.update(symbol=self._rename_symbol(atom.symbol))
 
-    def _symbol(self, symbol: AST) -> AST:
+    def _rename_symbol(self, symbol: AST) -> AST:
         """Return the symbol of an atom, with the new name of its predicate if it has one."""
         if symbol.ast_type == ASTType.UnaryOperation:  # classical negation
-            return symbol.update(argument=self._symbol(symbol.argument))
+            return symbol.update(argument=self._rename_symbol(symbol.argument))
         if symbol.ast_type == ASTType.Pool:
-            return symbol.update(arguments=[self._symbol(argument) for argument in symbol.arguments])
+            return symbol.update(arguments=[self._rename_symbol(argument) for argument in symbol.arguments])
         own = (symbol.name, len(symbol.arguments)) in self._predicates
         name = self.name(symbol.name) if own else symbol.name
         return symbol.update(name=name, arguments=self.visit_sequence(symbol.arguments))
 
     def visit_SymbolicTerm(self, term: AST) -> AST:  # noqa: N802
+        """Return a constant under its new name if it has one; any other term unchanged."""
         symbol = term.symbol
         if symbol.type is SymbolType.Function and symbol.name in self._constants and not symbol.arguments:
             return term.update(symbol=Function(self.name(symbol.name)))
         return term
 
     def visit_Definition(self, definition: AST) -> AST:  # noqa: N802
+        """Return a ``#const`` statement with new names."""
         return definition.update(name=self.name(definition.name), value=self.visit(definition.value))
 
     def visit_Defined(self, defined: AST) -> AST:  # noqa: N802
-        return self._signature(defined)
+        """Return ``#defined``, with the new name of its predicate if it has one."""
+        return self._rename_signature(defined)
 
     def visit_ShowSignature(self, shown: AST) -> AST:  # noqa: N802
-        return self._signature(shown)
+        """Return ``#show``, with the new name of its predicate if it has one."""
+        return self._rename_signature(shown)
 
-    def _signature(self, statement: AST) -> AST:
+    def _rename_signature(self, statement: AST) -> AST:
+        """Return ``#defined`` or ``#show``, with the new name of its predicate if it has one."""
         own = (statement.name, statement.arity) in self._predicates
         return statement.update(name=self.name(statement.name)) if own else statement

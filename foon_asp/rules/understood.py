@@ -1,13 +1,16 @@
 """Translation of rules into programs about single units, which clingo evaluates.
 
-A translated rule *removes* the units that break it by themselves, requires *at least one* of the units that
-keep to it by themselves, or is a *row*, which bounds a sum of weights of units. The translation is a program
-that clingo evaluates in several worlds: one world for each unit, in which only this unit is used, and the
-world ``NOTHING``, in which no unit is. The program derives ``_of_unit(NUMBER,WHAT,OF,W)`` in a world ``W``.
-Any other rule is a *check*: clingo evaluates it on whole trees.
+There are three kinds of translations. A *removal* removes each unit that breaks the rule by itself. An
+*at-least-one constraint* requires one of the units that keep to the rule by themselves. A *row* bounds a sum
+of weights of units. Any other rule is a *check*: clingo evaluates it on whole trees.
 
-A rule can be translated if, by its syntax, each of its derivations looks at one unit of the tree, and
-if it calculates nothing: then no number can overflow, and grounding ends.
+Clingo evaluates the program of a translation in several worlds. There is a world for each unit, in which only
+this unit is used; in the world ``NOTHING``, no unit is. The program derives atoms
+``_of_unit(NUMBER,WHAT,OF,W)`` in a world ``W``. ``NUMBER`` is that of the translation. ``WHAT`` is
+``breaks``, ``asks``, ``meets`` or ``weighs``. ``OF`` is a term, or the weight.
+
+A rule can be translated if, by its syntax, each of its derivations looks at one unit of the tree, and if it
+calculates nothing. Then no number can overflow, and grounding ends.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -27,16 +30,16 @@ from foon_asp.rules.clause import (
     Element,
     Literal,
     Signature,
-    Strange,
     Test,
-    compared,
+    UnknownConjunct,
+    comparison_holds,
     factors,
     global_variables,
     literals,
     value,
     variables,
 )
-from foon_asp.rules.dependence import AVAILABLE, TIMES, USE, Dependence, Depends
+from foon_asp.rules.dependence import AVAILABLE, TIMES, USE, Dependence, Monotonicity
 from foon_asp.rules.fact_subject import SUBJECTS
 from foon_asp.rules.required_traits import TraitReader
 from foon_asp.rules.worlds import Worlds, unused_variable
@@ -47,7 +50,7 @@ _WORLD_OF_NOTHING: Final = f'"{NOTHING}"'
 _ONE_EXECUTION = {USE, TIMES}
 
 
-class Removes(NamedTuple):
+class Removal(NamedTuple):
     """A rule that removes the units in whose worlds its program derives ``breaks``.
 
     If the program derives ``breaks`` in the world ``NOTHING``, there is no tree.
@@ -57,10 +60,12 @@ class Removes(NamedTuple):
 
 
 class AtLeastOne(NamedTuple):
-    """A rule that requires a unit for each term of which its program derives ``asks``.
+    """A rule that requires a unit of each of several sets.
 
-    The tree needs a unit in whose world the program derives ``meets`` of the same term. ``wanted`` are traits
-    of such units.
+    Its program derives an atom ``asks`` with a term for each set. It derives ``meets`` with this term in the
+    world of each unit of the set. If it derives ``meets`` in the world ``NOTHING``, no unit of the set is
+    needed.
+    ``wanted``: the traits of the units in the sets.
     """
 
     program: tuple[str, ...]
@@ -68,7 +73,7 @@ class AtLeastOne(NamedTuple):
 
 
 class Row(NamedTuple):
-    """A rule that bounds a sum of weights of units, which its program derives in atoms ``weighs``.
+    """A rule that bounds a sum of weights of units. Its program derives the weights in atoms ``weighs``.
 
     ``number``: the first argument of the atoms. Different weights of a unit add up.
     ``bound``: an upper bound on the sum; with ``at_least``, a lower bound.
@@ -84,7 +89,7 @@ class Row(NamedTuple):
     per_unit: bool = False
 
 
-Understood = Removes | AtLeastOne | Row
+Understood = Removal | AtLeastOne | Row
 
 # By forbidden comparison: whether the bound that remains is a lower one, and its offset from the number.
 _ALLOWED = {
@@ -98,74 +103,86 @@ _ALLOWED = {
 class Translator:
     """Translator of rules to removals, at-least-one constraints or rows.
 
-    The method for a kind returns ``None`` for a rule of another kind.
+    The method for a kind returns ``None`` for a rule of another kind. ``program`` has the clauses of all
+    rules.
     """
 
     def __init__(self, program: Sequence[Clause], constants: Constants, dependence: Dependence) -> None:
+        """Index the clauses by the predicate in their heads, and choose a variable for worlds."""
         self._constants, self._dependence = constants, dependence
         self._clauses: dict[Signature, list[Clause]] = {}
         for clause in program:
             if clause.head is not None:
                 self._clauses.setdefault(clause.head.signature, []).append(clause)
         dependent = {
-            signature for signature in self._clauses if dependence.of(signature) is not Depends.NOT
+            signature
+            for signature in self._clauses
+            if dependence.of_predicate(signature) is not Monotonicity.NOT
         } | {USE, AVAILABLE}
         self._world = unused_variable("".join(str(clause.ast) for clause in program), "World")
         self._worlds = Worlds(dependent, self._world, "__")
         self._numbers = 0
-        self._looks: dict[Signature, int] = {}
+        self._units_read_by_predicate: dict[Signature, int] = {}
 
-    def removes(self, clauses: Sequence[Clause]) -> Removes | None:
-        """Return the rule that consists of ``clauses`` as a removal of units."""
-        if not all(self._is_plain(clause.body) for clause in clauses):
+    def removal(self, clauses: Sequence[Clause]) -> Removal | None:
+        """Return a removal of units for the rule that consists of ``clauses``; ``None`` for another rule."""
+        if not all(self._has_no_calculation(clause.body) for clause in clauses):
             return None
-        if any(self._looks_of(clause.body) > 1 for clause in clauses):
+        if any(self._count_units_read(clause.body) > 1 for clause in clauses):
             return None
-        return Removes(tuple(self._stated(self._answer("breaks", 0), clause) for clause in clauses))
+        return Removal(
+            tuple(self._rule_text(self._new_answer_head("breaks", 0), clause) for clause in clauses)
+        )
 
     def at_least_one(self, clause: Clause) -> AtLeastOne | None:
-        """Return the at-least-one constraint that a requiring rule stands for."""
-        deciding = [n for n, one in enumerate(clause.body) if self._looks_of([one])]
-        others = [n for n in range(len(clause.body)) if n not in deciding]
-        alternatives = [self._alternatives(clause, n) for n in deciding]
-        if None in alternatives or not self._is_plain(clause.body):
+        """Return the at-least-one constraint that a requiring rule stands for; ``None`` for another rule."""
+        unit_positions = [n for n, conjunct in enumerate(clause.body) if self._count_units_read([conjunct])]
+        set_positions = [n for n in range(len(clause.body)) if n not in unit_positions]
+        alternatives = [self._alternatives(clause, n) for n in unit_positions]
+        if None in alternatives or not self._has_no_calculation(clause.body):
             return None
-        bound = {name for n in others for name in global_variables(clause.body[n])}
-        of = f"({','.join([*sorted(bound), ''])})" if bound else "()"
-        when = [str(self._worlds.visit(clause.ast.body[n])) for n in others]
+        bound = {name for n in set_positions for name in global_variables(clause.body[n])}
+        set_term = f"({','.join([*sorted(bound), ''])})" if bound else "()"
+        set_conditions = [str(self._worlds.visit(clause.ast.body[n])) for n in set_positions]
         self._numbers += 1
-        program = [f"{self._head('asks', of, _WORLD_OF_NOTHING)} :- {'; '.join(when) or '#true'}."]
+        asks = self._answer_head("asks", set_term, _WORLD_OF_NOTHING)
+        program = [f"{asks} :- {'; '.join(set_conditions) or '#true'}."]
         rows: list[Sequence[Trait]] = []
-        always = all(getattr(clause.body[n], "holds", None) for n in others)
-        for written, conjuncts in (pair for pairs in alternatives for pair in pairs or ()):
-            body = "; ".join([*when, *written, f"__world({self._world})"])
-            program.append(f"{self._head('meets', of, self._world)} :- {body}.")
+        always = all(getattr(clause.body[n], "holds", None) for n in set_positions)
+        for unit_conditions, conjuncts in (pair for pairs in alternatives for pair in pairs or ()):
+            body = "; ".join([*set_conditions, *unit_conditions, f"__world({self._world})"])
+            program.append(f"{self._answer_head('meets', set_term, self._world)} :- {body}.")
             rows += TraitReader(self._clauses, self._constants).rows(conjuncts)
-            always &= self._has_unit(conjuncts)
+            always &= self._requires_unit(conjuncts)
         return AtLeastOne(tuple(program), RequiredUnit(rows, always))
 
     def row(self, clause: Clause) -> Row | None:
-        """Return the row that a rule such as ``:- #sum { N,U : times(U,N) } > 9`` stands for."""
+        """Return the row that a rule such as ``:- #sum { N,U : times(U,N) } > 9`` stands for.
+
+        ``None`` for another rule.
+        """
         body = clause.body
         if len(body) == 1 and isinstance(body[0], Aggregate):
-            return self._sum(body[0], clause.ast.body[0].atom.elements)
+            return self._sum_row(body[0], clause.ast.body[0].atom.elements)
         for position, conjunct in enumerate(body):
             others = [n for n in range(len(body)) if n != position]
             if isinstance(conjunct, Test) and (guard := _comparison(conjunct)) is not None:
                 condition = tuple(body[n] for n in others)
                 count, operator, term = guard
-                allowed = self._allowed(operator, term)
-                if allowed is None or allowed[0] or not _counts(condition, count):
+                allowed = self._remaining_bound(operator, term)
+                if allowed is None or allowed[0] or not _states_count(condition, count):
                     continue
                 self._numbers += 1
-                element = Element((count, *(_executions(condition) or ())[:1]), condition)
-                weights = self._weights(element, [clause.ast.body[n] for n in others])
+                element = Element((count, *(_execution_arguments(condition) or ())[:1]), condition)
+                weights = self._weight_rule(element, [clause.ast.body[n] for n in others])
                 return (
                     None if weights is None else Row(self._numbers, (weights[0],), allowed[1], per_unit=True)
                 )
         return None
 
-    def support(self, programs: Sequence[str], read: Iterable[Clause]) -> tuple[list[str], set[Signature]]:
+    def complete_program(
+        self, programs: Sequence[str], read: Iterable[Clause]
+    ) -> tuple[list[str], set[Signature]]:
         """Return ``programs`` with the rules that they need, and the predicates of the facts that they read.
 
         ``read`` has the clauses of which the programs are translations.
@@ -182,7 +199,7 @@ class Translator:
             if signature in SUBJECTS:
                 facts.add(signature)
             for clause in self._clauses.get(signature, ()):
-                rules.append(self._stated(str(self._worlds.visit(clause.ast.head)), clause))
+                rules.append(self._rule_text(str(self._worlds.visit(clause.ast.head)), clause))
                 stack += [literal.signature for literal in literals(clause.body)]
         rules += ["__world(W) :- unit(W).", f"__world({_WORLD_OF_NOTHING}).", "__use(W,W) :- unit(W)."]
         if AVAILABLE in done:
@@ -190,18 +207,21 @@ class Translator:
             facts |= {("kitchen", 1), ("gives", 2)}
         return [*rules, *programs], facts
 
-    def _sum(self, aggregate: Aggregate, elements: Sequence[AST]) -> Row | None:
-        """Return the row that bounds a sum or count with one guard; ``None`` for other aggregates."""
+    def _sum_row(self, aggregate: Aggregate, elements: Sequence[AST]) -> Row | None:
+        """Return the row that bounds a sum or count with one guard; ``None`` for other aggregates.
+
+        ``elements`` are the syntax trees of its elements.
+        """
         is_sum = aggregate.function is AggregateFunction.Sum
         sizes = {len(element.terms) for element in aggregate.elements}
         if aggregate.negations or len(aggregate.guards) != 1 or sizes != {1 + is_sum}:
             return None
         if not is_sum and aggregate.function is not AggregateFunction.Count:
             return None
-        allowed = self._allowed(aggregate.guards[0].comparison, aggregate.guards[0].term)
+        allowed = self._remaining_bound(aggregate.guards[0].comparison, aggregate.guards[0].term)
         self._numbers += 1
         element_weights = [
-            self._weights(element, list(node.condition))
+            self._weight_rule(element, list(node.condition))
             for element, node in zip(aggregate.elements, elements, strict=True)
         ]
         used = {signature for weights in element_weights if weights for signature in weights[1:]}
@@ -210,39 +230,45 @@ class Translator:
         program = tuple(weights[0] for weights in element_weights if weights)
         return Row(self._numbers, program, allowed[1], allowed[0], used == {USE})
 
-    def _weights(self, element: Element, condition: Sequence[AST]) -> tuple[str, Signature] | None:
+    def _weight_rule(self, element: Element, condition: Sequence[AST]) -> tuple[str, Signature] | None:
         """Return a rule that derives the weight of one execution, and the predicate that states executions.
 
-        The predicate is ``use/1`` or ``times/2``. Nothing else reads the number of executions, so the weight
-        of n executions is n times this weight. ``None`` if the element has another form.
+        The predicate is ``use/1`` or ``times/2``. The weight of n executions of a unit is n times this
+        weight, since nothing else reads n. ``condition`` has the syntax trees of the element's condition.
+        ``None`` if the element has another form.
         """
-        executions = _executions(element.condition)
-        if executions is None or not self._is_plain(element.condition):
+        executions = _execution_arguments(element.condition)
+        if executions is None or not self._has_no_calculation(element.condition):
             return None
         unit, *count = executions
         if str(unit) == "_" or any(term.ast_type != ASTType.Variable for term in count):
             return None
-        *product, last = (factor for term in element.terms for factor in factors(term))
-        written = [str(factor) for factor in product]
-        position = next(n for n, one in enumerate(element.condition) if _executes(one))
-        others = [one for n, one in enumerate(element.condition) if n != position]
+        *product, last_term = (factor for term in element.terms for factor in factors(term))
+        factor_texts = [str(factor) for factor in product]
+        position = next(n for n, conjunct in enumerate(element.condition) if _states_executions(conjunct))
+        others = [conjunct for n, conjunct in enumerate(element.condition) if n != position]
         for factor in map(str, count):
-            other_names = [name for one in others for name in variables(*_terms_of(one))]
-            if written.count(factor) != 1 or factor in {*other_names, str(unit), "_"}:
+            other_names = [name for conjunct in others for name in variables(*_terms_of(conjunct))]
+            if factor_texts.count(factor) != 1 or factor in {*other_names, str(unit), "_"}:
                 return None
-            written.remove(factor)
-        if len(written) > 1 or str(last) != str(unit) or self._looks_of(others):
+            factor_texts.remove(factor)
+        if len(factor_texts) > 1 or str(last_term) != str(unit) or self._count_units_read(others):
             return None
-        if written and not self._is_term(next(one for one in product if str(one) == written[0])):
+        if factor_texts and not self._is_variable_or_value(
+            next(factor for factor in product if str(factor) == factor_texts[0])
+        ):
             return None
         body = [f"unit({unit})", *(str(node) for n, node in enumerate(condition) if n != position)]
-        weight = written[0] if written else "1"
+        weight = factor_texts[0] if factor_texts else "1"
         signature = element.condition[position]
         assert isinstance(signature, Literal)
-        return f"{self._head('weighs', weight, unit)} :- {'; '.join(body)}.", signature.signature
+        return f"{self._answer_head('weighs', weight, unit)} :- {'; '.join(body)}.", signature.signature
 
-    def _allowed(self, comparison: int, term: AST) -> tuple[bool, int] | None:
-        """Return the bound that forbids a comparison: whether it is a lower bound, and its number."""
+    def _remaining_bound(self, comparison: int, term: AST) -> tuple[bool, int] | None:
+        """Return the bound that forbids a comparison: whether it is a lower bound, and its number.
+
+        For ``> 9`` it is ``(False, 9)``. ``None`` if the term is no number, and for ``=`` and ``!=``.
+        """
         number, allowed = value(term, self._constants), _ALLOWED.get(ComparisonOperator(comparison))
         if number is None or number.type is not SymbolType.Number or allowed is None:
             return None
@@ -256,7 +282,7 @@ class Translator:
         """
         conjunct, node = clause.body[position], clause.ast.body[position]
         if isinstance(conjunct, Aggregate):
-            if not _counts_none(conjunct, self._constants):
+            if not _is_count_of_zero(conjunct, self._constants):
                 return None
             pairs = (
                 [
@@ -276,89 +302,108 @@ class Translator:
             if not isinstance(literal, Literal) or literal.negations != 1:
                 return None
             pairs = [((literal._replace(negations=0), *condition), [node.update(sign=0), *nodes])]
-        if any(self._looks_of(conjuncts) != 1 for conjuncts, _ in pairs):
+        if any(self._count_units_read(conjuncts) != 1 for conjuncts, _ in pairs):
             return None
         return [
-            ([str(self._worlds.visit(one)) for one in written], conjuncts) for conjuncts, written in pairs
+            ([str(self._worlds.visit(condition_node)) for condition_node in condition_nodes], conjuncts)
+            for conjuncts, condition_nodes in pairs
         ]
 
-    def _answer(self, what: str, of: object) -> str:
+    def _new_answer_head(self, what: str, of: object) -> str:
+        """Return a head ``_of_unit(NUMBER,"what",of,World)`` with a new number and a variable world."""
         self._numbers += 1
-        return self._head(what, of, self._world)
+        return self._answer_head(what, of, self._world)
 
-    def _head(self, what: str, of: object, world: object) -> str:
+    def _answer_head(self, what: str, of: object, world: object) -> str:
+        """Return a head ``_of_unit(NUMBER,"what",of,world)`` with the number of the last translation."""
         return f'{ANSWER[0]}({self._numbers},"{what}",{of},{world})'
 
-    def _stated(self, head: str, clause: Clause) -> str:
+    def _rule_text(self, head: str, clause: Clause) -> str:
         """Return a rule with this head and the body of a clause.
 
         It holds in each world if the clause depends on the tree, else in the world without units only.
         """
         body = [str(self._worlds.visit(node)) for node in clause.ast.body]
         if self._world in head:
-            where = (
+            world_condition = (
                 f"__world({self._world})"
-                if self._looks_of(clause.body)
+                if self._count_units_read(clause.body)
                 else f"{self._world} = {_WORLD_OF_NOTHING}"
             )
-            body.append(where)
+            body.append(world_condition)
         return f"{head} :- {'; '.join(body) or '#true'}."
 
-    def _looks_of(self, body: Iterable[Conjunct]) -> int:
+    def _count_units_read(self, body: Iterable[Conjunct]) -> int:
         """Return on how many units of the tree a conjunction depends; 2 stands for more than one."""
-        looks = 0
+        unit_count = 0
         for conjunct in body:
             if isinstance(conjunct, Literal):
-                looks += self._looks_of_atom(conjunct.signature) << (conjunct.negations > 0)
+                unit_count += self._count_units_read_by_atom(conjunct.signature) << (conjunct.negations > 0)
             else:
-                looks += 2 * any(self._looks_of_atom(one.signature) for one in literals([conjunct]))
-        return min(looks, 2)
+                unit_count += 2 * any(
+                    self._count_units_read_by_atom(literal.signature) for literal in literals([conjunct])
+                )
+        return min(unit_count, 2)
 
-    def _looks_of_atom(self, signature: Signature) -> int:
-        """Return on how many units of the tree an atom depends; 2 stands for more than one."""
+    def _count_units_read_by_atom(self, signature: Signature) -> int:
+        """Return on how many units of the tree an atom depends; 2 stands for more than one.
+
+        The result is cached by predicate.
+        """
         if signature in {USE, AVAILABLE}:
             return 1
-        if signature not in self._looks:
-            self._looks[signature] = (
-                2 if self._dependence.of(signature) is not Depends.NOT else 0
+        if signature not in self._units_read_by_predicate:
+            self._units_read_by_predicate[signature] = (
+                2 if self._dependence.of_predicate(signature) is not Monotonicity.NOT else 0
             )  # recursion
-            if self._looks[signature]:
+            if self._units_read_by_predicate[signature]:
                 clauses = self._clauses.get(signature, ())
-                self._looks[signature] = max((self._looks_of(clause.body) for clause in clauses), default=0)
-        return self._looks[signature]
+                self._units_read_by_predicate[signature] = max(
+                    (self._count_units_read(clause.body) for clause in clauses), default=0
+                )
+        return self._units_read_by_predicate[signature]
 
-    def _has_unit(self, body: Iterable[Conjunct]) -> bool:
+    def _requires_unit(self, body: Iterable[Conjunct]) -> bool:
         """Whether a conjunction about one unit is false in the world without units."""
         return any(
-            isinstance(one, Literal)
+            isinstance(conjunct, Literal)
             and (
-                one.signature == USE
+                conjunct.signature == USE
                 or (
-                    one.signature != AVAILABLE
-                    and self._looks_of_atom(one.signature) == 1
-                    and all(self._has_unit(clause.body) for clause in self._clauses.get(one.signature, ()))
+                    conjunct.signature != AVAILABLE
+                    and self._count_units_read_by_atom(conjunct.signature) == 1
+                    and all(
+                        self._requires_unit(clause.body)
+                        for clause in self._clauses.get(conjunct.signature, ())
+                    )
                 )
             )
-            for one in body
+            for conjunct in body
         )
 
-    def _is_plain(self, body: Iterable[Conjunct], above: frozenset[Signature] = frozenset()) -> bool:
-        """Whether a body, and the rules that derive what it reads, calculate nothing."""
+    def _has_no_calculation(
+        self, body: Iterable[Conjunct], above: frozenset[Signature] = frozenset()
+    ) -> bool:
+        """Whether a body, and the rules that derive what it reads, calculate nothing.
+
+        ``above`` has the predicates whose rules are being checked.
+        """
         conjuncts = tuple(body)
-        terms = [term for one in conjuncts for term in _terms_of(one)]
-        inner = [literal for one in conjuncts for literal in literals([one])]
-        if any(map(_is_strange, conjuncts)) or not all(map(self._is_term, terms)):
+        terms = [term for conjunct in conjuncts for term in _terms_of(conjunct)]
+        inner = [literal for conjunct in conjuncts for literal in literals([conjunct])]
+        if any(map(_has_unknown_part, conjuncts)) or not all(map(self._is_variable_or_value, terms)):
             return False
         read = {literal.signature for literal in inner} - above
         above |= read
         return all(not name.startswith("-") for name, _ in read) and all(
-            all(map(self._is_term, clause.ast.head.atom.symbol.arguments))
-            and self._is_plain(clause.body, above)
+            all(map(self._is_variable_or_value, clause.ast.head.atom.symbol.arguments))
+            and self._has_no_calculation(clause.body, above)
             for signature in read
             for clause in self._clauses.get(signature, ())
         )
 
-    def _is_term(self, term: AST) -> bool:
+    def _is_variable_or_value(self, term: AST) -> bool:
+        """Whether a term is a variable, or has a value that is known without clingo."""
         return term.ast_type == ASTType.Variable or value(term, self._constants) is not None
 
 
@@ -366,7 +411,7 @@ _Alternative = tuple[list[str], Sequence[Conjunct]]
 
 
 def _terms_of(conjunct: Conjunct) -> Iterator[AST]:
-    """Return all terms in a conjunct, except in comparisons whose truth is known."""
+    """Yield all terms in a conjunct, except in comparisons whose truth is known."""
     if isinstance(conjunct, Literal):
         yield from conjunct.arguments
     elif isinstance(conjunct, Test):
@@ -374,24 +419,26 @@ def _terms_of(conjunct: Conjunct) -> Iterator[AST]:
             yield conjunct.ast.atom.term
             yield from (guard.term for guard in conjunct.ast.atom.guards)
     elif isinstance(conjunct, Conditional):
-        for one in (conjunct.literal, *conjunct.condition):
-            yield from _terms_of(one)
+        for inner in (conjunct.literal, *conjunct.condition):
+            yield from _terms_of(inner)
     elif isinstance(conjunct, Aggregate):
         yield from (guard.term for guard in conjunct.guards)
         for element in conjunct.elements:
             yield from element.terms
-            for one in element.condition:
-                yield from _terms_of(one)
+            for inner in element.condition:
+                yield from _terms_of(inner)
 
 
-def _is_strange(conjunct: Conjunct) -> bool:
+def _has_unknown_part(conjunct: Conjunct) -> bool:
     """Whether a conjunct has a part of an unknown kind, or an aggregate other than a count."""
     if isinstance(conjunct, Conditional):
-        return any(map(_is_strange, (conjunct.literal, *conjunct.condition)))
+        return any(map(_has_unknown_part, (conjunct.literal, *conjunct.condition)))
     if isinstance(conjunct, Aggregate):
         counts = conjunct.function is AggregateFunction.Count
-        return not counts or any(_is_strange(one) for e in conjunct.elements for one in e.condition)
-    return isinstance(conjunct, Strange)
+        return not counts or any(
+            _has_unknown_part(inner) for element in conjunct.elements for inner in element.condition
+        )
+    return isinstance(conjunct, UnknownConjunct)
 
 
 def _comparison(test: Test) -> tuple[AST, int, AST] | None:
@@ -402,28 +449,32 @@ def _comparison(test: Test) -> tuple[AST, int, AST] | None:
     return atom.term, atom.guards[0].comparison, atom.guards[0].term
 
 
-def _executes(conjunct: Conjunct) -> bool:
+def _states_executions(conjunct: Conjunct) -> bool:
+    """Whether a conjunct is an atom ``use(U)`` or ``times(U,N)`` without ``not``."""
     return isinstance(conjunct, Literal) and conjunct.positive and conjunct.signature in _ONE_EXECUTION
 
 
-def _executions(condition: Iterable[Conjunct]) -> tuple[AST, ...] | None:
-    """Return the arguments of the one literal of a condition that states executions, else ``None``."""
-    literals = [one for one in condition if _executes(one)]
-    return literals[0].arguments if len(literals) == 1 and isinstance(literals[0], Literal) else None
+def _execution_arguments(condition: Iterable[Conjunct]) -> tuple[AST, ...] | None:
+    """Return the arguments of the only ``use(U)`` or ``times(U,N)`` in a condition, else ``None``."""
+    execution_literals = [conjunct for conjunct in condition if _states_executions(conjunct)]
+    if len(execution_literals) == 1 and isinstance(execution_literals[0], Literal):
+        return execution_literals[0].arguments
+    return None
 
 
-def _counts(condition: Iterable[Conjunct], count: AST) -> bool:
-    executions = _executions(condition)
+def _states_count(condition: Iterable[Conjunct], count: AST) -> bool:
+    """Whether ``count`` is the number of executions in the only ``times(U,N)`` of a condition."""
+    executions = _execution_arguments(condition)
     return executions is not None and len(executions) == 2 and str(executions[1]) == str(count)
 
 
-def _counts_none(aggregate: Aggregate, constants: Constants) -> bool:
+def _is_count_of_zero(aggregate: Aggregate, constants: Constants) -> bool:
     """Whether a ``#count`` holds exactly where its count is 0."""
     if aggregate.function is not AggregateFunction.Count or len(aggregate.guards) != 1:
         return False
     bound = value(aggregate.guards[0].term, constants)
     if bound is None or bound.type is not SymbolType.Number:
         return False
-    compares = [compared(Number(n), aggregate.guards[0].comparison, bound) for n in (0, 1, INT32_MAX)]
+    compares = [comparison_holds(Number(n), aggregate.guards[0].comparison, bound) for n in (0, 1, INT32_MAX)]
     expected = [not holds for holds in compares] if aggregate.negations == 1 else compares
     return expected == [True, False, False]

@@ -15,7 +15,11 @@ from foon_asp.rules.understood import ANSWER, NOTHING
 
 
 class UnitAnswers(NamedTuple):
-    """Removed units and required sets as a ``restriction``, and ``weights`` by row and by unit id."""
+    """The evaluation of rules on single units.
+
+    ``restriction`` has the removed units and the required sets. ``weights`` has the weight of units by the
+    number of a row and by unit id.
+    """
 
     restriction: Restriction | Contradiction
     weights: Mapping[int, Mapping[int, int]]
@@ -30,9 +34,9 @@ def ask_units(
 ) -> UnitAnswers | None:
     """Evaluate the programs of rules on units; with a ``deadline``, in another process.
 
-    ``read`` are the predicates of facts that the rules read. Returns ``None`` if clingo refuses a rule; the
-    search then reports the message of clingo. Raises :class:`UserError` if rules read a price that is not a
-    whole number of hundredths.
+    ``program`` has the rules as text. ``read`` are the predicates of facts that the rules read. Returns
+    ``None`` if clingo refuses a rule; the search then reports the message of clingo. Raises
+    :class:`UserError` if rules read a price that is not a whole number of hundredths.
     """
     try:
         facts = write_facts_read(problem, sorted(units), read)
@@ -48,16 +52,16 @@ def ask_units(
             rows = program_client.derive(text, *ANSWER, deadline)
     except ProgramError:
         return None
-    return _read(problem, rows)
+    return _read_answers(problem, rows)
 
 
-def candidates(network: Network, wanted: Iterable[RequiredUnit]) -> set[int] | None:
-    """Return all units with a name that the traits ask for, a superset of the units that rules require.
+def candidate_units(network: Network, wanted: Iterable[RequiredUnit]) -> set[int] | None:
+    """Return the ids of units that may have the traits in ``wanted``, among them all that rules require.
 
-    ``None`` if a rule requires units without saying a name.
+    Only the first trait of each row is looked up. ``None`` if a row has no trait.
     """
     units: set[int] = set()
-    for row in (row for one in wanted for row in one.rows):
+    for row in (row for requirement in wanted for row in requirement.rows):
         if not row:
             return None
         role, word = row[0]
@@ -70,29 +74,32 @@ def candidates(network: Network, wanted: Iterable[RequiredUnit]) -> set[int] | N
     return units
 
 
-def _read(problem: Problem, rows: Iterable[tuple[Value, ...]]) -> UnitAnswers:
-    """Return the removed units, required sets and weights in the atoms that clingo derived."""
+def _read_answers(problem: Problem, rows: Iterable[tuple[Value, ...]]) -> UnitAnswers:
+    """Return the removed units, required sets and weights in the atoms that clingo derived.
+
+    ``rows`` are the arguments of the atoms ``_of_unit/4``; :mod:`foon_asp.rules.understood` explains them.
+    """
     removed: set[int] = set()
     required: dict[tuple[Value, Value], set[int] | None] = {}  # None where a set is not needed
     weights: dict[int, dict[int, int]] = {}
     possible = True
-    for number, what, of, world in rows:
+    for number, answer, term, world in rows:
         assert isinstance(number, int)
         unit = problem.network.unit_of_number(world) if isinstance(world, int) else None
         if world == NOTHING:
-            possible &= what != "breaks"
-            if what == "meets":
-                required[number, of] = None
+            possible &= answer != "breaks"
+            if answer == "meets":
+                required[number, term] = None
             else:
-                required.setdefault((number, of), set())
+                required.setdefault((number, term), set())
         elif unit is None:
             continue
-        elif what == "breaks":
+        elif answer == "breaks":
             removed.add(unit)
-        elif what == "weighs":
-            of_row = weights.setdefault(number, {})
-            of_row[unit] = of_row.get(unit, 0) + (of if isinstance(of, int) else 0)
-        elif (units := required.setdefault((number, of), set())) is not None:
+        elif answer == "weighs":
+            row_weights = weights.setdefault(number, {})
+            row_weights[unit] = row_weights.get(unit, 0) + (term if isinstance(term, int) else 0)
+        elif (units := required.setdefault((number, term), set())) is not None:
             units.add(unit)
     sets = tuple(frozenset(units) for units in required.values() if units is not None)
     if not possible or not all(sets):

@@ -25,14 +25,25 @@ from foon_asp.rules.clause import (
     plain_value,
     value,
 )
-from foon_asp.rules.fact_values import COLUMNS, LISTED_FACTS, FactValues, has_text, nearest_text, unknown_text
+from foon_asp.rules.fact_values import (
+    COLUMNS,
+    LISTED_FACTS,
+    FactValues,
+    has_text,
+    nearest_text,
+    unknown_text_message,
+)
 from foon_asp.text.diagnostics import Diagnostic, Severity
 
 _Values = Mapping[str, Sequence[Symbol]]  # by variable, where all values are known
 
 
 class _Unmatched(NamedTuple):
-    """A literal that matches no fact: its rule, the rule's head, its constants, the warning and its place."""
+    """A literal that matches no fact, with the warning about it and its place.
+
+    ``clause``: the index of its rule in the file. ``head``: the predicate that the rule derives.
+    ``constants``: the values in the literal.
+    """
 
     clause: int
     head: Signature | None
@@ -41,14 +52,17 @@ class _Unmatched(NamedTuple):
     source: Source
 
 
-def unmatched(
+def unmatched_warnings(
     theirs: Sequence[Encoding], ours: Sequence[Encoding], settings: Sequence[str], values: FactValues
 ) -> Iterator[Diagnostic]:
-    """Return a warning for each literal over a fact whose constants match nothing in the network.
+    """Yield a warning for each literal over a fact whose constants match nothing in the network.
 
     ``theirs`` are user files, ``ours`` ready-made constraints used with them, and ``settings`` the constants
     that are set. There is no warning if another rule with the same head has a literal that matches and has
     the same constants: one rule may look for a label, the other for an ingredient, of the same name.
+
+    There are also warnings for facts in user files, such as ``allergen("milk").``, that name nothing in the
+    network.
     """
     encodings = (*theirs, *ours)
     definitions = [statement for encoding in encodings for statement in encoding.definitions]
@@ -59,7 +73,7 @@ def unmatched(
     ]
     programs = [list(chain.from_iterable(of_file)) for of_file in rules]
     search = _Search(list(chain.from_iterable(programs)), constants, values)
-    unlisted = _unlisted(list(chain.from_iterable(programs[: len(theirs)])), constants, values)
+    unlisted = _unlisted_warnings(list(chain.from_iterable(programs[: len(theirs)])), constants, values)
     for encoding, program in zip(theirs, programs, strict=False):
         warnings = [(literal.source, literal.message) for literal in search.unmatched(program)]
         own = set(map(id, program))
@@ -75,18 +89,25 @@ class _Search:
     """
 
     def __init__(self, program: Sequence[Clause], constants: Constants, values: FactValues) -> None:
+        """Collect the values that facts in the program list."""
         self._constants, self._values = constants, values
-        self._lists = self._find_lists(program)
+        self._listed_values = self._find_listed_values(program)
 
     def unmatched(self, program: Sequence[Clause]) -> Iterator[_Unmatched]:
-        """Return the literals of the rules of one file that match no fact."""
+        """Return the literals of the rules of one file that match no fact.
+
+        A literal is left out if another rule with the same head matches with the same constants.
+        """
         candidates: list[_Unmatched] = []
         matched: defaultdict[tuple[Signature | None, frozenset[Symbol]], set[int]] = defaultdict(set)
         for number, clause in enumerate(program):
             head = clause.head.signature if clause.head is not None else None
-            parts = (*clause.body, *(conjunct for _, condition in clause.others for conjunct in condition))
-            for literal, scope in _literals(parts, ()):
-                rows = self._rows(literal, (*clause.body, *scope))
+            parts = (
+                *clause.body,
+                *(conjunct for _, condition in clause.head_elements for conjunct in condition),
+            )
+            for literal, scope in _literals_with_scope(parts, ()):
+                rows = self._value_combinations(literal, (*clause.body, *scope))
                 constants = frozenset(symbol for row in rows for symbol in row.values())
                 if any(self._matches(literal, row) for row in rows):
                     matched[head, constants].add(number)
@@ -94,7 +115,7 @@ class _Search:
                     begin = literal.arguments[next(iter(rows[0]))].location.begin
                     source = Source(begin.filename, begin.line, begin.column)
                     candidates.append(
-                        _Unmatched(number, head, constants, self._message(literal, rows), source)
+                        _Unmatched(number, head, constants, self._warning_text(literal, rows), source)
                     )
         return (
             literal
@@ -102,14 +123,18 @@ class _Search:
             if not matched[literal.head, literal.constants] - {literal.clause}
         )
 
-    def _rows(self, literal: Literal, conjuncts: Iterable[Conjunct]) -> Sequence[Mapping[int, Symbol]]:
+    def _value_combinations(
+        self, literal: Literal, conjuncts: Iterable[Conjunct]
+    ) -> Sequence[Mapping[int, Symbol]]:
         """Return the combinations of values that a literal over a fact requires, by position.
 
         Empty where there are more than 10,000: then the literal counts as matched.
         """
         max_combinations = 10_000
         values_by_position = (
-            self._arguments(literal, self._bound(conjuncts)) if literal.signature in COLUMNS else {}
+            self._argument_values(literal, self._variable_values(conjuncts))
+            if literal.signature in COLUMNS
+            else {}
         )
         combinations = (
             list(islice(product(*values_by_position.values()), max_combinations + 1))
@@ -121,11 +146,15 @@ class _Search:
         return [dict(zip(values_by_position, combination, strict=True)) for combination in combinations]
 
     def _matches(self, literal: Literal, row: Mapping[int, Symbol]) -> bool:
+        """Whether some fact has the values in ``row``, by argument position of the literal."""
         wanted = {position: plain_value(symbol) for position, symbol in row.items()}
         return self._values.matches(literal.signature[0], COLUMNS[literal.signature], wanted)
 
-    def _arguments(self, literal: Literal, bound: _Values) -> dict[int, Sequence[Symbol]]:
-        """Return the possible values of arguments, by position, without arguments of unknown values."""
+    def _argument_values(self, literal: Literal, bound: _Values) -> dict[int, Sequence[Symbol]]:
+        """Return the possible values of arguments, by position, without arguments of unknown values.
+
+        ``bound`` has the possible values of variables.
+        """
         values_by_position: dict[int, Sequence[Symbol]] = {}
         for position, argument in enumerate(literal.arguments):
             if argument.ast_type == ASTType.Variable:
@@ -137,24 +166,27 @@ class _Search:
                 values_by_position[position] = symbols
         return values_by_position
 
-    def _bound(self, conjuncts: Iterable[Conjunct]) -> dict[str, Sequence[Symbol]]:
+    def _variable_values(self, conjuncts: Iterable[Conjunct]) -> dict[str, Sequence[Symbol]]:
         """Return the possible values of variables under the equations and listed facts of a body."""
         values: dict[str, Sequence[Symbol]] = {}
         for conjunct in conjuncts:
             if isinstance(conjunct, Test) and (equation := _equation(conjunct.ast)) is not None:
-                for one, other in (equation, equation[::-1]):
-                    symbol = value(other, self._constants)
-                    if one.ast_type == ASTType.Variable and symbol is not None:
-                        values[one.name] = (symbol,)
+                for variable, term in (equation, equation[::-1]):
+                    symbol = value(term, self._constants)
+                    if variable.ast_type == ASTType.Variable and symbol is not None:
+                        values[variable.name] = (symbol,)
             elif isinstance(conjunct, Literal) and conjunct.positive:
                 for position, argument in enumerate(conjunct.arguments):
-                    symbols = self._lists.get((conjunct.signature, position))
+                    symbols = self._listed_values.get((conjunct.signature, position))
                     if symbols and argument.ast_type == ASTType.Variable:
                         values.setdefault(argument.name, symbols)
         return values
 
-    def _find_lists(self, program: Sequence[Clause]) -> dict[tuple[Signature, int], Sequence[Symbol]]:
-        """Return the values of predicates that facts alone define, by predicate and position."""
+    def _find_listed_values(self, program: Sequence[Clause]) -> dict[tuple[Signature, int], Sequence[Symbol]]:
+        """Return the values that facts list for predicates without rules, by predicate and position.
+
+        An argument is left out if its value in some fact is unknown.
+        """
         rows: defaultdict[Signature, list[list[Symbol | None]]] = defaultdict(list)
         derived = {
             head.signature for clause in program if clause.body or not clause.plain for head in clause.heads
@@ -173,8 +205,11 @@ class _Search:
                     ]
         return columns
 
-    def _message(self, literal: Literal, rows: Sequence[Mapping[int, Symbol]]) -> str:
-        """Return the warning about a literal that matches no fact, with similar names."""
+    def _warning_text(self, literal: Literal, rows: Sequence[Mapping[int, Symbol]]) -> str:
+        """Return the warning about a literal that matches no fact, with similar names.
+
+        ``rows`` are its combinations of values.
+        """
         name, columns = literal.signature[0], COLUMNS[literal.signature]
         variables = {
             position: argument.name
@@ -182,14 +217,14 @@ class _Search:
             if argument.ast_type == ASTType.Variable
         }
         listed = [
-            f"{variables[position]} = {' or '.join(_shortened([str(row[position]) for row in rows]))}"
+            f"{variables[position]} = {' or '.join(_first_three([str(row[position]) for row in rows]))}"
             for position in rows[0]
             if position in variables
         ]
         constant = {
             position: str(symbol) for position, symbol in rows[0].items() if position not in variables
         }
-        text = f"nothing in this network matches {_text(literal, constant)}"
+        text = f"nothing in this network matches {_literal_text(literal, constant)}"
         text += f" with {' and '.join(listed)}" if listed else ""
         for position in rows[0]:
             symbol = rows[0][position]
@@ -200,7 +235,7 @@ class _Search:
                 variable = words[-1]
                 return (
                     f"{text}: {variable} is the number of {'a' if kind == 'unit' else 'an'} {kind} there; "
-                    f"{words},{quote(_word(symbol))}) says which it is"
+                    f"{words},{quote(_symbol_text(symbol))}) says which it is"
                 )
             if position in (*columns.units, *columns.objects):
                 if not self._values.matches(name, columns, {position: symbol.number}):
@@ -210,12 +245,16 @@ class _Search:
             elif position in columns.numbers and symbol.type is not SymbolType.Number:
                 return f"{text}: a number stands there"
         for row in rows:
-            texts = {position: _word(symbol) for position, symbol in row.items() if position in columns.texts}
+            texts = {
+                position: _symbol_text(symbol)
+                for position, symbol in row.items()
+                if position in columns.texts
+            }
             meant = self._values.nearest(name, columns, texts) if texts else None
             if meant is not None:
-                put = {position: quote(word) for position, word in meant.items()}
-                shown = {position: constant.get(position, "") for position in constant} | put
-                return f"{text}; did you mean {_text(literal, shown)}?"
+                suggested = {position: quote(word) for position, word in meant.items()}
+                arguments = {position: constant.get(position, "") for position in constant} | suggested
+                return f"{text}; did you mean {_literal_text(literal, arguments)}?"
         if any(
             row[position].type is not SymbolType.String
             for row in rows
@@ -226,40 +265,49 @@ class _Search:
         return text
 
 
-def _unlisted(
+def _unlisted_warnings(
     program: Sequence[Clause], constants: Constants, values: FactValues
 ) -> list[tuple[Clause, str]]:
-    """Return warnings for listed facts of ready-made constraints where no listed name is in the network."""
+    """Return warnings for user facts such as ``allergen("milk").`` with a name that is not in the network.
+
+    Each warning comes with the clause of the fact. There is none for a predicate of which some fact has a
+    name in the network.
+    """
     listed: defaultdict[Signature, list[tuple[Clause, str]]] = defaultdict(list)
     for clause in program:
         if clause.head is not None and clause.head.signature in LISTED_FACTS and not clause.body:
             symbol = value(clause.head.arguments[0], constants)
             if symbol is not None and _is_set(symbol):
-                listed[clause.head.signature].append((clause, _word(symbol)))
+                listed[clause.head.signature].append((clause, _symbol_text(symbol)))
     return [
-        (clause, unknown_text(facts, word, nearest_text(facts, word, values)))
-        for facts, words in ((LISTED_FACTS[signature], named) for signature, named in listed.items())
+        (clause, unknown_text_message(facts, word, nearest_text(facts, word, values)))
+        for facts, words in (
+            (LISTED_FACTS[signature], named_facts) for signature, named_facts in listed.items()
+        )
         if not any(has_text(facts, word, values) for _, word in words)
         for clause, word in words
     ]
 
 
-def _literals(
+def _literals_with_scope(
     conjuncts: Iterable[Conjunct], scope: tuple[Conjunct, ...]
 ) -> Iterator[tuple[Literal, tuple[Conjunct, ...]]]:
-    """Return the literals in conjuncts of a body, each with the other conjuncts of its condition."""
+    """Yield the literals in conjuncts of a body, each with the conjuncts of the condition around it.
+
+    A literal outside conditions comes with ``scope``.
+    """
     for conjunct in conjuncts:
         if isinstance(conjunct, Literal):
             yield conjunct, scope
         elif isinstance(conjunct, Conditional):
-            yield from _literals((conjunct.literal, *conjunct.condition), conjunct.condition)
+            yield from _literals_with_scope((conjunct.literal, *conjunct.condition), conjunct.condition)
         elif isinstance(conjunct, Aggregate):
             for element in conjunct.elements:
-                yield from _literals(element.condition, element.condition)
+                yield from _literals_with_scope(element.condition, element.condition)
 
 
 def _equation(node: AST) -> tuple[AST, AST] | None:
-    """Return the two terms of ``X = Y``."""
+    """Return the two terms of ``X = Y``; ``None`` for any other node."""
     if node.ast_type != ASTType.Literal or node.sign != Sign.NoSign:
         return None
     atom = node.atom
@@ -275,16 +323,18 @@ def _is_set(symbol: Symbol) -> bool:
     return not unset and symbol.type not in {SymbolType.Infimum, SymbolType.Supremum}
 
 
-def _word(symbol: Symbol) -> str:
+def _symbol_text(symbol: Symbol) -> str:
+    """Return a symbol as text, without the quotes of a string."""
     return symbol.string if symbol.type is SymbolType.String else str(symbol)
 
 
-def _text(literal: Literal, arguments: Mapping[int, str]) -> str:
+def _literal_text(literal: Literal, arguments: Mapping[int, str]) -> str:
     """Return a literal without its ``not``, with arguments replaced by position."""
     shown = [arguments.get(position, str(argument)) for position, argument in enumerate(literal.arguments)]
     return f"{literal.signature[0]}({','.join(shown)})"
 
 
-def _shortened(words: Sequence[str]) -> list[str]:
+def _first_three(words: Sequence[str]) -> list[str]:
+    """Return the first three different words, and ``...`` if there are more."""
     words = list(dict.fromkeys(words))
     return [*words[:3], "..."] if len(words) > 3 else words

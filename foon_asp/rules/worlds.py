@@ -10,20 +10,22 @@ from foon_asp.rules.clause import Signature
 class Worlds(Transformer):
     """Rewriter that adds a world as first argument to predicates that differ from world to world.
 
-    Their names get a ``prefix``; ``world`` is a variable that no rule has.
+    ``dependent`` are these predicates; their names get a ``prefix``. ``world`` is a variable that no rule
+    has.
     """
 
     def __init__(self, dependent: Collection[Signature], world: str, prefix: str = "_") -> None:
+        """Keep the predicates, the variable and the prefix."""
         self._dependent, self._world, self._prefix = dependent, world, prefix
 
     def visit_SymbolicAtom(self, atom: AST) -> AST:  # noqa: N802 (the name clingo looks for)
-        """Return an atom with a world."""
-        return atom.update(symbol=self._changed(atom.symbol))
+        """Return an atom, with a world if its predicate differs from world to world."""
+        return atom.update(symbol=self._add_world(atom.symbol))
 
-    def _changed(self, symbol: AST) -> AST:
+    def _add_world(self, symbol: AST) -> AST:
         """Return a symbol with a world, if its predicate differs from world to world."""
         if symbol.ast_type is ASTType.Pool:
-            return symbol.update(arguments=[self._changed(one) for one in symbol.arguments])
+            return symbol.update(arguments=[self._add_world(argument) for argument in symbol.arguments])
         if symbol.ast_type is ASTType.UnaryOperation:
             return symbol
         if (symbol.name, len(symbol.arguments)) not in self._dependent:
@@ -33,7 +35,7 @@ class Worlds(Transformer):
 
 
 def unused_variable(text: str, name: str) -> str:
-    """Return a name of a variable that does not occur in a text of rules."""
+    """Return a variable that a text of rules does not have: ``name``, with ``_`` added as often as needed."""
     while name in text:
         name += "_"
     return name

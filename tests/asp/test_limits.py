@@ -330,7 +330,7 @@ def test_a_search_without_memory_for_a_thread_is_stopped_by_the_memory_limit(
     status = Path(f"/proc/{program._worker._process.pid}/status").read_text()
     program.close()
     in_use = int(status.partition("VmData:")[2].split()[0]) * 1024
-    monkeypatch.setattr(program_client, "_memory", lambda _: in_use + 2**21)
+    monkeypatch.setattr(program_client, "_memory_left", lambda _: in_use + 2**21)
     program = program_client.WorkerProgram([], rules, [], 0, deadline)
     with pytest.raises(LimitError):
         program.search("opt", [("use", 1)], lambda _: None, lambda _: None)

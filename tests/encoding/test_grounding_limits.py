@@ -17,7 +17,7 @@ import foon_asp
 from foon_asp.asp import Settings, Status
 from foon_asp.asp.soft import solve_soft
 from foon_asp.deadline import Deadline, LimitError, memory_size, seconds, size_text
-from foon_asp.encoding.program_client import prepare
+from foon_asp.encoding.program_client import start_in_advance
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective
 from foon_asp.proof.simulation import Verdict, simulate_for
@@ -409,5 +409,5 @@ def test_one_idle_worker_is_kept_and_taken_again(tmp_path: Path) -> None:
     idle = workers(os.getpid())
     assert len(idle) == 1
     ask()
-    prepare()
+    start_in_advance()
     assert workers(os.getpid()) == idle

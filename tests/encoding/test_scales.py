@@ -63,7 +63,7 @@ def test_what_is_rounded_is_bounded_on_one_side() -> None:
     assert by_tries.allows(TRIES, 300_000_000, 3 + Fraction(1, 10**9 + 7))
     assert not by_tries.allows(TRIES, 300_000_001, 3)
     for scales in (by_success, by_tries):  # how many units weigh less than they cost
-        assert [scales.doubt(units) for units in ((0, 1), (1,), (0, 2))] == [1, 0, 2]
+        assert [scales.count_rounded(units) for units in ((0, 1), (1,), (0, 2))] == [1, 0, 2]
     assert by_tries.vector((0, 1, 1)) == by_tries.vector((1, 1, 0)) != by_tries.vector((0, 0, 1))
 
 

@@ -172,5 +172,5 @@ def test_a_limit_counts_what_a_unit_costs_in_hundredths() -> None:
     priced = replace(problem, unit_prices=prices)
     for most in (-1, 799, 900):
         ready = known(priced, Settings((given_constraint(f"at_most_price:max_price={most}"),)))
-        [row] = ready.counted(priced, Deadline())
+        [row] = ready.upper_limits(priced, Deadline())
         assert ([*map(row.weight, range(3))], row.bound) == ([300, 100, 500], most)

@@ -204,7 +204,7 @@ def test_units_that_matter_are_told() -> None:
 
 def test_rules_that_were_applied_wrongly_are_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
     """The tree that is given is held against the rules as the user wrote them."""
-    monkeypatch.setattr(Rules, "applied", lambda *_: Restriction(lambda _: False))
+    monkeypatch.setattr(Rules, "restriction_of", lambda *_: Restriction(lambda _: False))
     settings = Settings((given_constraint(':- use(U), motion(U,"boil").'),))
     problem = small(*BANNED, "mix: y > end", "cut: start > y", "fry: x > y")
     with pytest.raises(BugError, match="does not keep to the rules that were added"):

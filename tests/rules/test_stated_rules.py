@@ -20,7 +20,7 @@ from foon_asp.errors import BugError, UserError
 from foon_asp.problem import ContainerRule, Objective
 from foon_asp.resources import encodings_folder
 from foon_asp.rules.passed_constraint import LibraryUse, RuleText, given_constraint, named_constraint
-from foon_asp.rules.stating import loaded
+from foon_asp.rules.stating import load_constraints
 from tests.conftest import ROOT, Cli
 from tests.support.handmade_certificate import forbid
 from tests.support.random_problems import random_problem
@@ -296,7 +296,7 @@ def test_extension_points_are_shared(cli: Cli) -> None:
 
 def test_texts_that_look_like_names_are_left_alone(cli: Cli) -> None:
     use = LibraryUse(LIBRARY / "forbid_motion.lp", "forbid_motion:forbidden_motion=forbidden_motion")
-    rules = loaded([use])[use]
+    rules = load_constraints([use])[use]
     assert isinstance(rules, Stated)
     assert '#const _forbidden_motion_1 = "forbidden_motion".' in rules.text
 
