@@ -11,7 +11,7 @@ from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.lexicographic import Lexicographic, Vector
 from foon_asp.hypergraph.proof_tree import Cases
 from foon_asp.problem import Objective, Problem, multiplies
-from foon_asp.proof import ruled, verifier
+from foon_asp.proof import compiled_rules, verifier
 
 
 class Arrays:
@@ -89,7 +89,7 @@ class Arrays:
 
     def _admit(self, limit: Limit) -> None:
         """Add a limit by user rules."""
-        self.ruled.limits[self._of_rules + len(self.own_limits)] = ruled.Limit(*limit)
+        self.ruled.limits[self._of_rules + len(self.own_limits)] = compiled_rules.Limit(*limit)
 
     def exceeded(self, derivation: frozenset[int]) -> Limit | None:
         """Return a limit by user rules that a derivation exceeds, and add it; ``None`` without one."""
@@ -115,7 +115,7 @@ class Arrays:
 
         No tree with all used actions and none of ``without`` has a barred unit.
         """
-        return self.ruled.bars(self._units(used), without)
+        return self.ruled.barred_units(self._units(used), without)
 
     def breaking(self, derivation: frozenset[int]) -> list[int]:
         """Return units of a derivation that together break a constraint, barred units first; else none.
@@ -143,7 +143,7 @@ class Arrays:
         """Return the actions of a tree: its units, its steps, and the taking of needed kitchen items."""
         units = list(units)
         needed = {o for unit in units for o in self.problem.needs[unit]}
-        steps = self.ruled.used(frozenset(units)).difference(units)
+        steps = self.ruled.units_and_steps(frozenset(units)).difference(units)
         taking = (action for o, action in self.items.items() if o in needed)
         return [*units, *taking, *map(self._steps.__getitem__, sorted(steps))]
 

@@ -8,8 +8,8 @@ from typing import NamedTuple
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, ObjectNode
 from foon_asp.problem import Problem
-from foon_asp.proof.replay import Copy, Replay, readers, waits
-from foon_asp.proof.timetable import Means, ToolName, tools_asked
+from foon_asp.proof.replay import Copy, Replay, predecessors, shared_readers
+from foon_asp.proof.timetable import Means, ToolName, tools_needed
 
 
 class Use(NamedTuple):
@@ -78,11 +78,11 @@ def schedule_task(
         Fraction(1, ticks_per_second),
         lengths,
         tuple(means.durations[unit.motion].passive for unit in plan),
-        tuple(map(frozenset, waits(replay))),
+        tuple(map(frozenset, predecessors(replay))),
         uses,
         {use.name: means.number_of(problem, use.name) for use in uses},
         means.agents,
-        tuple(readers(replay, means.is_free)),
+        tuple(shared_readers(replay, means.is_unlimited)),
     )
 
 
@@ -96,7 +96,9 @@ def _uses(problem: Problem, replay: Replay, means: Means) -> tuple[Use, ...]:
         """Assign a step to the use of a tool that ``copy`` belongs to, or to a new use; return the use."""
         use = None if copy is None else use_of.get((copy, label))
         if use is None or number in steps[use]:
-            names.append(label if node is None or not problem.at_hand(node) else means.name(node, label))
+            names.append(
+                label if node is None or not problem.at_hand(node) else means.counted_name(node, label)
+            )
             steps.append([])
             use = len(names) - 1
         steps[use].append(number)
@@ -104,7 +106,7 @@ def _uses(problem: Problem, replay: Replay, means: Means) -> tuple[Use, ...]:
 
     for number, step in enumerate(replay.steps):
         copies = {copy.node: copy for copy in (*step.gone, *step.stayed)}
-        for label, demand in tools_asked(problem, means, step.unit).items():
+        for label, demand in tools_needed(problem, means, step.unit).items():
             after = {node: assign(number, label, node, copies.get(node)) for node in demand.kept}
             changed = {
                 node: assign(number, label, node, None if node is None else copies.get(node))

@@ -24,12 +24,12 @@ def bulk_order(
 
     Raises :class:`Stopped` if the search neither finds runs nor proves that there are none.
     """
-    if not _is_founded(flows, counts, start):
+    if not _may_have_order(flows, counts, start):
         return None
-    runs = _Search(flows, counts, start, expired, single=False).runs()
+    runs = _Search(flows, counts, start, expired, single=False).find_runs()
     if runs is None and sum(counts.values()) <= PLANS.single_executions:
         search = _Search(flows, counts, start, expired, single=True)
-        runs = search.runs()
+        runs = search.find_runs()
         if runs is None and search.is_exhausted:
             return None
     if runs is None:
@@ -52,7 +52,7 @@ def least_copies(flows: Flows, counts: Counts) -> dict[int, int]:
     return {o: max(0, -change[o], required[o]) for o in flows.start}
 
 
-def _is_founded(flows: Flows, counts: Counts, start: Mapping[int, int]) -> bool:
+def _may_have_order(flows: Flows, counts: Counts, start: Mapping[int, int]) -> bool:
     """Whether counts satisfy two conditions that are necessary for an order.
 
     Each action can be reached if nothing is consumed, and enough copies remain in the end.
@@ -99,7 +99,7 @@ class _Search:
         """Whether all orders were tried."""
         return self._steps_left > 0
 
-    def runs(self) -> list[Run] | None:
+    def find_runs(self) -> list[Run] | None:
         """Return an order; ``None`` where none is found."""
         done: list[Run] = []
         dead: set[tuple[tuple[int, int], ...]] = set()  # what waited where no order was found
@@ -115,14 +115,14 @@ class _Search:
                 continue
             if self._steps_left <= 0:
                 return None
-            dead.add(self._state)
+            dead.add(self._waiting_counts)
             choices.pop()
             if done:
                 self._execute(done.pop(), -1)
         return None
 
     @property
-    def _state(self) -> tuple[tuple[int, int], ...]:
+    def _waiting_counts(self) -> tuple[tuple[int, int], ...]:
         return tuple(sorted(self._waiting.items()))
 
     def _choices(self, dead: set[tuple[tuple[int, int], ...]]) -> Iterator[Run]:
@@ -130,7 +130,7 @@ class _Search:
 
         ``dead`` has the waiting executions for which there is no order.
         """
-        if self._state in dead:
+        if self._waiting_counts in dead:
             return
         ready = [(action, self._max_times(action)) for action in sorted(self._waiting)]
         ready = [(action, max_times) for action, max_times in ready if max_times]
@@ -157,9 +157,11 @@ class _Search:
 
     def _is_free(self, action: int) -> bool:
         """Whether there are enough copies of what an action consumes for all waiting executions."""
-        return all(self._copies[o] - self._consumed[o] >= self._kept(o) for o in self._flows.uses[action])
+        return all(
+            self._copies[o] - self._consumed[o] >= self._copies_to_keep(o) for o in self._flows.uses[action]
+        )
 
-    def _kept(self, o: int) -> int:
+    def _copies_to_keep(self, o: int) -> int:
         """Return how many copies of an object have to remain after all waiting executions."""
         readers = (self._flows.asks[a].get(o, 0) - self._flows.uses[a].get(o, 0) for a in self._waiting)
         return max(self._flows.targets.get(o, 0), *readers)

@@ -64,10 +64,10 @@ class CountBound:
         self._rounded_rows: list[tuple[Rounded, dict[int, int], int]] = []
         self._copies: list[Supply | Remainder] = []
 
-    def plain_counts(self, measures: Sequence[Measure]) -> Counts | None:
+    def cheapest_counts_by_equation(self, measures: Sequence[Measure]) -> Counts | None:
         """Return counts of least cost in floats, the first measure most important.
 
-        As in :meth:`counts`, the counts are of a plan of the delete relaxation. This search is much faster,
+        As in :meth:`cheapest_counts`, the counts are of a plan of the delete relaxation. This is faster,
         as few actions have an indicator. Returns ``None`` if no counts are found, or if items have costs or
         counts are excluded; it does not search then.
         """
@@ -84,12 +84,12 @@ class CountBound:
                 x = solution
                 total = sum(cost * round(x[a]) for a, cost in enumerate(measure.costs))
                 if not number:
-                    self._rounded_rows = list(equation.rounded)
+                    self._rounded_rows = list(equation.rounded_rows)
                     assumed_cost = 2 * total
-                equation.keep(Level(measure, Fraction(total), total))
-            if not self._add_unreached(x, equation):
+                equation.add_level(Level(measure, Fraction(total), total))
+            if not self._add_violated(x, equation):
                 return {a: round(n) for a, n in enumerate(x[: self._size]) if round(n)}
-            self._check()
+            self._stop_if_expired()
 
     def _assumed_caps(self, measure: Measure, assumed_cost: int | None) -> Sequence[int | None]:
         """Return upper bounds on counts in plans of up to an assumed cost, to tie indicators to counts."""
@@ -104,17 +104,17 @@ class CountBound:
         for condition, row, least in self._rounded_rows:
             equation.add((condition,), row, least)
         for level in (*self._levels, *levels):
-            equation.keep(level)
+            equation.add_level(level)
         for landmark in self._landmarks:
             equation.add_landmark(landmark)
         for copies in self._copies:
             equation.add_copies(copies)
         return equation
 
-    def _add_unreached(self, x: Sequence[float], equation: StateEquation) -> bool:
+    def _add_violated(self, x: Sequence[float], equation: StateEquation) -> bool:
         """Add a violated landmark, supply or remainder that is new; return whether there is one."""
         used = {a for a in range(self._size) if x[a] > INTEGRALITY}
-        landmark = self._unreached_landmark(used, set(), {})
+        landmark = self._violated_landmark(used, set(), {})
         if landmark is not None and landmark not in self._landmarks:
             self._landmarks.append(landmark)
             equation.add_landmark(landmark)
@@ -122,14 +122,14 @@ class CountBound:
         conditions: list[Supply | Remainder] = [*self._flows.supplies, *self._flows.remainders]
         for condition in conditions:
             if condition.action in used and condition not in self._copies:
-                copies = sum(n * x[a] for a, n in self._flows.change(condition).items())
+                copies = sum(n * x[a] for a, n in self._flows.copy_changes(condition).items())
                 if copies + self._flows.start.get(condition.object, 0) < condition.copies - INTEGRALITY:
                     self._copies.append(condition)
                     equation.add_copies(condition)
                     return True
         return False
 
-    def counts(self, measures: Sequence[Measure], rounds: int = 30) -> Counts | None:
+    def cheapest_counts(self, measures: Sequence[Measure], rounds: int = 30) -> Counts | None:
         """Return counts of least cost in floats, the first measure most important; ``None`` if infeasible.
 
         The counts are of a plan of the delete relaxation. There may be no plan with these counts, and their
@@ -138,36 +138,38 @@ class CountBound:
         counts = None
         wanted = max(self._flows.targets.values(), default=1)
         for assumed_cap in (PLANS.first_executions * wanted, PLANS.last_executions * wanted):
-            counts = self._counts(measures, rounds, assumed_cap)
+            counts = self._cheapest_counts_up_to(measures, rounds, assumed_cap)
             if counts is not None and max(counts.values(), default=0) < assumed_cap:
                 break
         return counts
 
-    def _counts(self, measures: Sequence[Measure], rounds: int, assumed_cap: int) -> Counts | None:
-        """Return counts of least cost as :meth:`counts` does, under an assumed cap of counts."""
+    def _cheapest_counts_up_to(
+        self, measures: Sequence[Measure], rounds: int, assumed_cap: int
+    ) -> Counts | None:
+        """Return counts of least cost as :meth:`cheapest_counts` does, under an assumed cap of counts."""
         counts: Counts | None = None
         for _ in range(rounds):
-            model = self._model(measures, assumed_cap)
+            model = self._new_model(measures, assumed_cap)
             x: list[float] = []
             for measure in measures:
-                relaxed = self._relaxed(model, model.objective(measure))
+                relaxed = self._solve_relaxed(model, model.objective(measure))
                 whole = relaxed or model.program.whole_optimum(model.objective(measure))
                 if whole is None:
                     return None
                 x = whole
                 for a in range(self._size):  # the larger a count, the less of an indicator satisfies floats
                     x[self._size + a] = float(x[a] > 0.5)
-                model.keep(measure, x)
-                self._check()
+                model.limit_cost(measure, x)
+                self._stop_if_expired()
             counts = {a: round(x[a]) for a in range(self._size) if x[a] > 0.5}
             if not self._add_landmark(x, model):
                 break
         return counts
 
-    def _relaxed(self, model: CountModel, objective: Mapping[int, int]) -> list[float] | None:
+    def _solve_relaxed(self, model: CountModel, objective: Mapping[int, int]) -> list[float] | None:
         """Add violated landmarks to the relaxation; return its solution if it is whole, else ``None``."""
         while True:
-            self._check()
+            self._stop_if_expired()
             x = model.program.solve(objective).x
             if x is None or not self._separate(x, model, at_root=True):
                 break
@@ -178,30 +180,30 @@ class CountBound:
             return None
         return x
 
-    def none(self) -> bool:
+    def is_infeasible(self) -> bool:
         """Return whether it is proved that no counts satisfy all conditions, so that no plan exists."""
-        model = self._model(())
+        model = self._new_model(())
         while True:
             solved = model.program.solve({})
             if solved.x is None:
                 return solved.bound == math.inf
             if not self._add_landmark(solved.x, model):
                 return False
-            self._check()
+            self._stop_if_expired()
 
-    def most_executions(self) -> int | None:
+    def max_executions(self) -> int | None:
         """Return an upper bound on the executions in a plan; ``None`` if unbounded."""
-        program = self._model(()).program
+        program = self._new_model(()).program
         bound = program.solve(dict.fromkeys(range(self._size), -1)).bound
         return None if abs(bound) == math.inf else math.floor(-bound)
 
-    def caps(self, level: Level) -> list[int | None]:
+    def max_counts(self, level: Level) -> list[int | None]:
         """Return the greatest count of each action in plans as good as a level; ``None``: unbounded."""
-        model = self._model((level.measure,))
-        model.limit(level)
+        model = self._new_model((level.measure,))
+        model.add_level(level)
         caps: list[int | None] = []
         for action in range(self._size):
-            self._check()
+            self._stop_if_expired()
             solved = model.program.solve({action: -1})
             caps.append(None if solved.bound == -math.inf else math.floor(-solved.bound))
             model.program.upper[action] = caps[-1]
@@ -219,17 +221,19 @@ class CountBound:
             before, rounded = levels[:i], level.measure.exact is not None
             step = math.gcd(*level.measure.costs, level.measure.item) or 1
             max_cost = level.max_cost if rounded else (math.ceil(level.cost) - 1) // step * step
-            self._prove(level.measure, max_cost, is_better, before, [*before, level._replace(strict=True)])
+            self._search_counts(
+                level.measure, max_cost, is_better, before, [*before, level._replace(strict=True)]
+            )
 
-    def every(self, levels: Sequence[Level], ask: Callable[[Counts], None]) -> None:
+    def visit_counts(self, levels: Sequence[Level], ask: Callable[[Counts], None]) -> None:
         """Call ``ask`` with all counts that a plan as good as the incumbent by each level can have.
 
         Costs of the last level are whole numbers. Raises :class:`Stopped` if time is up.
         """
         *before, last = levels
-        self._prove(last.measure, last.max_cost, ask, before, before)
+        self._search_counts(last.measure, last.max_cost, ask, before, before)
 
-    def none_is_left(self, measure: Measure, is_better: Callable[[Counts], bool]) -> None:
+    def prove_infeasible(self, measure: Measure, is_better: Callable[[Counts], bool]) -> None:
         """Prove that there is no plan at all, looking at counts of low cost by ``measure`` first.
 
         ``is_better`` is called with counts, and returns whether some order of them is a plan. Raises
@@ -237,11 +241,11 @@ class CountBound:
         """
         proved = self.proved
         try:
-            self._prove(measure, self.most_executions(), is_better)
+            self._search_counts(measure, self.max_executions(), is_better)
         finally:
             self.proved = proved  # by another measure, maybe
 
-    def _prove(
+    def _search_counts(
         self,
         measure: Measure,
         max_cost: int | None,
@@ -256,13 +260,13 @@ class CountBound:
         """
         if max_cost is not None and not measure.item and self._equation_exceeds(measure, max_cost, before):
             return
-        model = self._model([measure, *(level.measure for level in before)])
+        model = self._new_model([measure, *(level.measure for level in before)])
         for level in before:
-            model.limit(level)
+            model.add_level(level)
         objective = model.objective(measure)
         if max_cost is not None:
-            model.cap(measure, max_cost)
-            self._tighten_root(model, objective, max_cost)
+            model.cap_counts(measure, max_cost)
+            self._probe_actions(model, objective, max_cost)
         cutoff = math.inf if max_cost is None else max_cost
         lower, upper = list(model.program.lower), list(model.program.upper)
         number = 0
@@ -271,10 +275,10 @@ class CountBound:
             bound, _, _, (model.program.lower, model.program.upper) = heappop(waiting)
             if not before:
                 self.proved = max(self.proved, bound)
-            solved = self._solved(model, objective, cutoff)
+            solved = self._solve_node(model, objective, cutoff)
             if solved.x is None:
                 continue
-            for lower, upper in self._branches(model, solved.x, levels, is_better):
+            for lower, upper in self._child_bounds(model, solved.x, levels, is_better):
                 number += 1
                 executions = sum(lower[: self._size])
                 heappush(waiting, (max(bound, solved.bound), executions, -number, (lower, upper)))
@@ -294,31 +298,33 @@ class CountBound:
         for number in range(PLANS.equation_nodes):
             if not waiting:
                 return True
-            program.restrict(waiting.pop())
-            solved = self._strengthened(equation, costs, max_cost)
+            program.set_bounds(waiting.pop())
+            solved = self._solve_equation_node(equation, costs, max_cost)
             if not before and not number:
-                self._rounded_rows = list(equation.rounded)
+                self._rounded_rows = list(equation.rounded_rows)
                 self.proved = max(self.proved, min(solved.bound, max_cost + 1))
             if solved.bound > max_cost:
                 continue
             column = None if solved.x is None else most_fractional(solved.x[: self._size])
             if column is None or solved.x is None:
                 return False
-            waiting += program.halves(column, solved.x[column])
+            waiting += program.split_bounds(column, solved.x[column])
         return False
 
-    def _strengthened(self, equation: StateEquation, costs: Mapping[int, int], max_cost: int) -> Solved:
+    def _solve_equation_node(
+        self, equation: StateEquation, costs: Mapping[int, int], max_cost: int
+    ) -> Solved:
         """Return the solution of a node of the state equation, rounded rows and violated landmarks added."""
         while True:
-            self._check()
+            self._stop_if_expired()
             solved = equation.strengthen(costs, max_cost)
-            if solved.bound > max_cost or solved.x is None or not self._add_unreached(solved.x, equation):
+            if solved.bound > max_cost or solved.x is None or not self._add_violated(solved.x, equation):
                 return solved
 
-    def _solved(self, model: CountModel, objective: Mapping[int, int], cutoff: float) -> Solved:
+    def _solve_node(self, model: CountModel, objective: Mapping[int, int], cutoff: float) -> Solved:
         """Return the relaxed solution of a node with violated landmarks added; pruned nodes have no ``x``."""
         while True:
-            self._check()
+            self._stop_if_expired()
             model.tighten()
             solved = model.program.solve(objective, cutoff)
             if solved.bound > cutoff or solved.bound == math.inf:
@@ -328,7 +334,7 @@ class CountBound:
             if not self._add_landmark(solved.x, model) and not self._separate(solved.x, model, at_root=False):
                 return solved
 
-    def _model(self, measures: Sequence[Measure], assumed_cap: int | None = None) -> CountModel:
+    def _new_model(self, measures: Sequence[Measure], assumed_cap: int | None = None) -> CountModel:
         """Return a new relaxation with all known conditions."""
         every = (*measures, *(level.measure for level in self._levels))
         different = {id(measure): measure for measure in every}
@@ -342,16 +348,16 @@ class CountBound:
             self._expired,
         )
         for level in self._levels:
-            model.limit(level)
+            model.add_level(level)
         for condition, row, least in self._rounded_rows:
-            model.conditions[model.program.row(row, least)] = condition
+            model.conditions[model.program.add_row(row, least)] = condition
         return model
 
-    def _tighten_root(self, model: CountModel, objective: Mapping[int, int], cutoff: int) -> None:
+    def _probe_actions(self, model: CountModel, objective: Mapping[int, int], cutoff: int) -> None:
         """Probe which actions cannot be executed twice, which tightens the rows of their indicators."""
         program, probed = model.program, set[int]()
         while len(probed) < PLANS.probes:
-            self._check()
+            self._stop_if_expired()
             solved = program.solve(objective, cutoff)
             if solved.x is None or solved.bound > cutoff:
                 return
@@ -366,7 +372,7 @@ class CountBound:
                 return
             for action in loose[: PLANS.probes - len(probed)]:
                 probed.add(action)
-                self._check()
+                self._stop_if_expired()
                 lower = program.lower[action]
                 program.lower[action] = 2
                 if program.solve(objective, cutoff).bound > cutoff:
@@ -374,7 +380,7 @@ class CountBound:
                 program.lower[action] = lower
             model.tighten()
 
-    def _branches(
+    def _child_bounds(
         self,
         model: CountModel,
         x: Sequence[float],
@@ -385,7 +391,7 @@ class CountBound:
         program = model.program
         column = most_fractional(x)
         if column is not None:
-            yield from program.halves(column, x[column])
+            yield from program.split_bounds(column, x[column])
             return
         counts = {a: round(x[a]) for a in range(self._size) if round(x[a])}
         idle = next((a for a in counts if not round(x[self._size + a])), None)
@@ -399,7 +405,7 @@ class CountBound:
         worse = [
             level
             for level in rounded
-            if (cost := _exact(level, counts)) > level.cost or (cost == level.cost and level.strict)
+            if (cost := _exact_cost(level, counts)) > level.cost or (cost == level.cost and level.strict)
         ]
         unforced = model.unforced_count(counts, x)
         if unforced is not None:  # its action is unbounded, so that the indicator is not forced
@@ -410,23 +416,23 @@ class CountBound:
             yield lower, upper
             return
         if worse:
-            yield from _around(program, x, model.class_columns(worse[0].measure))
+            yield from _bounds_around(program, x, model.class_columns(worse[0].measure))
             return
         if is_better(counts):
             raise BetterError(counts)
-        yield from _around(program, x, range(self._size))
+        yield from _bounds_around(program, x, range(self._size))
 
     def _add_landmark(self, x: Sequence[float], model: CountModel) -> bool:
         """Add a landmark that a solution violates; return whether there is one."""
         used = {a for a in range(self._size) if x[self._size + a] > INTEGRALITY}
         reached = {o for o, column in model.stock.items() if x[column] > INTEGRALITY}
-        landmark = self._unreached_landmark(used, reached, model.stock)
+        landmark = self._violated_landmark(used, reached, model.stock)
         if landmark is not None:
             self._landmarks.append(landmark)
             model.add_landmark(landmark)
         return landmark is not None
 
-    def _unreached_landmark(
+    def _violated_landmark(
         self, used: set[int], initial: set[int], stock: Mapping[int, int]
     ) -> Landmark | None:
         """Return a landmark that the executed actions ``used`` violate; ``None`` if there is none.
@@ -449,7 +455,7 @@ class CountBound:
         missed = [(target, None) for target in targets if target not in reached]
         missed += [(next(o for o in asks[a] if o not in reached), a) for a in sorted(waiting)]
         for o, action in missed[:1]:
-            return self._landmark(o, asks, reached, used, stock)._replace(action=action)
+            return self._grow_landmark(o, asks, reached, used, stock)._replace(action=action)
         return None
 
     @cached_property
@@ -500,7 +506,7 @@ class CountBound:
             model.add_landmark(self._landmarks[-1])
         return bool(cuts)
 
-    def _landmark(
+    def _grow_landmark(
         self,
         o: int,
         asks: Sequence[Sequence[int]],
@@ -520,17 +526,17 @@ class CountBound:
         members = tuple(achiever for achiever in edge if zone.isdisjoint(asks[achiever]))
         return Landmark(members, tuple(sorted(zone & stock.keys())), objects=tuple(sorted(zone)))
 
-    def _check(self) -> None:
+    def _stop_if_expired(self) -> None:
         if self._expired():
             raise Stopped
 
 
-def _exact(level: Level, counts: Mapping[int, int]) -> Fraction:
+def _exact_cost(level: Level, counts: Mapping[int, int]) -> Fraction:
     assert level.measure.exact is not None
     return level.measure.exact(counts)
 
 
-def _around(program: WholeProgram, x: Sequence[float], columns: Sequence[int]) -> Iterator[Bounds]:
+def _bounds_around(program: WholeProgram, x: Sequence[float], columns: Sequence[int]) -> Iterator[Bounds]:
     """Yield the bounds of child nodes which together exclude only the current whole values of the columns."""
     lower, upper = list(program.lower), list(program.upper)
     for column in sorted(columns, key=lambda column: -x[column]):

@@ -40,38 +40,38 @@ class CountModel:
         self._size, self._assumed_cap = size, assumed_cap
         self.conditions: dict[int, Condition] = {}  # by row
         for _ in range(size):
-            program.column(0, 1)  # whether an action is executed at all
-        self._loose = [program.open_row((size + a, a), 0) for a in range(size)]
+            program.add_column(0, 1)  # whether an action is executed at all
+        self._loose = [program.add_open_row((size + a, a), 0) for a in range(size)]
         for a in range(size):
-            program.row({a: 1, size + a: -1}, 0)
+            program.add_row({a: 1, size + a: -1}, 0)
         self._classes: dict[int, list[int]] = {}
         priced = any(measure.item for measure in measures)
         self.stock: dict[int, int] = {}
         if priced:
-            self.stock = {o: program.column(0, count) for o, count in flows.start.items() if count}
+            self.stock = {o: program.add_column(0, count) for o, count in flows.start.items() if count}
         for o, change, least in flows.balances():
-            self.conditions[program.row(*self._with_stock(o, change, least))] = Balance(o)
+            self.conditions[program.add_row(*self._with_stock(o, change, least))] = Balance(o)
         for supply in flows.supplies:
-            row = {**flows.change(supply), size + supply.action: -supply.copies}
-            self.conditions[program.row(*self._with_stock(supply.object, row, 0))] = supply
+            row = {**flows.copy_changes(supply), size + supply.action: -supply.copies}
+            self.conditions[program.add_row(*self._with_stock(supply.object, row, 0))] = supply
         items = self.items = dict[int, int]()
         for action in range(size):
             y = size + action
             for o in (needed for needed in flows.asks[action] if needed not in flows.uses[action]):
                 achievers = {size + achiever: 1 for achiever in achievers_of.get(o, ())}
-                read = program.row(*self._with_stock(o, {**achievers, y: -1}, 0))
+                read = program.add_row(*self._with_stock(o, {**achievers, y: -1}, 0))
                 if o in self.stock or not flows.start.get(o):  # else it says nothing
                     self.conditions[read] = Landmark((), (), action, (o,))
             for o in flows.items[action] if priced else ():
                 if o not in items:
-                    items[o] = program.column(0, 1)
-                self.conditions[program.row({items[o]: 1, y: -1}, 0)] = Landmark((), (), action, (o,))
+                    items[o] = program.add_column(0, 1)
+                self.conditions[program.add_row({items[o]: 1, y: -1}, 0)] = Landmark((), (), action, (o,))
         for landmark in landmarks:
             self.add_landmark(landmark)
         for i, (weights, limit, at_least, used) in enumerate(limits):
             first, sign = size if used else 0, 1 if at_least else -1
             row = {first + a: sign * weight for a, weight in weights.items()}
-            self.conditions[program.row(row, sign * limit)] = Sum(i)
+            self.conditions[program.add_row(row, sign * limit)] = Sum(i)
             for a, weight in weights.items() if not at_least and not used else ():
                 program.cap(a, max(limit, 0) // weight)
         for measure in measures:
@@ -80,7 +80,7 @@ class CountModel:
         self._count_indicators: dict[tuple[int, int], tuple[int, int]] = {}
         for counts in excluded_counts:
             columns = [self._count_indicator(a, n) for a, n in counts.items()]
-            program.row(dict.fromkeys(columns, -1), 1 - len(columns))
+            program.add_row(dict.fromkeys(columns, -1), 1 - len(columns))
         self.tighten()
 
     def _count_indicator(self, action: int, count: int) -> int:
@@ -88,9 +88,12 @@ class CountModel:
         if count == 1:
             return self._size + action
         if (action, count) not in self._count_indicators:
-            column = self.program.column(0, 1)
-            self.program.row({action: 1, column: -count}, 0)
-            self._count_indicators[action, count] = column, self.program.open_row((column, action), 1 - count)
+            column = self.program.add_column(0, 1)
+            self.program.add_row({action: 1, column: -count}, 0)
+            self._count_indicators[action, count] = (
+                column,
+                self.program.add_open_row((column, action), 1 - count),
+            )
         return self._count_indicators[action, count][0]
 
     def unforced_count(self, counts: Counts, x: Sequence[float]) -> tuple[int, int, int] | None:
@@ -113,9 +116,9 @@ class CountModel:
         columns = []
         for number in sorted(set(measure.classes) - {-1}):
             members = [a for a, class_number in enumerate(measure.classes) if class_number == number]
-            column = self.program.column(0, None)
-            self.program.row({column: 1, **dict.fromkeys(members, -1)}, 0)
-            self.program.row({column: -1, **dict.fromkeys(members, 1)}, 0)
+            column = self.program.add_column(0, None)
+            self.program.add_row({column: 1, **dict.fromkeys(members, -1)}, 0)
+            self.program.add_row({column: -1, **dict.fromkeys(members, 1)}, 0)
             columns.append(column)
         self._classes[id(measure)] = columns
 
@@ -130,9 +133,9 @@ class CountModel:
             return
         row = {self._size + member: 1 for member in members} | {self.stock[o]: 1 for o in stock}
         if action is None:
-            number = self.program.row(row, 1)
+            number = self.program.add_row(row, 1)
         else:
-            number = self.program.row({**row, self._size + action: -1}, 0)
+            number = self.program.add_row({**row, self._size + action: -1}, 0)
         self.conditions[number] = landmark
 
     def tighten(self) -> None:
@@ -140,16 +143,16 @@ class CountModel:
         program = self.program
         for action, row in enumerate(self._loose):
             max_count = self._max_count(action)
-            program.change(row, {} if max_count is None else {self._size + action: max_count, action: -1})
+            program.change_row(row, {} if max_count is None else {self._size + action: max_count, action: -1})
         for (action, count), (column, row) in self._count_indicators.items():
             max_count = self._max_count(action)
-            program.change(row, {} if max_count is None else {column: max_count - count + 1, action: -1})
+            program.change_row(row, {} if max_count is None else {column: max_count - count + 1, action: -1})
 
     def _max_count(self, action: int) -> int | None:
         upper = self.program.upper[action]
         return self._assumed_cap if upper is None else upper
 
-    def cap(self, measure: Measure, max_cost: int) -> None:
+    def cap_counts(self, measure: Measure, max_cost: int) -> None:
         """Bound the count of each action: its executions alone cost at most ``max_cost``."""
         for action, cost in enumerate(measure.costs):
             if cost:
@@ -163,15 +166,15 @@ class CountModel:
             costs |= dict.fromkeys((*self.items.values(), *self.stock.values()), measure.item)
         return costs
 
-    def limit(self, level: Level) -> None:
+    def add_level(self, level: Level) -> None:
         """Add the row of a level: counts as good as the incumbent cost at most ``max_cost``."""
         costs = self.objective(level.measure)
-        row = self.program.row({column: -cost for column, cost in costs.items()}, -level.max_cost)
+        row = self.program.add_row({column: -cost for column, cost in costs.items()}, -level.max_cost)
         self.conditions[row] = level
-        self.cap(level.measure, level.max_cost)
+        self.cap_counts(level.measure, level.max_cost)
 
-    def keep(self, measure: Measure, solution: Sequence[float]) -> None:
+    def limit_cost(self, measure: Measure, solution: Sequence[float]) -> None:
         """Add the row that counts cost, by a measure, at most as much as a solution."""
         costs = self.objective(measure)
         max_cost = sum(cost * round(solution[column]) for column, cost in costs.items())
-        self.program.row({column: -cost for column, cost in costs.items()}, -max_cost)
+        self.program.add_row({column: -cost for column, cost in costs.items()}, -max_cost)

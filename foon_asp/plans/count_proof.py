@@ -75,17 +75,17 @@ class PlanProver(CountBound):
         equation = StateEquation(self._flows, self._limits, claim.caps, self._expired)
         # in whole numbers, which only tell where to round
         equation.strengthen({action: round(cost / INTEGRALITY) for action, cost in self._objective.items()})
-        self._rounded_rows = list(equation.rounded)
-        model = self._model([measure, *(level.measure for level in kept)])
+        self._rounded_rows = list(equation.rounded_rows)
+        model = self._new_model([measure, *(level.measure for level in kept)])
         for level in kept:
-            model.limit(level)
+            model.add_level(level)
         for action, cap in enumerate(claim.caps):
             if cap is not None:
                 model.program.cap(action, cap)
         self._columns = {column: o for o, column in {**model.items, **model.stock}.items()}
         self._objective |= dict.fromkeys(self._columns, claim.order.approximate(claim.item)[0])
         self._failed = False
-        proof = self._prove_part(model, 0)
+        proof = self._prove_node(model, 0)
         if self._failed:
             return None
         return proof, self._least, self._columns
@@ -94,7 +94,7 @@ class PlanProver(CountBound):
         """Add known landmarks."""
         self._landmarks += landmarks
 
-    def _prove_part(self, model: CountModel, depth: int) -> CountProof:
+    def _prove_node(self, model: CountModel, depth: int) -> CountProof:
         """Return the proof of a node of the branching.
 
         If the node proves less than the claim, the claim is lowered to the bound of the node.
@@ -106,23 +106,23 @@ class PlanProver(CountBound):
         best: tuple[Vector, dict[int, Vector]] | None = None
         while True:
             relaxed = program.relaxation(self._objective)
-            for weights in self._weights(model, relaxed):
+            for weights in self._candidate_weights(model, relaxed):
                 bound = self._bound(model, weights)
                 if bound is not None and (best is None or self._claim.order.compare(bound, best[0]) > 0):
                     best = bound, weights
                 if best is not None and self._is_enough(best[0]):
-                    return self._leaf(model, best[1])
+                    return self._make_leaf(model, best[1])
             if relaxed.x is None or self._expired():
                 break
             if not (self._add_landmark(relaxed.x, model) or self._separate(relaxed.x, model, depth == 0)):
                 break
-        column = None if relaxed.x is None or self._expired() else self._choice(model, relaxed.x)
+        column = None if relaxed.x is None or self._expired() else self._branching_column(model, relaxed.x)
         if column is None or depth > PLANS.depth or self._leaves > PLANS.leaves:
             self._give_up(best)
-            return self._leaf(model, best[1] if best else {})
-        return self._split(model, *column, depth)
+            return self._make_leaf(model, best[1] if best else {})
+        return self._prove_split(model, *column, depth)
 
-    def _split(self, model: CountModel, column: int, max_count: int, depth: int) -> Split:
+    def _prove_split(self, model: CountModel, column: int, max_count: int, depth: int) -> Split:
         """Return a proof by branching: for values of a column above ``max_count``, and up to it."""
         program, size = model.program, self._size
         lower, upper = list(program.lower), list(program.upper)
@@ -130,16 +130,16 @@ class PlanProver(CountBound):
         program.lower[column] = max_count + 1
         if action:
             program.lower[size + column] = 1
-        above = self._prove_part(model, depth + 1)
+        above = self._prove_node(model, depth + 1)
         program.lower, program.upper = list(lower), list(upper)
         program.upper[column] = max_count
         if action and not max_count:
             program.upper[size + column] = 0
-        up_to = self._prove_part(model, depth + 1)
+        up_to = self._prove_node(model, depth + 1)
         program.lower, program.upper = lower, upper
         return Split(column, max_count, up_to, above)
 
-    def _choice(self, model: CountModel, x: Sequence[float]) -> tuple[int, int] | None:
+    def _branching_column(self, model: CountModel, x: Sequence[float]) -> tuple[int, int] | None:
         """Return a column to branch on, and its maximum in the lower branch; ``None`` if all are whole."""
         program, size = model.program, self._size
         for a in range(size):
@@ -160,9 +160,9 @@ class PlanProver(CountBound):
         if self._least is None or best is None:
             self._failed = True
             return
-        self._least = min(self._least, self._rounded(best[0]), key=cmp_to_key(self._claim.order.compare))
+        self._least = min(self._least, self._round_up(best[0]), key=cmp_to_key(self._claim.order.compare))
 
-    def _rounded(self, bound: Vector) -> Vector:
+    def _round_up(self, bound: Vector) -> Vector:
         parts = self._claim.parts
         return bound if parts is None else tuple(Fraction(math.ceil(b * parts), parts) for b in bound)
 
@@ -170,13 +170,13 @@ class PlanProver(CountBound):
         order = self._claim.order
         if self._least is None:
             return order.sign(bound) > 0
-        return order.compare(self._rounded(bound), self._least) >= 0
+        return order.compare(self._round_up(bound), self._least) >= 0
 
-    def _leaf(self, model: CountModel, weights: Mapping[int, Vector]) -> Weighted:
+    def _make_leaf(self, model: CountModel, weights: Mapping[int, Vector]) -> Weighted:
         self._leaves += 1
         return Weighted([(model.conditions[row], weight) for row, weight in sorted(weights.items())])
 
-    def _weights(self, model: CountModel, relaxed: Relaxation) -> "list[dict[int, Vector]]":
+    def _candidate_weights(self, model: CountModel, relaxed: Relaxation) -> "list[dict[int, Vector]]":
         """Return candidate weights of rows: the rounded duals, perhaps the exact duals of the basis."""
         claim = self._claim
         first = claim.order.levels[0]
@@ -226,13 +226,13 @@ class PlanProver(CountBound):
         if len(columns) != len(tight):
             return []
         try:
-            solved = solve_exactly(matrix, {column: self._cost(column) for column in columns})
+            solved = solve_exactly(matrix, {column: self._column_cost(column) for column in columns})
         except NowhereError:
             return []
         sign = self._claim.order.sign
         return [{row: w for row, w in solved.items() if row in model.conditions and sign(w) > 0}]
 
-    def _cost(self, column: int) -> Vector:
+    def _column_cost(self, column: int) -> Vector:
         claim = self._claim
         if column < self._size:
             return claim.costs[column]
@@ -254,7 +254,7 @@ class PlanProver(CountBound):
         zero = order.zero
 
         def reduced_cost(column: int) -> Vector:
-            cost = zero if free else self._cost(column)
+            cost = zero if free else self._column_cost(column)
             return minus(cost, order.total(loads[column])) if column in loads else cost
 
         for column in (*range(size), *self._columns):

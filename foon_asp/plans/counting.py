@@ -16,7 +16,7 @@ from foon_asp.errors import UserError
 from foon_asp.plans.bulk_order import bulk_order, least_copies, plan_of
 from foon_asp.plans.conditions import Counts, Level, Measure
 from foon_asp.plans.count_bound import BetterError, CountBound
-from foon_asp.plans.execution_order import sequence
+from foon_asp.plans.execution_order import order_executions
 from foon_asp.plans.flows import flows_of
 from foon_asp.plans.plan_question import Plan, PlanQuestion
 from foon_asp.plans.tuning import PLANS
@@ -36,7 +36,7 @@ class Counting:
         """Build the flows of units, given by id, and the bound on their counts under the question's rules."""
         self._question, self._problem, self.units = question, question.problem, units
         self._measures: dict[Objective, Measure] = {}
-        self._known_figures: dict[Objective, list[Fraction]] = {}
+        self._known_unit_costs: dict[Objective, list[Fraction]] = {}
         self._step = Fraction(1)  # step of the counted costs of the first objective
         self._orders_sought = -math.inf  # searches for an order since the proof began
         problem = question.problem
@@ -55,7 +55,7 @@ class Counting:
                 for limit in question.limits
             ],
             [a for a, unit in enumerate(units) if unit in question.tree],
-            [self._below(objective, cost) for objective, cost in question.below],
+            [self._level_below(objective, cost) for objective, cost in question.below],
             [
                 {positions[u]: n for u, n in plan.items()}
                 for plan in question.incomparable
@@ -67,20 +67,20 @@ class Counting:
     def measure(self, objective: Objective) -> Measure:
         """Return the measure of an objective over the units, cached."""
         if objective not in self._measures:
-            self._measures[objective] = self._measured(objective)
+            self._measures[objective] = self._compute_measure(objective)
         return self._measures[objective]
 
-    def _measured(self, objective: Objective) -> Measure:
+    def _compute_measure(self, objective: Objective) -> Measure:
         """Return the measure of an objective, computed from the costs of units."""
-        row, figures = objective.row, self._figures(objective)
+        row, figures = objective.row, self._unit_costs(objective)
         if multiplies(objective):
-            classes = _classes(figures, Fraction(1))
+            classes = _cost_classes(figures, Fraction(1))
 
             def product(counts: Mapping[int, int]) -> Fraction:
                 return -math.prod((figures[a] ** n for a, n in counts.items()), start=Fraction(1))
 
-            return Measure([self._rates.weights[rate] for rate in figures], 0, product, classes)
-        scale = self._scale(objective)
+            return Measure([self._rate_scale.weights[rate] for rate in figures], 0, product, classes)
+        scale = self._cost_scale(objective)
         costs = [math.floor(scale * figure) for figure in figures]
         if all(cost == scale * figure for cost, figure in zip(costs, figures, strict=True)):
             return Measure(costs, row.item)
@@ -88,17 +88,17 @@ class Counting:
         def total(counts: Mapping[int, int]) -> Fraction:
             return sum((figures[a] * n for a, n in counts.items()), start=Fraction(0))
 
-        return Measure(costs, 0, total, _classes(figures, Fraction(0)))
+        return Measure(costs, 0, total, _cost_classes(figures, Fraction(0)))
 
-    def _figures(self, objective: Objective) -> list[Fraction]:
-        if objective not in self._known_figures:
-            self._known_figures[objective] = [
+    def _unit_costs(self, objective: Objective) -> list[Fraction]:
+        if objective not in self._known_unit_costs:
+            self._known_unit_costs[objective] = [
                 Fraction(self._problem.figure(objective, unit)) for unit in self.units
             ]
-        return self._known_figures[objective]
+        return self._known_unit_costs[objective]
 
     @cached_property
-    def _rates(self) -> RateScale:
+    def _rate_scale(self) -> RateScale:
         """Return the scale of the rates of units."""
         try:
             return rate_scale(self._problem.different_rates(self.units))
@@ -107,30 +107,30 @@ class Counting:
                 "a success rate is 0, for which plans with items that are used up cannot be compared"
             ) from None
 
-    def _scale(self, objective: Objective) -> Fraction:
+    def _cost_scale(self, objective: Objective) -> Fraction:
         """Return the factor by which costs are scaled: exact where costs stay small, else rounding."""
-        figures = self._figures(objective)
+        figures = self._unit_costs(objective)
         common = math.lcm(*(figure.denominator for figure in figures))
         greatest = max(figures, default=Fraction(0))
         return Fraction(common) if common * greatest <= PLANS.exact_cost else PLANS.cost_steps / greatest
 
     def level(self, objective: Objective, costs: Costs) -> Level:
         """Return the level of an objective with the cost of a plan."""
-        return self._level(objective, Fraction(costs.measure(objective)))
+        return self._level_at(objective, Fraction(costs.measure(objective)))
 
-    def _below(self, objective: Objective, cost: int | Fraction) -> Level:
+    def _level_below(self, objective: Objective, cost: int | Fraction) -> Level:
         """Return the level that a plan satisfies if it costs less than ``cost``."""
-        level = self._level(objective, Fraction(cost))
+        level = self._level_at(objective, Fraction(cost))
         if level.measure.exact is not None:
             return level._replace(strict=True)
         return level._replace(max_cost=math.ceil(level.cost) - 1)
 
-    def _level(self, objective: Objective, cost: Fraction) -> Level:
+    def _level_at(self, objective: Objective, cost: Fraction) -> Level:
         """Return a level for a cost by an objective."""
         measure = self.measure(objective)
         if multiplies(objective):
-            return Level(measure, -cost, self._rates.weigh(cost))
-        scale = self._scale(objective)
+            return Level(measure, -cost, self._rate_scale.weigh(cost))
+        scale = self._cost_scale(objective)
         if measure.exact is not None:
             return Level(measure, cost, math.floor(scale * cost))
         return Level(measure, scale * cost, int(scale * cost))
@@ -140,9 +140,9 @@ class Counting:
         assert self._question.best is not None
         plan, costs = self._question.best
         levels: list[Level] = []
-        self._step = 1 / self._scale(self._question.levels[0])
+        self._step = 1 / self._cost_scale(self._question.levels[0])
         for objective in self._question.levels:
-            split = self._split(objective, plan)
+            split = self._split_costs(objective, plan)
             if split is None:
                 levels.append(self.level(objective, costs))
                 continue
@@ -153,11 +153,11 @@ class Counting:
         try:
             self.bound.prove(levels, self._is_better)
         except _ManyError:
-            if not self._best_within_caps(levels[0]):
+            if not self._prove_with_clingo(levels[0]):
                 self._orders_sought = -math.inf
                 self.bound.prove(levels, self._is_better)
 
-    def _split(self, objective: Objective, plan: Plan) -> tuple[Fraction, list[Level]] | None:
+    def _split_costs(self, objective: Objective, plan: Plan) -> tuple[Fraction, list[Level]] | None:
         """Split costs that are too large for exact counting into two levels: the large ones, and all others.
 
         Large costs are multiples of a step, their greatest common divisor. The small costs of the incumbent
@@ -166,7 +166,7 @@ class Counting:
         """
         if multiplies(objective) or objective.row.item or self.measure(objective).exact is None:
             return None
-        figures = self._figures(objective)
+        figures = self._unit_costs(objective)
         common = math.lcm(*(figure.denominator for figure in figures))
         costs = [int(common * figure) for figure in figures]
         step = math.gcd(*(cost for cost in costs if cost > PLANS.exact_cost))
@@ -183,19 +183,19 @@ class Counting:
             levels.append(Level(Measure(of_level), Fraction(total), total))
         return Fraction(step, common), levels
 
-    def none_is_left(self) -> bool:
+    def prove_infeasible(self) -> bool:
         """Try all counts to prove that there is no plan; return whether it is proved.
 
         If a plan is found, it becomes the incumbent, and the result is ``False``. Raises :class:`Stopped` if
         neither is decided.
         """
         try:
-            self.bound.none_is_left(self.measure(Objective.UNITS), self._is_better)
+            self.bound.prove_infeasible(self.measure(Objective.UNITS), self._is_better)
         except BetterError:
             return False
         return True
 
-    def proved(self) -> dict[Objective, int | Fraction]:
+    def proved_bounds(self) -> dict[Objective, int | Fraction]:
         """Return the proved lower bound of the first objective; empty where none is proved or rates multiply.
 
         Costs are rounded down, so a bound on rounded costs is valid.
@@ -206,18 +206,18 @@ class Counting:
         least = math.ceil(self.bound.proved) * self._step
         return {objective: int(least) if objective.row.whole else least}
 
-    def _best_within_caps(self, level: Level) -> bool:
+    def _prove_with_clingo(self, level: Level) -> bool:
         """Try to prove with clingo that no plan is better, if the counts of all better plans are bounded.
 
         Returns whether it is proved. Raises :class:`BetterError` if a plan is better.
         """
-        caps = [cap for cap in self.bound.caps(level) if cap is not None]
+        caps = [cap for cap in self.bound.max_counts(level) if cap is not None]
         if len(caps) < len(self.units) or sum(caps) > PLANS.clingo_executions:
             return False
         if not all(objective.row.whole for objective in self._question.levels):
             return False
-        ended = self._ended({a: (0, cap) for a, cap in enumerate(caps)}, True)
-        if ended.units is not None and self._question.take(self._sequence(ended)):
+        ended = self._run_clingo({a: (0, cap) for a, cap in enumerate(caps)}, True)
+        if ended.units is not None and self._question.try_incumbent(self._plan_of_run(ended)):
             raise BetterError({})
         return ended.exhausted and ended.units is not None
 
@@ -226,10 +226,10 @@ class Counting:
         self._orders_sought += 1
         if self._orders_sought > PLANS.unordered_counts and not self._problem.counts_amounts:
             raise _ManyError
-        plan = self.order(counts)
-        return plan is not None and self._question.take(plan)
+        plan = self.find_order(counts)
+        return plan is not None and self._question.try_incumbent(plan)
 
-    def order(self, counts: Counts) -> Plan | None:
+    def find_order(self, counts: Counts) -> Plan | None:
         """Return an executable order of counts; ``None`` if no order runs."""
         if self._problem.counts_amounts:
             return self._bulk_plan(counts)
@@ -239,9 +239,9 @@ class Counting:
             except Stopped:
                 if self._question.deadline.passed:
                     raise
-        return self._plan({a: (n, n) for a, n in counts.items()})
+        return self._find_plan({a: (n, n) for a, n in counts.items()})
 
-    def any_order(self, counts: Counts) -> Plan | None:
+    def find_plan_beyond(self, counts: Counts) -> Plan | None:
         """Return a good plan with few executions beyond counts, found by clingo; ``None`` without one.
 
         clingo does not count copies one by one, so where amounts count, ``None`` is returned.
@@ -250,7 +250,7 @@ class Counting:
             return None
         extra = 1
         while extra <= PLANS.extra_executions:
-            plan = self._plan({a: (0, counts.get(a, 0) + extra) for a in range(len(self.units))}, True)
+            plan = self._find_plan({a: (0, counts.get(a, 0) + extra) for a in range(len(self.units))}, True)
             if plan is not None:
                 return plan
             extra *= 2
@@ -305,23 +305,23 @@ class Counting:
             raise Stopped
         return ended.units is not None
 
-    def _plan(self, times: Mapping[int, tuple[int, int]], best: bool = False) -> Plan | None:
+    def _find_plan(self, times: Mapping[int, tuple[int, int]], best: bool = False) -> Plan | None:
         """Return a plan with counts within ``times``, found by clingo; ``None`` if there is none.
 
         ``times`` has the least and greatest count of each action. With ``best``, the plan is the best such
         plan.
         """
-        ended = self._ended(times, best)
+        ended = self._run_clingo(times, best)
         if ended.units is None:
             if not ended.exhausted:
                 raise Stopped
             return None
-        return self._sequence(ended)
+        return self._plan_of_run(ended)
 
-    def _sequence(self, ended: Run) -> Plan:
-        return sequence(self._problem, ended.rows["times"], ended.rows["_after"])
+    def _plan_of_run(self, ended: Run) -> Plan:
+        return order_executions(self._problem, ended.rows["times"], ended.rows["_after"])
 
-    def _ended(self, times: Mapping[int, tuple[int, int]], best: bool) -> Run:
+    def _run_clingo(self, times: Mapping[int, tuple[int, int]], best: bool) -> Run:
         """Return the run of clingo for a plan with the least and greatest ``times`` of each action."""
         from foon_asp.encoding import clingo_run, fact_writer  # noqa: PLC0415 (takes clingo along)
         from foon_asp.encoding.scales import Scales  # noqa: PLC0415
@@ -361,7 +361,7 @@ class Counting:
         return ended
 
 
-def _classes(figures: Sequence[Fraction], idle: Fraction) -> list[int]:
+def _cost_classes(figures: Sequence[Fraction], idle: Fraction) -> list[int]:
     """Return the rank of each figure among the distinct figures; -1 for the figure ``idle``."""
     numbers = {figure: number for number, figure in enumerate(sorted(set(figures)))}
     return [-1 if figure == idle else numbers[figure] for figure in figures]
@@ -371,4 +371,4 @@ def order_that_runs(problem: Problem, units: Sequence[int]) -> Plan | None:
     """Return units, repeats included, in an executable order; ``None`` if no order runs."""
     question = PlanQuestion(problem, (Objective.UNITS,), Settings(), Reporter())
     counted = Counter(units)
-    return Counting(question, list(counted)).order(dict(enumerate(counted.values())))
+    return Counting(question, list(counted)).find_order(dict(enumerate(counted.values())))

@@ -6,7 +6,9 @@ from foon_asp.plans.plan_question import Plan
 from foon_asp.problem import Problem
 
 
-def sequence(problem: Problem, times: frozenset[tuple[int, ...]], after: frozenset[tuple[int, ...]]) -> Plan:
+def order_executions(
+    problem: Problem, times: frozenset[tuple[int, ...]], after: frozenset[tuple[int, ...]]
+) -> Plan:
     """Return executions in topological order, as unit ids; the smallest ready unit comes first.
 
     ``times`` has pairs of a unit number and its count. ``after`` has rows of two executions, the second of

@@ -74,7 +74,7 @@ class Flows:
             if copies > self.targets.get(o, 0):
                 yield from (Remainder(o, action, copies) for action in by_action)
 
-    def change(self, condition: Supply | Remainder) -> dict[int, int]:
+    def copy_changes(self, condition: Supply | Remainder) -> dict[int, int]:
         """Return by how much each action changes the number of copies of a condition's object."""
         o, adds = condition.object, self.adds
         if isinstance(condition, Supply):

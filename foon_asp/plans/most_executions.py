@@ -26,9 +26,9 @@ def most_executions(
         return dict.fromkeys(range(len(problem.network)), (0, 1))
     if outcome.status is not Status.OPTIMAL or outcome.costs is None:
         raise UserError("no plan is proved the best, so nothing bounds how often units are executed")
-    units = question.cut() or []
+    units = question.relevant_units() or []
     counting = Counting(question, units)
-    caps = counting.bound.caps(counting.level(Objective.UNITS, outcome.costs))
+    caps = counting.bound.max_counts(counting.level(Objective.UNITS, outcome.costs))
     return {u: (0, outcome.costs.units if cap is None else cap) for u, cap in zip(units, caps, strict=True)}
 
 
@@ -40,8 +40,8 @@ def executions_as_good(outcome: Outcome, settings: Settings) -> dict[int, int] |
     question = PlanQuestion(outcome.problem, outcome.objectives, settings, Reporter())
     if outcome.costs is None or not question.apply_rules():
         return None
-    units = question.cut() or []
+    units = question.relevant_units() or []
     counting = Counting(question, units)
-    caps = counting.bound.caps(counting.level(question.levels[0], outcome.costs)) if units else []
+    caps = counting.bound.max_counts(counting.level(question.levels[0], outcome.costs)) if units else []
     caps_by_unit = {unit: cap for unit, cap in zip(units, caps, strict=True) if cap is not None}
     return caps_by_unit if len(caps_by_unit) == len(units) else None

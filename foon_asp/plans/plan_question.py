@@ -91,12 +91,12 @@ class PlanQuestion:
         return () if self.restriction is None else self.restriction.required
 
     @property
-    def keeps_redundant(self) -> bool:
+    def may_need_redundant(self) -> bool:
         """Whether a rule may require redundant units, which lead to no goal."""
         rules = self.program.understood
         return rules is not None and not (rules.shrinking and rules.only_limits)
 
-    def cut(self) -> list[int] | None:
+    def relevant_units(self) -> list[int] | None:
         """Return the units that can matter, by id; ``None`` if a goal is unreachable even if items last.
 
         The units are the achievers of goals and, recursively, of their preconditions. If rules may require
@@ -114,7 +114,7 @@ class PlanQuestion:
         if not all(required_set & set(reached.units) for required_set in self.required):
             return None
         self.tree = frozenset(first_tree(lasting, reached) or ())
-        if self.keeps_redundant:
+        if self.may_need_redundant:
             return sorted(reached.units)
         return sorted(relevant_to_plans(problem, reached))
 
@@ -128,7 +128,7 @@ class PlanQuestion:
         settings = self.settings._replace(bounded=None)
         return solve_lasting(lasting, (Objective.UNITS,), settings).status is Status.INFEASIBLE
 
-    def take(self, plan: Plan) -> bool:
+    def try_incumbent(self, plan: Plan) -> bool:
         """Make a plan the incumbent if it is allowed and better; return whether it is."""
         costs = self.problem.costs(plan)
         if not self.allows(plan):
@@ -178,6 +178,6 @@ class PlanQuestion:
         if copies != replay.stock:
             raise BugError(f"the plan {list(plan)} takes {replay.stock} of the stock and not {copies}")
 
-    def spent(self, phase: str, began: float) -> None:
+    def add_seconds(self, phase: str, began: float) -> None:
         """Add the time since ``began`` to the seconds of a phase."""
         self.seconds[phase] = self.seconds.get(phase, 0.0) + time.perf_counter() - began

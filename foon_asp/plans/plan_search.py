@@ -53,8 +53,8 @@ def _solve(question: PlanQuestion) -> Outcome:
     if not question.apply_rules():
         return question.outcome(Status.INFEASIBLE, Proof.SOLVER)
     question.deadline.doing = "cutting the network"
-    units = question.cut()
-    question.spent("cut", began)
+    units = question.relevant_units()
+    question.add_seconds("cut", began)
     return question.outcome(Status.INFEASIBLE, Proof.CUTS) if units is None else _search(question, units)
 
 
@@ -63,27 +63,29 @@ def _search(question: PlanQuestion, units: list[int]) -> Outcome:
     counting = Counting(question, units)
     if not units:  # every goal is available: only the empty plan is irredundant
         needs_check = not question.program.own or question.problem.counts_amounts
-        if needs_check and counting.order({}) is None:
+        if needs_check and counting.find_order({}) is None:
             return question.outcome(Status.INFEASIBLE, Proof.SOLVER)
-        return question.outcome(Status.OPTIMAL if question.take(()) else Status.INFEASIBLE, Proof.CUTS)
+        return question.outcome(
+            Status.OPTIMAL if question.try_incumbent(()) else Status.INFEASIBLE, Proof.CUTS
+        )
     began = time.perf_counter()
     measures = [counting.measure(objective) for objective in question.levels]
     with question.deadline.watched("counting executions"):
         plan = _plain_plan(question, counting, measures)
-        counts = counting.bound.counts(measures) if plan is None else None
-    question.spent("bound", began)
-    if plan is None and counts is None and counting.bound.none():
+        counts = counting.bound.cheapest_counts(measures) if plan is None else None
+    question.add_seconds("bound", began)
+    if plan is None and counts is None and counting.bound.is_infeasible():
         return question.outcome(Status.INFEASIBLE, Proof.COUNTS)
     if counts is not None:
-        plan = counting.order(counts)
+        plan = counting.find_order(counts)
         if plan is None or not question.allows(plan):
-            plan = counting.any_order(counts)
-    if plan is not None and question.take(plan):
+            plan = counting.find_plan_beyond(counts)
+    if plan is not None and question.try_incumbent(plan):
         counting.bound.derivation = _positions(units, plan)
         counting = _below_cutoff(question, counting, plan)
     elif question.has_no_lasting_tree():
         return question.outcome(Status.INFEASIBLE, Proof.SOLVER)
-    elif counting.none_is_left():
+    elif counting.prove_infeasible():
         return question.outcome(Status.INFEASIBLE, Proof.COUNTS)
     while True:
         try:
@@ -94,8 +96,8 @@ def _search(question: PlanQuestion, units: list[int]) -> Outcome:
         except BetterError:
             continue
         finally:
-            question.bounds = counting.proved()
-            question.spent("bound", began)
+            question.bounds = counting.proved_bounds()
+            question.add_seconds("bound", began)
 
 
 def _positions(units: Sequence[int], plan: Plan) -> list[int]:
@@ -106,9 +108,9 @@ def _positions(units: Sequence[int], plan: Plan) -> list[int]:
 
 def _plain_plan(question: PlanQuestion, counting: Counting, measures: Sequence[Measure]) -> Plan | None:
     """Return a plan with the best counts under the state equation alone; ``None`` if these have no order."""
-    counts = counting.bound.plain_counts(measures)
+    counts = counting.bound.cheapest_counts_by_equation(measures)
     try:
-        plan = None if counts is None else counting.order(counts)
+        plan = None if counts is None else counting.find_order(counts)
     except Stopped:
         return None
     return plan if plan is not None and question.allows(plan) else None

@@ -67,14 +67,14 @@ def best_plans(
             [] if outcome.units is None or outcome.costs is None else [(outcome.units, outcome.costs)]
         )
         return incumbents, False, outcome.status is Status.INFEASIBLE
-    units, best = question.cut() or [], outcome.costs
+    units, best = question.relevant_units() or [], outcome.costs
     counting = Counting(question, units)
     counting.bound.derivation = [a for a, unit in enumerate(units) if unit in outcome.units]
     plans_by_counts = {frozenset(Counter(outcome.units).items()): outcome.units}
 
     def ask(counts: Counts) -> None:
         """Add a plan with these counts to the result, if there is one as good as the best plan."""
-        plan = counting.order(counts)
+        plan = counting.find_order(counts)
         if plan is not None and problem.costs(plan).key(question.levels) == best.key(question.levels):
             plans_by_counts.setdefault(frozenset(Counter(plan).items()), plan)
             if len(plans_by_counts) > max_plans:
@@ -83,7 +83,9 @@ def best_plans(
     complete = True
     try:
         if units:
-            counting.bound.every([counting.level(objective, best) for objective in question.levels], ask)
+            counting.bound.visit_counts(
+                [counting.level(objective, best) for objective in question.levels], ask
+            )
     except (Stopped, KeyboardInterrupt) as stop:
         complete = False
         if isinstance(stop, KeyboardInterrupt):

@@ -39,11 +39,11 @@ class RoundedProgram:
 
     def add(self, conditions: Sequence[Condition], row: dict[int, int], least: int) -> None:
         """Add a row, the sum of conditions; without conditions, it does not take part in rounding."""
-        self.program.row(row, least)
+        self.program.add_row(row, least)
         self._conditions.append(conditions)
 
     @property
-    def rounded(self) -> Iterator[tuple[Rounded, dict[int, int], int]]:
+    def rounded_rows(self) -> Iterator[tuple[Rounded, dict[int, int], int]]:
         """The rounded rows, with the conditions that they follow from."""
         for number, conditions in enumerate(self._conditions):
             for condition in conditions:
@@ -65,16 +65,18 @@ class RoundedProgram:
                 return solved
             previous, value = value, sum(cost * solved.x[a] for a, cost in costs.items())
             stalled = stalled + 1 if value < previous + INTEGRALITY * max(1.0, abs(previous)) else 0
-            if stalled > PLANS.stalled_rounds or not self._round(solved.x):
+            if stalled > PLANS.stalled_rounds or not self._add_rounded_rows(solved.x):
                 return solved
 
-    def _round(self, x: Sequence[float]) -> bool:
+    def _add_rounded_rows(self, x: Sequence[float]) -> bool:
         """Add the rounded rows that a solution violates most; return whether there are any."""
         violated: dict[tuple[tuple[int, int], ...], tuple[float, Rounded, _Row]] = {}
         for floats in self.program.inverse_rows(x):
             for sign in (1, -1):
-                shares = {row: _share(sign * floats[row]) for row in floats if self._conditions[row]}
-                rounded = self._rounded({row: share for row, share in shares.items() if share})
+                shares = {
+                    row: _fraction_of_weight(sign * floats[row]) for row in floats if self._conditions[row]
+                }
+                rounded = self._round_sum({row: share for row, share in shares.items() if share})
                 if rounded is None:
                     continue
                 condition, (row, least) = rounded
@@ -86,7 +88,7 @@ class RoundedProgram:
             self.add((condition,), row, least)
         return bool(violated)
 
-    def _rounded(self, weights: Mapping[int, Fraction]) -> tuple[Rounded, _Row] | None:
+    def _round_sum(self, weights: Mapping[int, Fraction]) -> tuple[Rounded, _Row] | None:
         """Return the rounded sum of weighted rows, in whole numbers; ``None`` if rounding is of no use."""
         parts = math.lcm(*(weight.denominator for weight in weights.values()))
         coefficients: dict[int, int] = {}
@@ -119,7 +121,7 @@ class RoundedProgram:
         )
 
 
-def _share(weight: float) -> Fraction:
+def _fraction_of_weight(weight: float) -> Fraction:
     """Return the fractional part of a weight, since whole multiples of a row are not rounded."""
     share = Fraction(weight).limit_denominator(PLANS.rounding_denominator)
     return share - math.floor(share)
@@ -153,7 +155,7 @@ class StateEquation(RoundedProgram):
             if not used:
                 self.add((Sum(number),), {a: sign * weight for a, weight in weights.items()}, sign * limit)
 
-    def keep(self, level: Level) -> None:
+    def add_level(self, level: Level) -> None:
         """Add the row of a level: counts as good as the incumbent cost at most ``max_cost``."""
         # without the costs of items, which have no columns, the row is weaker
         costs = level.measure.costs
@@ -165,7 +167,7 @@ class StateEquation(RoundedProgram):
         Nothing is added if initial copies satisfy the landmark too, or if its action has no indicator.
         """
         row, least = dict.fromkeys(landmark.members, 1), 1
-        indicator = None if landmark.action is None else self._indicator(landmark.action)
+        indicator = None if landmark.action is None else self._indicator_column(landmark.action)
         if indicator is not None:
             row[indicator], least = -1, 0
         if not landmark.stock and (landmark.action is None) == (indicator is None):
@@ -173,16 +175,16 @@ class StateEquation(RoundedProgram):
 
     def add_copies(self, condition: Supply | Remainder) -> None:
         """Add the row of copies that an action requires or leaves, if the action has an indicator."""
-        indicator = self._indicator(condition.action)
+        indicator = self._indicator_column(condition.action)
         if indicator is not None:
-            row = {**self._flows.change(condition), indicator: -condition.copies}
+            row = {**self._flows.copy_changes(condition), indicator: -condition.copies}
             self.add((), row, -self._flows.start.get(condition.object, 0))
 
-    def _indicator(self, action: int) -> int | None:
+    def _indicator_column(self, action: int) -> int | None:
         """Return the column that is 1 if an action is executed; ``None`` if its count is unbounded."""
         max_count = self._caps[action]
         if action not in self._indicators and max_count is not None:
-            self._indicators[action] = self.program.column(0, 1)
+            self._indicators[action] = self.program.add_column(0, 1)
             self.add((), {self._indicators[action]: max_count, action: -1}, 0)
         return self._indicators.get(action)
 
@@ -191,11 +193,11 @@ class StateEquation(RoundedProgram):
         self._costs: Mapping[int, int] | None = costs
         return super().strengthen(costs, cutoff)
 
-    def _round(self, x: Sequence[float]) -> bool:
+    def _add_rounded_rows(self, x: Sequence[float]) -> bool:
         if all(abs(value - round(value)) < INTEGRALITY for value in x):
             return False  # no row that holds of whole counts is violated
         costs, self._costs = self._costs, None
-        return (costs is not None and self._round_alternatives(costs)) or super()._round(x)
+        return (costs is not None and self._round_alternatives(costs)) or super()._add_rounded_rows(x)
 
     def _round_alternatives(self, costs: Mapping[int, int]) -> bool:
         """Add rounded rows of a smaller program that merges objects of one role; return whether any is added.
@@ -225,11 +227,11 @@ class StateEquation(RoundedProgram):
         for parts, total, least in sums.values():
             row = {column: total.get(actions[0], 0) for column, actions in enumerate(members)}
             merged.add(parts, {column: n for column, n in row.items() if n}, least)
-        earlier = len(list(merged.rounded))
+        earlier = len(list(merged.rounded_rows))
         merged.strengthen({column: alike[0] for column, alike in enumerate(columns) if alike[0]})
-        for condition, row, least in list(merged.rounded)[earlier:]:
+        for condition, row, least in list(merged.rounded_rows)[earlier:]:
             self.add((condition,), {a: n for column, n in row.items() for a in members[column]}, least)
-        return len(list(merged.rounded)) > earlier
+        return len(list(merged.rounded_rows)) > earlier
 
     def optimum(self, costs: Sequence[int]) -> list[float] | None:
         """Return whole values of least cost in floats; ``None`` if HiGHS finds none, or when time is up."""
@@ -239,7 +241,7 @@ class StateEquation(RoundedProgram):
             return x
         least = sum(cost * x[a] for a, cost in objective.items())
         # HiGHS has cuts of its own, and is slower with rows of great coefficients
-        program = self.program.without(
+        program = self.program.without_rows(
             {row for row, parts in enumerate(self._conditions) if parts and isinstance(parts[0], Rounded)}
         )
         return program.whole_optimum(objective, math.ceil(least - INTEGRALITY * max(1.0, abs(least))))

@@ -81,23 +81,23 @@ class WholeProgram:
         """Whether some column has nothing between its bounds."""
         return any(upper is not None and self.lower[c] > upper for c, upper in enumerate(self.upper))
 
-    def column(self, lower: int, upper: int | None) -> int:
+    def add_column(self, lower: int, upper: int | None) -> int:
         """Add a column, and return its number."""
         self.lower.append(lower)
         self.upper.append(upper)
         self._highs = None
         return len(self.lower) - 1
 
-    def row(self, parts: dict[int, int], least: int) -> int:
+    def add_row(self, parts: dict[int, int], least: int) -> int:
         """Add a row, and return its number."""
         self._rows.append((parts, least))
         return len(self._rows) - 1
 
-    def open_row(self, columns: Iterable[int], least: int) -> int:
+    def add_open_row(self, columns: Iterable[int], least: int) -> int:
         """Add a row of some columns whose coefficients are set by :meth:`change`, and return its number."""
-        return self.row(dict.fromkeys(columns, 0), least)
+        return self.add_row(dict.fromkeys(columns, 0), least)
 
-    def change(self, row: int, parts: dict[int, int]) -> None:
+    def change_row(self, row: int, parts: dict[int, int]) -> None:
         """Change the coefficients of the columns of a row; those not in ``parts`` become 0."""
         current = self._rows[row][0]
         new = {column: parts.get(column, 0) for column in current}
@@ -119,12 +119,12 @@ class WholeProgram:
             uppers[column] = upper
         return lowers, uppers
 
-    def restrict(self, bounds: Bounds) -> None:
+    def set_bounds(self, bounds: Bounds) -> None:
         """Set the bounds of columns; columns that were added after ``bounds`` were made do not change."""
         lower, upper = bounds
         self.lower[: len(lower)], self.upper[: len(upper)] = lower, upper
 
-    def halves(self, column: int, value: float) -> tuple[Bounds, Bounds]:
+    def split_bounds(self, column: int, value: float) -> tuple[Bounds, Bounds]:
         """Return the bounds of two nodes in which a column is at most, or at least, the next whole number."""
         below = math.floor(value)
         return self.with_bounds(column, None, below), self.with_bounds(column, below + 1, None)
@@ -143,7 +143,7 @@ class WholeProgram:
         largest = max(ray, default=0.0)
         if largest and self._bound({}, [weight / largest for weight in ray], 0) > 0:
             return Solved(None, math.inf)
-        return Solved(self._nearly(), -math.inf)
+        return Solved(self._nearly_feasible(), -math.inf)
 
     def inverse_rows(self, x: Sequence[float]) -> Iterator[dict[int, float]]:
         """Yield the rows of the inverse basis for fractional basic columns, the most fractional first.
@@ -163,7 +163,7 @@ class WholeProgram:
             weights = self._highs.getBasisInverseRow(index)[1]
             yield {row: float(weights[row]) for row in self._np.flatnonzero(weights).tolist()}
 
-    def _nearly(self) -> list[float] | None:
+    def _nearly_feasible(self) -> list[float] | None:
         """Return a solution that may violate rows a little, where floats find none and prove nothing.
 
         Rows with large coefficients may leave so small a feasible region that it is lost in floats.
@@ -196,7 +196,7 @@ class WholeProgram:
         """Return a row: its coefficients, and the least sum."""
         return self._rows[row]
 
-    def without(self, rows: Container[int]) -> "WholeProgram":
+    def without_rows(self, rows: Container[int]) -> "WholeProgram":
         """Return a program with the same columns, and without some rows."""
         other = WholeProgram(0, self._expired)
         other.lower, other.upper = list(self.lower), list(self.upper)
@@ -210,7 +210,7 @@ class WholeProgram:
 
         A solution that costs up to ``sufficient_cost`` is taken at once.
         """
-        highs = self._send(objective)
+        highs = self._update_highs(objective)
         count = self.columns
         whole = self._library.HighsVarType.kInteger
         highs.changeColsIntegrality(
@@ -228,11 +228,11 @@ class WholeProgram:
 
     def _run(self, objective: Mapping[int, int] | Mapping[int, float]) -> Any:
         """Solve the relaxation with HiGHS, from scratch where the warm start fails; return the instance."""
-        highs = self._send(objective)
+        highs = self._update_highs(objective)
         self._run_to_the_end(highs)
         if highs.getModelStatus() != self._library.HighsModelStatus.kOptimal and not highs.getDualRay()[1]:
             self._highs = None
-            highs = self._send(objective)
+            highs = self._update_highs(objective)
             self._run_to_the_end(highs)
         return highs
 
@@ -241,7 +241,7 @@ class WholeProgram:
         if not run(highs, self._expired):
             raise Stopped
 
-    def _send(self, objective: Mapping[int, int] | Mapping[int, float]) -> Any:
+    def _update_highs(self, objective: Mapping[int, int] | Mapping[int, float]) -> Any:
         """Return the HiGHS instance, brought up to date with rows, bounds and costs."""
         np, inf = self._np, self._library.kHighsInf
         count = self.columns

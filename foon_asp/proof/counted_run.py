@@ -26,7 +26,7 @@ def counted_run(problem: Problem, plan: Iterable[int]) -> CountedRun:
     Equal units that follow each other are executed at once.
     """
     executions = Executions(problem)
-    initial = executions.stock()
+    initial = executions.initial_copies()
     copies, stock = initial.copy(), dict.fromkeys(initial, 0)
     for unit, run in groupby(plan):
         times = sum(1 for _ in run)
@@ -42,7 +42,7 @@ def counted_run(problem: Problem, plan: Iterable[int]) -> CountedRun:
             if node in initial:
                 stock[node] = max(stock[node], needed - least + initial[node])
             copies[node] += times * change
-    for node, wanted in executions.wanted().items():
+    for node, wanted in executions.wanted_copies().items():
         if executions.is_endless(node):
             continue
         if copies[node] < wanted:

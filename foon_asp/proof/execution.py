@@ -36,7 +36,7 @@ class Executions:
         amounts = {} if problem.items is None else problem.amounts
         self.of = _execution_of(problem.items, problem.containers, problem.utensils, network, amounts)
 
-    def wanted(self) -> dict[ObjectNode, int]:
+    def wanted_copies(self) -> dict[ObjectNode, int]:
         """Return how many copies of each goal have to be there in the end."""
         return {node: self._items.wanted.get(node, 1) for node in self._problem.goal_nodes}
 
@@ -44,7 +44,7 @@ class Executions:
         """Return whether a node never runs out: it is in the kitchen and not counted by the stock."""
         return self._problem.at_hand(node) and node not in self._items.stock
 
-    def stock(self) -> Counter[ObjectNode]:
+    def initial_copies(self) -> Counter[ObjectNode]:
         """Return the initial number of copies of each consumable node."""
         return Counter({n: count for n, count in self._items.stock.items() if self._problem.at_hand(n)})
 

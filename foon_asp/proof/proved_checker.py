@@ -21,7 +21,7 @@ _PROGRAM = "foon-verified"
 _BUILT = Path(__file__).resolve().parents[2] / "verified" / "build" / _PROGRAM
 
 
-def program() -> Path | None:
+def find_checker() -> Path | None:
     """Return the path of the proved checker, from a build in a checkout or on PATH; ``None`` without one."""
     if _BUILT.is_file():
         return _BUILT
@@ -29,12 +29,12 @@ def program() -> Path | None:
     return None if installed is None else Path(installed)
 
 
-def judge(checker: Path, data: str, certificate: str) -> tuple[str, str]:
+def run_checker(checker: Path, data: str, certificate: str) -> tuple[str, str]:
     """Return the verdict of the proved checker: ``accepted``, ``refused`` or ``not checked``, and the reason.
 
     Parameters:
         checker: The program.
-        data: The data as :meth:`Subject.described` writes them.
+        data: The data as :meth:`Subject.canonical_data` writes them.
         certificate: The text of the certificate.
     """
     ended = subprocess.run(
@@ -47,7 +47,7 @@ def judge(checker: Path, data: str, certificate: str) -> tuple[str, str]:
     return "not checked", f"it ended with the exit code {ended.returncode}"
 
 
-def ask(certificate: Mapping[str, Any], subject: Subject) -> str:
+def check_certificate(certificate: Mapping[str, Any], subject: Subject) -> str:
     """Check a certificate that :func:`verify` accepts with the proved checker.
 
     Returns:
@@ -56,14 +56,14 @@ def ask(certificate: Mapping[str, Any], subject: Subject) -> str:
     Raises:
         RefusedError: if the proved checker refuses the certificate.
     """
-    checker = program()
+    checker = find_checker()
     if checker is None:
         return NOT_BUILT
     rules = read_rules(certificate["rules"], len(subject.network))
-    data = subject.described(rules, [goal["id"] for goal in certificate["goals"]])
+    data = subject.canonical_data(rules, [goal["id"] for goal in certificate["goals"]])
     # no longer than the file that was read
     text = json.dumps(certificate, separators=(",", ":"), ensure_ascii=False)
-    verdict, reason = judge(checker, data, text)
+    verdict, reason = run_checker(checker, data, text)
     if verdict == "refused":
         raise RefusedError(f"by the proved checker: {reason}")
     return verdict if verdict == ACCEPTED else f"{verdict}: {reason}"

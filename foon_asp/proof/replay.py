@@ -66,7 +66,7 @@ def replay_for(problem: Problem, plan: Iterable[FunctionalUnit]) -> Replay:
     return _Kitchen(problem).run(list(plan))
 
 
-def replayable(problem: Problem, plan: Iterable[FunctionalUnit]) -> Problem:
+def replayable_problem(problem: Problem, plan: Iterable[FunctionalUnit]) -> Problem:
     """Return a problem in which a plan can be replayed.
 
     This is the problem itself if its items are used up. If its items last, return a copy whose items can be
@@ -78,7 +78,7 @@ def replayable(problem: Problem, plan: Iterable[FunctionalUnit]) -> Problem:
     return replace(problem, items=UsedUp(stays))
 
 
-def waits(replay: Replay) -> Iterator[set[int]]:
+def predecessors(replay: Replay) -> Iterator[set[int]]:
     """Yield for each step, in order, the positions of the steps that have to be done before it.
 
     These are the earlier steps that made a copy that the step needs, or that read a copy that the step uses
@@ -88,7 +88,7 @@ def waits(replay: Replay) -> Iterator[set[int]]:
     spent: Counter[Copy] = Counter()  # how often a copy like this was used up: those of a stock are alike
     for number, step in enumerate(replay.steps):
         after = {copy.made for copy in (*step.gone, *step.stayed) if copy.made is not None}
-        for read in _read(step, spent):
+        for read in _numbered_reads(step, spent):
             readers.setdefault(read, set()).add(number)
         for copy in step.gone:
             if copy.made is not None or copy.node in replay.stock:
@@ -97,23 +97,23 @@ def waits(replay: Replay) -> Iterator[set[int]]:
         yield after
 
 
-def readers(replay: Replay, is_free: Callable[[str], bool]) -> list[tuple[int, ...]]:
+def shared_readers(replay: Replay, is_free: Callable[[str], bool]) -> list[tuple[int, ...]]:
     """Return, for each copy that several steps need and do not use up, the positions of the steps.
 
     Copies that neither a step made nor the stock counts are omitted, since they never run out. Nodes whose
     label ``is_free`` accepts are omitted, too, since each step can have another copy.
     """
     reading: dict[tuple[Copy, int], list[int]] = {}
-    spent: Counter[Copy] = Counter()  # as in waits
+    spent: Counter[Copy] = Counter()  # as in predecessors
     for number, step in enumerate(replay.steps):
-        for copy, earlier in _read(step, spent):
+        for copy, earlier in _numbered_reads(step, spent):
             if (copy.made is not None or copy.node in replay.stock) and not is_free(copy.node.label):
                 reading.setdefault((copy, earlier), []).append(number)
         spent.update(step.gone)
     return [tuple(steps) for steps in reading.values() if len(steps) > 1]
 
 
-def _read(step: Step, spent: Counter[Copy]) -> Iterator[tuple[Copy, int]]:
+def _numbered_reads(step: Step, spent: Counter[Copy]) -> Iterator[tuple[Copy, int]]:
     """Yield each copy that a step reads, with the copy's number among the copies of equal node and maker.
 
     ``spent`` counts the copies that earlier steps used up; they come first in the numbering, then those that
@@ -131,10 +131,12 @@ class _Kitchen:
     def __init__(self, problem: Problem) -> None:
         assert problem.items is not None
         self._executions = Executions(problem)
-        self._copies = {node: deque([Copy(node, None)] * n) for node, n in self._executions.stock().items()}
+        self._copies = {
+            node: deque([Copy(node, None)] * n) for node, n in self._executions.initial_copies().items()
+        }
         self._consumers_of: dict[ObjectNode, list[int]] = {}
         self._made: Counter[ObjectNode] = Counter()  # copies made less copies used up
-        self._least: dict[ObjectNode, int] = dict.fromkeys(self._copies, 0)
+        self._stock_needed: dict[ObjectNode, int] = dict.fromkeys(self._copies, 0)
 
     def run(self, plan: Sequence[FunctionalUnit]) -> Replay:
         """Execute the units in order up to the first that lacks a copy; then look for the goals."""
@@ -142,50 +144,54 @@ class _Kitchen:
         shortage: Shortage | None = None
         for position, unit in enumerate(plan):
             preconditions = self._executions.of(unit).preconditions
-            lacking = [(node, n) for node, n in preconditions.items() if not self._has(node, n)]
+            lacking = [(node, n) for node, n in preconditions.items() if not self._has_copies(node, n)]
             if lacking:
                 shortage = self._shortage(position, *lacking[0])
                 break
-            steps.append(self._step(position, unit))
+            steps.append(self._run_step(position, unit))
         if shortage is None:
-            missing = [(node, n) for node, n in self._executions.wanted().items() if not self._has(node, n)]
+            missing = [
+                (node, n)
+                for node, n in self._executions.wanted_copies().items()
+                if not self._has_copies(node, n)
+            ]
             if missing:
                 shortage = self._shortage(None, *missing[0])
         remaining = tuple(copy for copies in self._copies.values() for copy in copies)
-        return Replay(tuple(steps), shortage, remaining, self._least)
+        return Replay(tuple(steps), shortage, remaining, self._stock_needed)
 
-    def _step(self, position: int, unit: FunctionalUnit) -> Step:
+    def _run_step(self, position: int, unit: FunctionalUnit) -> Step:
         """Execute a unit whose preconditions are available; it takes the oldest copies first."""
         preconditions, consumes, adds = self._executions.of(unit)
         gone, stayed, came = list[Copy](), list[Copy](), list[Copy]()
         for node, amount in preconditions.items():
             used = consumes.get(node, 0)
-            gone += self._take(node, used, position)
-            endless = self._endless(node)
+            gone += self._take_copies(node, used, position)
+            endless = self._endless_copy(node)
             kept = amount - used
             stayed += [endless] * kept if endless else islice(self._copies[node], kept)
         for node, amount in adds.items():
             copies = [Copy(node, position)] * amount
             came += copies
-            if not self._endless(node):
+            if not self._endless_copy(node):
                 self._copies.setdefault(node, deque()).extend(copies)
                 self._made[node] += amount
         return Step(unit, tuple(gone), tuple(stayed), tuple(came))
 
-    def _endless(self, node: ObjectNode) -> Copy | None:
+    def _endless_copy(self, node: ObjectNode) -> Copy | None:
         return Copy(node, None) if self._executions.is_endless(node) else None
 
-    def _has(self, node: ObjectNode, amount: int) -> bool:
+    def _has_copies(self, node: ObjectNode, amount: int) -> bool:
         """Return whether there are ``amount`` copies of a node, and record that the plan needs them."""
-        if self._endless(node):
+        if self._endless_copy(node):
             return True
-        if node in self._least:
-            self._least[node] = max(self._least[node], amount - self._made[node])
+        if node in self._stock_needed:
+            self._stock_needed[node] = max(self._stock_needed[node], amount - self._made[node])
         return len(self._copies.get(node, ())) >= amount
 
-    def _take(self, node: ObjectNode, amount: int, position: int) -> list[Copy]:
+    def _take_copies(self, node: ObjectNode, amount: int, position: int) -> list[Copy]:
         """Remove and return the oldest copies of a node; copies that are not consumable stay."""
-        endless = self._endless(node)
+        endless = self._endless_copy(node)
         if endless:
             return [endless] * amount
         if amount:

@@ -79,8 +79,8 @@ class Meaning(NamedTuple):
     """
 
     removed: Units = frozenset()
-    wanted: Sequence[Sequence[Sequence[Units]]] = ()
-    things: Sequence[tuple[Units, Fraction]] = ()
+    requirements: Sequence[Sequence[Sequence[Units]]] = ()
+    counted_sets: Sequence[tuple[Units, Fraction]] = ()
     max_sum: Fraction | None = None
     never: bool = False
     barred: Barred | None = None
@@ -97,31 +97,31 @@ class Constraint(NamedTuple):
     values: Mapping[str, type]
     meaning: Callable[..., Meaning]
     removes: bool = False
-    places: Callable[..., Collection[str]] | None = None
+    read_sources: Callable[..., Collection[str]] | None = None
 
 
-def meaning(rule: Rule, question: Question) -> Meaning:
+def meaning_of_rule(rule: Rule, question: Question) -> Meaning:
     """Return the meaning of a rule of a certificate.
 
     A rule is a ready-made constraint with its values, claims about user rules (:data:`OWN`), or units that
     every tree has (:data:`ALL_STEPS`).
     """
     if rule["rule"] == OWN:
-        return own(rule)
+        return meaning_of_user_rules(rule)
     if rule["rule"] == ALL_STEPS:
-        return Meaning(wanted=[[[frozenset({unit})]] for unit in rule["units"]])
-    return LIBRARY[rule["rule"]].meaning(question, **_values(rule))
+        return Meaning(requirements=[[[frozenset({unit})]] for unit in rule["units"]])
+    return LIBRARY[rule["rule"]].meaning(question, **_values_of_rule(rule))
 
 
-def looked_at(rule: Rule, network: Network) -> list[list[str]] | None:
+def sources_read(rule: Rule, network: Network) -> list[list[str]] | None:
     """Return for each unit the sources that a constraint reads; ``None`` where it reads no sources."""
-    places = None if rule["rule"] in {OWN, ALL_STEPS} else LIBRARY[rule["rule"]].places
-    if places is None:
+    read_sources = None if rule["rule"] in {OWN, ALL_STEPS} else LIBRARY[rule["rule"]].read_sources
+    if read_sources is None:
         return None
-    return [sorted(places(network, unit, **_values(rule))) for unit in range(len(network))]
+    return [sorted(read_sources(network, unit, **_values_of_rule(rule))) for unit in range(len(network))]
 
 
-def _values(rule: Rule) -> dict[str, Any]:
+def _values_of_rule(rule: Rule) -> dict[str, Any]:
     return {name: value for name, value in rule.items() if name != "rule"}
 
 
@@ -144,7 +144,7 @@ def _least_rate(question: Question, least_rate: int) -> Meaning:
     return Meaning(frozenset(unit for unit, reliable in enumerate(enough) if not reliable))
 
 
-def _vouching(network: Network, unit: int, allowed: list[str]) -> set[str]:
+def _matching_source_names(network: Network, unit: int, allowed: list[str]) -> set[str]:
     """Return the names that match the source of a unit: a file name, a path, or the address of a video."""
     return {
         name
@@ -156,7 +156,9 @@ def _vouching(network: Network, unit: int, allowed: list[str]) -> set[str]:
 
 def _only_sources(question: Question, allowed: list[str]) -> Meaning:
     network = question.network
-    return Meaning(frozenset(u for u in range(len(network)) if not _vouching(network, u, allowed)))
+    return Meaning(
+        frozenset(u for u in range(len(network)) if not _matching_source_names(network, u, allowed))
+    )
 
 
 def _videos(network: Network, unit: int, least_videos: int) -> set[str]:
@@ -183,15 +185,15 @@ def _never_heated(question: Question, unheated_ingredient: str, heats: list[str]
 
 
 def _require_motion(question: Question, required_motion: str) -> Meaning:
-    return Meaning(wanted=[[[question.with_motion(required_motion)]]])
+    return Meaning(requirements=[[[question.with_motion(required_motion)]]])
 
 
 def _require_object(question: Question, required_object: str) -> Meaning:
-    return Meaning(wanted=[[[question.touching(question.labelled(required_object))]]])
+    return Meaning(requirements=[[[question.touching(question.labelled(required_object))]]])
 
 
 def _require_ingredient(question: Question, required_ingredient: str) -> Meaning:
-    return Meaning(wanted=[[[question.touching(question.made_with([required_ingredient]))]]])
+    return Meaning(requirements=[[[question.touching(question.made_with([required_ingredient]))]]])
 
 
 def _require_intermediate(question: Question, required_intermediate: str) -> Meaning:
@@ -200,23 +202,23 @@ def _require_intermediate(question: Question, required_intermediate: str) -> Mea
     wanted = []
     for o in question.labelled(required_intermediate):
         if o not in question.kitchen:
-            takers = frozenset(unit for unit in network.consumers[o] if o in question.needs(unit))
-            wanted.append([frozenset(network.producers[o]) - takers, takers])
-    return Meaning(wanted=[wanted])
+            consumers = frozenset(unit for unit in network.consumers[o] if o in question.needs(unit))
+            wanted.append([frozenset(network.producers[o]) - consumers, consumers])
+    return Meaning(requirements=[wanted])
 
 
-def _one_each(units: Iterable[int]) -> list[tuple[Units, Fraction]]:
+def _singletons(units: Iterable[int]) -> list[tuple[Units, Fraction]]:
     """Return units as things, each of amount 1."""
     one = Fraction(1)
     return [(frozenset({unit}), one) for unit in sorted(units)]
 
 
 def _at_most_units(question: Question, max_units: int) -> Meaning:
-    return Meaning(things=_one_each(range(len(question.network))), max_sum=Fraction(max_units))
+    return Meaning(counted_sets=_singletons(range(len(question.network))), max_sum=Fraction(max_units))
 
 
 def _at_most_motion(question: Question, limited_motion: str, max_uses: int) -> Meaning:
-    return Meaning(things=_one_each(question.with_motion(limited_motion)), max_sum=Fraction(max_uses))
+    return Meaning(counted_sets=_singletons(question.with_motion(limited_motion)), max_sum=Fraction(max_uses))
 
 
 def _at_most_utensils(question: Question, max_utensils: int) -> Meaning:
@@ -229,12 +231,12 @@ def _at_most_utensils(question: Question, max_utensils: int) -> Meaning:
             touching[label].append(unit)
     one = Fraction(1)
     touched = [(frozenset(units), one) for units in touching.values() if units]
-    return Meaning(things=touched, max_sum=Fraction(max_utensils))
+    return Meaning(counted_sets=touched, max_sum=Fraction(max_utensils))
 
 
 def _at_most_utensil_uses(question: Question, limited_utensil: str, max_utensil_uses: int) -> Meaning:
     units = question.touching(question.labelled(limited_utensil))
-    return Meaning(things=_one_each(units), max_sum=Fraction(max_utensil_uses))
+    return Meaning(counted_sets=_singletons(units), max_sum=Fraction(max_utensil_uses))
 
 
 def _at_most_price(question: Question, max_price: int) -> Meaning:
@@ -242,12 +244,12 @@ def _at_most_price(question: Question, max_price: int) -> Meaning:
     prices = {unit: question.price(unit) for unit in range(len(question.network))}
     unknown = frozenset(unit for unit, price in prices.items() if price is None)
     things = [(frozenset({unit}), price * 100) for unit, price in prices.items() if price is not None]
-    return Meaning(unknown, things=things, max_sum=Fraction(max_price))
+    return Meaning(unknown, counted_sets=things, max_sum=Fraction(max_price))
 
 
 def _not_both_motions(question: Question, one_motion: str, other_motion: str) -> Meaning:
     motions = [question.with_motion(motion) for motion in (one_motion, other_motion)]
-    return Meaning(things=[(units, Fraction(1)) for units in motions], max_sum=Fraction(1))
+    return Meaning(counted_sets=[(units, Fraction(1)) for units in motions], max_sum=Fraction(1))
 
 
 def _before(question: Question, earlier_motion: str, later_motion: str) -> Meaning:
@@ -289,7 +291,7 @@ ALL_STEPS = "all_steps"  # in place of a constraint's name: units that every tre
 OWN = "own"  # in place of a constraint's name: user rules
 
 
-def own(rule: Rule) -> Meaning:
+def meaning_of_user_rules(rule: Rule) -> Meaning:
     """Return the meaning of claims about user rules: no tree has all units of one set and none of another.
 
     Limits are claims, too. On a branch, unit propagation bars a unit: it is the only unit of the first set
@@ -318,8 +320,12 @@ LIBRARY: Mapping[str, Constraint] = {
     "forbid_object": Constraint({"forbidden_object": str}, _forbid_object, removes=True),
     "forbid_ingredient": Constraint({"allergen": list}, _forbid_ingredient),
     "least_rate": Constraint({"least_rate": int}, _least_rate, removes=True),
-    "only_sources": Constraint({"allowed": list}, _only_sources, removes=True, places=_vouching),
-    "at_least_videos": Constraint({"least_videos": int}, _at_least_videos, removes=True, places=_videos),
+    "only_sources": Constraint(
+        {"allowed": list}, _only_sources, removes=True, read_sources=_matching_source_names
+    ),
+    "at_least_videos": Constraint(
+        {"least_videos": int}, _at_least_videos, removes=True, read_sources=_videos
+    ),
     "motion_only_with": Constraint(
         {"tied_motion": str, "tied_utensil": str}, _motion_only_with, removes=True
     ),

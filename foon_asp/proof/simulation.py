@@ -113,7 +113,7 @@ def simulate(
         waiting = held_back
     if waiting:
         lacking = next(node for node in needs[waiting[0]] if node not in available)
-        blocked = Obstacle(waiting[0], lacking, _cycle(needs, gives, waiting, available))
+        blocked = Obstacle(waiting[0], lacking, _waiting_cycle(needs, gives, waiting, available))
         return Simulation(Verdict.NEVER, tuple(order), as_listed, blocked)
     obstacle = _missing_goal(goals, available)
     verdict = Verdict.REORDERED if obstacle is None else Verdict.NEVER
@@ -126,7 +126,7 @@ def _missing_goal(goals: tuple[ObjectNode, ...], available: set[ObjectNode]) -> 
     return None if missing is None else Obstacle(None, missing)
 
 
-def _cycle(
+def _waiting_cycle(
     needs: Sequence[tuple[ObjectNode, ...]],
     gives: Sequence[tuple[ObjectNode, ...]],
     waiting: Sequence[int],

@@ -15,7 +15,7 @@ from foon_asp.network import STAND_IN, Edit, Network, ObjectNode, StandInTable
 Sides = Callable[[int], Collection[int | None]]
 
 
-class Makes(NamedTuple):
+class Actions(NamedTuple):
     """The kitchen, and the inputs and outputs of each unit, by id; ``None`` is a node outside the network."""
 
     kitchen: Collection[int]
@@ -23,7 +23,7 @@ class Makes(NamedTuple):
     gives: Sides
 
 
-class Claim(NamedTuple):
+class StandInClaim(NamedTuple):
     """The part of a claim that concerns stand-ins.
 
     It says whether dissimilarity is the first objective, and has a lower bound on dissimilarity. ``bound`` is
@@ -34,7 +34,7 @@ class Claim(NamedTuple):
     bound: Fraction | None
 
 
-def stand_in_prices(table: StandInTable) -> list[list[str]]:
+def stand_in_price_data(table: StandInTable) -> list[list[str]]:
     """Return all data about stand-ins that a claim depends on, in a fixed order."""
     edits = [[str(edit), str(price)] for edit, price in table.edits.items()]
     words = [[str(edit), word, str(price)] for (edit, word), price in table.words.items()]
@@ -56,7 +56,9 @@ def price_of(table: StandInTable, serving: ObjectNode, served: ObjectNode) -> Fr
     prices: list[Fraction | None] = []
     labels = serving.label, served.label
     if serving.label != served.label:
-        same_word = labels not in table.pairs and _bare(serving.label) == _bare(served.label)
+        same_word = labels not in table.pairs and _singular_word(serving.label) == _singular_word(
+            served.label
+        )
         prices.append(table.edits[Edit.SPELLING] if same_word else table.pairs.get(labels))
     items, other_items = Counter(serving.ingredients), Counter(served.ingredients)
     if items != other_items and max(items.total(), other_items.total()) >= 2 * (items & other_items).total():
@@ -80,7 +82,7 @@ def price_of(table: StandInTable, serving: ObjectNode, served: ObjectNode) -> Fr
 
 
 def stand_in_fault(
-    network: Network, table: StandInTable, makes: Makes, goals: Sequence[int], claim: Claim
+    network: Network, table: StandInTable, actions: Actions, goals: Sequence[int], claim: StandInClaim
 ) -> str | None:
     """Return the first fault of the stand-ins of a network; ``None`` if they agree with its table.
 
@@ -95,7 +97,7 @@ def stand_in_fault(
         if motion == STAND_IN:
             (serving,), (served,) = network.inputs[unit], network.outputs[unit]
             listed.add((serving, served))
-    free = _made(network, makes)
+    free = _nodes_made(network, actions)
     for serving, served in listed:
         price = price_of(table, objects[serving], objects[served])
         if price is None or price <= 0:
@@ -104,12 +106,12 @@ def stand_in_fault(
             return f"a stand-in serves {objects[served]}, which can be made"
     servers = _Servers(network, table, free, claim.by_dissimilarity)
     if claim.by_dissimilarity:
-        lacking = _needed(network, goals, free, makes)
-        least = _least(network, servers, goals, makes)
+        lacking = _nodes_needed(network, goals, free, actions)
+        least = _least_dissimilarities(network, servers, goals, actions)
     else:
         lacking, least = set(range(len(objects))) - free, {}
     for served in lacking:
-        for serving, price in servers.of(served).items():
+        for serving, price in servers.prices_of(served).items():
             if (serving, served) in listed:
                 continue
             before = Fraction(0) if serving in free or claim.bound is None else least.get(serving)
@@ -118,7 +120,7 @@ def stand_in_fault(
     return None
 
 
-def _bare(label: str) -> str:
+def _singular_word(label: str) -> str:
     """Return a label as a single word in the singular."""
     word = "".join(letter for letter in label.casefold() if letter not in " -_")
     if len(word) > 5 and word[-3:] in {"ies", "oes"}:
@@ -145,10 +147,10 @@ class _Servers:
             self._by_label.setdefault(node.label, []).append(o)
         self._spelled: dict[str, list[int]] = {}
         for label, nodes in self._by_label.items():
-            self._spelled.setdefault(_bare(label), []).extend(nodes)
+            self._spelled.setdefault(_singular_word(label), []).extend(nodes)
         self._of: dict[int, dict[int, Fraction]] = {}
 
-    def of(self, served: int) -> dict[int, Fraction]:
+    def prices_of(self, served: int) -> dict[int, Fraction]:
         """Return the nodes that may serve for a node, by id, with their prices."""
         if served not in self._of:
             objects = self._network.objects
@@ -166,7 +168,7 @@ class _Servers:
 
     def _candidates(self, node: ObjectNode) -> Iterator[int]:
         """Yield the nodes to be priced: those whose label is spelled alike, and those paired by the table."""
-        yield from self._spelled[_bare(node.label)]
+        yield from self._spelled[_singular_word(node.label)]
         for serving, served in self._table.pairs:
             if served == node.label and isinstance(serving, str):
                 yield from self._by_label.get(serving, ())
@@ -176,7 +178,9 @@ class _Servers:
                     yield number
 
 
-def _least(network: Network, servers: _Servers, goals: Sequence[int], makes: Makes) -> dict[int, Fraction]:
+def _least_dissimilarities(
+    network: Network, servers: _Servers, goals: Sequence[int], actions: Actions
+) -> dict[int, Fraction]:
     """Return a lower bound on the dissimilarity of making each node; 0 for nodes that need no stand-in.
 
     A unit costs at least as much as its most expensive input; a stand-in adds its price.
@@ -188,17 +192,17 @@ def _least(network: Network, servers: _Servers, goals: Sequence[int], makes: Mak
         if made in makers:
             continue
         makers[made] = [
-            {o for o in makes.needs(unit) if o is not None} - {*servers.free}
+            {o for o in actions.needs(unit) if o is not None} - {*servers.free}
             for unit in network.producers[made]
-            if network.motions[unit] != STAND_IN and made in makes.gives(unit)
+            if network.motions[unit] != STAND_IN and made in actions.gives(unit)
         ]
         stack += (o for inputs in makers[made] for o in inputs)
-        stack += (o for o in servers.of(made) if o not in servers.free)
+        stack += (o for o in servers.prices_of(made) if o not in servers.free)
     served_by: dict[int, list[tuple[int, Fraction]]] = {}
     waiting: dict[int, list[tuple[int, set[int]]]] = {}
     heap: list[tuple[Fraction, int]] = []
     for made, units in makers.items():
-        for serving, price in servers.of(made).items():
+        for serving, price in servers.prices_of(made).items():
             if serving in servers.free:
                 heap.append((price, made))
             else:
@@ -222,17 +226,17 @@ def _least(network: Network, servers: _Servers, goals: Sequence[int], makes: Mak
     return least
 
 
-def _made(network: Network, makes: Makes) -> set[int]:
+def _nodes_made(network: Network, actions: Actions) -> set[int]:
     """Return the nodes that can be made from the kitchen without stand-ins."""
     units = [unit for unit, motion in enumerate(network.motions) if motion != STAND_IN]
-    needs, gives = makes.needs, makes.gives
+    needs, gives = actions.needs, actions.gives
     waiting = {unit: {o for o in needs(unit) if o is not None} for unit in units}
     consumers: dict[int, list[int]] = {}
     for unit, inputs in waiting.items():
         for o in inputs:
             consumers.setdefault(o, []).append(unit)
     made: set[int] = set()
-    queue = deque(makes.kitchen)
+    queue = deque(actions.kitchen)
     for unit, inputs in waiting.items():
         if not inputs:
             queue.extend(o for o in gives(unit) if o is not None)
@@ -248,16 +252,18 @@ def _made(network: Network, makes: Makes) -> set[int]:
     return made
 
 
-def _needed(network: Network, goals: Sequence[int], free: Collection[int], makes: Makes) -> set[int]:
+def _nodes_needed(
+    network: Network, goals: Sequence[int], free: Collection[int], actions: Actions
+) -> set[int]:
     """Return the nodes that a tree can need although they cannot be made without stand-ins."""
     needed = {goal for goal in goals if goal not in free}
     stack = list(needed)
     while stack:
         served = stack.pop()
         for unit in network.producers[served]:
-            if served not in makes.gives(unit):
+            if served not in actions.gives(unit):
                 continue
-            for o in makes.needs(unit):
+            for o in actions.needs(unit):
                 if o is not None and o not in free and o not in needed:
                     needed.add(o)
                     stack.append(o)

@@ -53,18 +53,18 @@ class Means(NamedTuple):
     agents: int
     tools: Mapping[ToolName, int | None]
 
-    def waited_for(self, problem: Problem, label: str) -> bool:
+    def is_limited(self, problem: Problem, label: str) -> bool:
         """Return whether a step may have to wait for objects of a label, as tools in limited number."""
         if label in self.tools:
             return self.tools[label] is not None
         named = any(isinstance(name, ObjectNode) and name.label == label for name in self.tools)
         return named or label in problem.utensils
 
-    def is_free(self, label: str) -> bool:
+    def is_unlimited(self, label: str) -> bool:
         """Return whether several steps can share one object of a label at the same time."""
         return label in self.tools and self.tools[label] is None
 
-    def name(self, node: ObjectNode, label: str) -> ToolName:
+    def counted_name(self, node: ObjectNode, label: str) -> ToolName:
         """Return the name under which a tool is counted.
 
         ``label`` is the label of the tool, and ``node`` is the tool or an object in it. The name is the node
@@ -83,7 +83,7 @@ class Means(NamedTuple):
         if stated is not None:
             return stated
         stock = {} if problem.items is None else problem.items.stock
-        return max(1, sum(n for node, n in stock.items() if self.name(node, node.label) == name))
+        return max(1, sum(n for node, n in stock.items() if self.counted_name(node, node.label) == name))
 
 
 class ToolNeed(NamedTuple):
@@ -105,7 +105,7 @@ class ToolNeed(NamedTuple):
         return len(self.kept) + max(len(self.changed) + len(self.others), len(self.made))
 
 
-def tools_asked(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[str, ToolNeed]:
+def tools_needed(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[str, ToolNeed]:
     """Return the tools that a unit needs, by label.
 
     They are its utensils, and the tools that its objects are in, on or at.
@@ -115,7 +115,7 @@ def tools_asked(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[st
     nodes = (*dict.fromkeys(unit.inputs), *unit.outputs)
     around = (relation.object for node in nodes for relation in node.relations)
     for label in dict.fromkeys([*(node.label for node in nodes), *around]):
-        if not means.waited_for(problem, label):
+        if not means.is_limited(problem, label):
             continue
         own = [node for node in dict.fromkeys(unit.inputs) if node.label == label]
         kept = tuple(node for node in own if node in needed and node in unit.outputs)
@@ -160,9 +160,9 @@ class _Run:
         assert problem.items is not None
         self._problem, self._executions, self._means = problem, Executions(problem), means
         self._plan, self._steps = plan, steps
-        self._copies = self._executions.stock()
-        self._read: Counter[ObjectNode] = Counter()
-        self._working: dict[int | Tool, int] = {}  # who and what is at a step
+        self._copies = self._executions.initial_copies()
+        self._copies_read: Counter[ObjectNode] = Counter()
+        self._step_using: dict[int | Tool, int] = {}  # who and what is at a step
         self._states: dict[Tool, frozenset[ObjectNode]] = {}
 
     def fault(self) -> str | None:
@@ -174,50 +174,52 @@ class _Run:
         events += [(step.start, True, number) for number, step in enumerate(self._steps)]
         for _, starts, number in sorted(events):
             if not starts:
-                self._end(number)
-            elif fault := next(self._start(number), None):
+                self._end_step(number)
+            elif fault := next(self._start_step(number), None):
                 return f"step {number + 1} ({self._plan[number].motion}) {fault}"
         return None
 
-    def _start(self, number: int) -> Iterator[str]:
+    def _start_step(self, number: int) -> Iterator[str]:
         """Start a step; yield each reason why it cannot."""
         unit, step = self._plan[number], self._steps[number]
-        hands = _hands(step)
-        if len(set(hands)) < len(hands):
+        resources = _resources_of(step)
+        if len(set(resources)) < len(resources):
             yield "has the same tool twice"
-        for hand in hands:
-            if hand in self._working:
-                yield f"waits for {hand}, which is at step {self._working[hand] + 1}"
-        yield from self._wrong_tools(unit, step.tools)
+        for resource in resources:
+            if resource in self._step_using:
+                yield f"waits for {resource}, which is at step {self._step_using[resource] + 1}"
+        yield from self._tool_faults(unit, step.tools)
         needed, consumes, _ = self._executions.of(unit)
         for node, amount in needed.items():
             if self._executions.is_endless(node):
                 continue
             goes = consumes.get(node, 0)
-            in_use = 0 if self._means.is_free(node.label) and not goes else self._read[node]
+            in_use = 0 if self._means.is_unlimited(node.label) and not goes else self._copies_read[node]
             if self._copies[node] < in_use + amount:
                 yield f"lacks a copy of {node}"
             self._copies[node] -= goes
-            self._read[node] += amount - goes
-        self._working.update(dict.fromkeys(hands, number))
+            self._copies_read[node] += amount - goes
+        self._step_using.update(dict.fromkeys(resources, number))
 
-    def _end(self, number: int) -> None:
+    def _end_step(self, number: int) -> None:
         """End a step: add its outputs, and release its tools and its agent."""
         unit, step = self._plan[number], self._steps[number]
         needed, consumes, made = self._executions.of(unit)
         for node, amount in needed.items():
-            self._read[node] -= amount - consumes.get(node, 0)  # of what is endless, nobody asks for this
+            self._copies_read[node] -= amount - consumes.get(
+                node, 0
+            )  # of what is endless, nobody asks for this
         self._copies.update(made)
         for tool in step.tools:
             # what of it is at other tools, nobody asks this one for
             self._states[tool] = self._states.get(tool, frozenset()).difference(consumes).union(made)
-        for hand in _hands(step):
-            self._working.pop(hand, None)
+        for resource in _resources_of(step):
+            self._step_using.pop(resource, None)
 
-    def _wrong_tools(self, unit: FunctionalUnit, tools: Sequence[Tool]) -> Iterator[str]:
+    def _tool_faults(self, unit: FunctionalUnit, tools: Sequence[Tool]) -> Iterator[str]:
         """Yield each fault of the tools with which a step starts."""
         problem, means = self._problem, self._means
-        needs, needed = tools_asked(problem, means, unit), self._executions.of(unit).preconditions
+        needs, needed = tools_needed(problem, means, unit), self._executions.of(unit).preconditions
         brought = Counter(tool.label for tool in tools)
         for label in needs.keys() | brought.keys():
             wanted = needs[label].number if label in needs else 0
@@ -231,7 +233,7 @@ class _Run:
             held_nodes = {node for tool in brought_tools for node in self._states.get(tool, ())}
             wanted_nodes = {node for node in (*need.kept, *need.changed, *need.others) if node is not None}
             for node in wanted_nodes - held_nodes:
-                fetched = problem.at_hand(node) and means.name(node, label) in {
+                fetched = problem.at_hand(node) and means.counted_name(node, label) in {
                     tool.name for tool in brought_tools
                 }
                 if not fetched and node in needed:
@@ -241,6 +243,6 @@ class _Run:
                     self._states[tool] = frozenset()
 
 
-def _hands(step: TimedStep) -> list[int | Tool]:
+def _resources_of(step: TimedStep) -> list[int | Tool]:
     """Return the resources that a step occupies: its tools, and its agent as a number."""
     return [*step.tools] + ([] if step.agent is None else [step.agent])

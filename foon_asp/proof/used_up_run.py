@@ -47,25 +47,25 @@ def used_up_run(problem: Problem, tree: Iterable[FunctionalUnit]) -> UsedUpRun:
     if problem.network.level < 3:
         return UsedUpRun(None, proved=False)
     executions = Executions(problem)
-    whole_steps, wanted = [executions.of(unit) for unit in tree], executions.wanted()
-    nodes = set(wanted).union(*(copies for step in whole_steps for copies in (step.preconditions, step.adds)))
+    executed, wanted = [executions.of(unit) for unit in tree], executions.wanted_copies()
+    nodes = set(wanted).union(*(copies for step in executed for copies in (step.preconditions, step.adds)))
     endless = set(filter(executions.is_endless, nodes))
 
-    def finite(copies: Mapping[ObjectNode, int]) -> Mapping[ObjectNode, int]:
+    def without_endless(copies: Mapping[ObjectNode, int]) -> Mapping[ObjectNode, int]:
         if endless.isdisjoint(copies):
             return copies
         return {node: n for node, n in copies.items() if node not in endless}
 
-    steps = [Execution(*map(finite, step)) for step in whole_steps]
-    stock, goals = executions.stock(), finite(wanted)
+    steps = [Execution(*map(without_endless, step)) for step in executed]
+    stock, goals = executions.initial_copies(), without_endless(wanted)
     listed = _shortage_as_listed(steps, stock, goals)
     if listed is None:
         return UsedUpRun(tuple(range(len(steps))))
-    overdrawn = _overdrawn(steps, stock, goals)
+    overdrawn = _overdrawn_node(steps, stock, goals)
     if overdrawn is not None:
         return UsedUpRun(None, overdrawn)
     search = _OrderSearch(steps, stock, goals)
-    order = search.order()
+    order = search.find_order()
     shortage = None if order else search.dead_end or listed
     return UsedUpRun(order, shortage, order is not None or search.looks_left > 0)
 
@@ -95,7 +95,7 @@ def _shortage_as_listed(
     return missing(None, goals)
 
 
-def _overdrawn(
+def _overdrawn_node(
     steps: Sequence[Execution], stock: Mapping[ObjectNode, int], goals: Mapping[ObjectNode, int]
 ) -> Shortage | None:
     """Return the first copy that is missing in every order: more copies are used up than exist in total."""
@@ -139,35 +139,35 @@ class _OrderSearch:
         self._most_read: Counter[ObjectNode] = Counter()  # copies that one of its readers leaves there
         for waiting in steps:
             self._consumers.update(waiting.consumes)
-            for node, read in _reads(waiting):
+            for node, read in _copies_read(waiting):
                 self._readers[node] += 1
                 self._most_read[node] = max(self._most_read[node], read)
 
-    def order(self) -> tuple[int, ...] | None:
+    def find_order(self) -> tuple[int, ...] | None:
         """Return an order that runs; ``None`` where none is found. No node may be overdrawn."""
         done: list[int] = []
         dead: set[int] = set()  # what was done where no order of the others was found
-        choices, longest = [self._ready(dead)], -1
+        choices, longest = [self._next_steps(dead)], -1
         while choices:
             step = next(choices[-1], None)
             if step is not None:
-                self._do(step)
+                self._do_step(step)
                 done.append(step)
                 if len(done) == len(self._steps):
                     return tuple(done)
-                choices.append(self._ready(dead))
+                choices.append(self._next_steps(dead))
                 continue
             if len(done) > longest:
-                longest, self.dead_end = len(done), self._missing(done)
+                longest, self.dead_end = len(done), self._missing_copies(done)
             if self.looks_left <= 0:
                 return None
             dead.add(self._done)
             choices.pop()
             if done:
-                self._undo(done.pop())
+                self._undo_step(done.pop())
         return None
 
-    def _ready(self, dead: set[int]) -> Iterator[int]:
+    def _next_steps(self, dead: set[int]) -> Iterator[int]:
         """Yield the waiting steps that can be next.
 
         Stop after a step that leaves enough copies for all waiting steps: if no order continues with this
@@ -181,12 +181,12 @@ class _OrderSearch:
             if all(self._copies[node] >= n for node, n in execution.preconditions.items()):
                 yield step
                 if all(
-                    map(self._plentiful, execution.consumes)
+                    map(self._is_plentiful, execution.consumes)
                 ):  # if no order goes on with this step, none does
                     return
             step = self._next[step]
 
-    def _missing(self, done: Sequence[int]) -> Shortage | None:
+    def _missing_copies(self, done: Sequence[int]) -> Shortage | None:
         """Return the copy that a waiting step is missing because earlier steps used it up."""
         step = self._next[-1]
         while step != len(self._steps):
@@ -199,25 +199,25 @@ class _OrderSearch:
             step = self._next[step]
         return None
 
-    def _plentiful(self, node: ObjectNode) -> bool:
+    def _is_plentiful(self, node: ObjectNode) -> bool:
         """Return whether there are copies of a node for all waiting steps, and for the goals."""
         reserved = max(self._goals.get(node, 0), self._most_read[node] if self._readers[node] else 0)
         return self._copies[node] >= self._consumers[node] + reserved
 
-    def _do(self, step: int) -> None:
+    def _do_step(self, step: int) -> None:
         before, after = self._previous[step], self._next[step]
         self._next[before], self._previous[after] = after, before
-        self._shift(step, 1)
+        self._execute(step, 1)
 
-    def _undo(self, step: int) -> None:
-        self._shift(step, -1)
+    def _undo_step(self, step: int) -> None:
+        self._execute(step, -1)
         self._next[self._previous[step]] = self._previous[self._next[step]] = step
 
-    def _shift(self, step: int, sign: int) -> None:
+    def _execute(self, step: int, sign: int) -> None:
         """Execute a step that waits, or undo it with a ``sign`` of -1."""
         self._done ^= 1 << step
         _, consumes, adds = self._steps[step]
-        for node, _ in _reads(self._steps[step]):
+        for node, _ in _copies_read(self._steps[step]):
             self._readers[node] -= sign
         for node, amount in consumes.items():
             self._consumers[node] -= sign * amount
@@ -226,7 +226,7 @@ class _OrderSearch:
             self._copies[node] += sign * amount
 
 
-def _reads(step: Execution) -> Iterator[tuple[ObjectNode, int]]:
+def _copies_read(step: Execution) -> Iterator[tuple[ObjectNode, int]]:
     """Yield each node of which a step needs more copies than it uses up, with the difference."""
     for node, amount in step.preconditions.items():
         if amount > step.consumes.get(node, 0):

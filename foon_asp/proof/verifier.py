@@ -29,10 +29,18 @@ from types import MappingProxyType
 from typing import Any, NamedTuple, TypeAlias
 
 from foon_asp.network import STAND_IN, Amounts, Network, StandInTable, UnitPrices, node_at_level
-from foon_asp.proof.rule_meaning import ALL_STEPS, LIBRARY, OWN, Meaning, Question, Rule, looked_at, meaning
-from foon_asp.proof.ruled import Limit, Ruled
-from foon_asp.proof.stand_ins import Claim as StandInClaim
-from foon_asp.proof.stand_ins import Makes, price_of, stand_in_fault, stand_in_prices
+from foon_asp.proof.compiled_rules import CompiledRules, Limit
+from foon_asp.proof.rule_meaning import (
+    ALL_STEPS,
+    LIBRARY,
+    OWN,
+    Meaning,
+    Question,
+    Rule,
+    meaning_of_rule,
+    sources_read,
+)
+from foon_asp.proof.stand_ins import Actions, StandInClaim, price_of, stand_in_fault, stand_in_price_data
 
 _UNMEASURED = "nothing"  # what a tree that is not there is measured by
 OBJECTIVES = (
@@ -127,29 +135,32 @@ class Subject(NamedTuple):
         that the rules read.
         """
         return {
-            name: self.stated.get(name) or _digest(value()) for name, value in self._described(rules).items()
+            name: self.stated.get(name) or _digest(value())
+            for name, value in self._digest_data(rules).items()
         }
 
-    def described(self, rules: Iterable[Rule] = (), goals: Iterable[int] = ()) -> str:
+    def canonical_data(self, rules: Iterable[Rule] = (), goals: Iterable[int] = ()) -> str:
         """Return all that a certificate with these goals depends on, as canonical JSON.
 
         These are the values of the digests by name and, as ``goals``, the text of each goal with its id.
         """
-        values = {name: value() for name, value in self._described(rules).items()}
-        return canonical({**values, "goals": [(goal, str(self.network.objects[goal])) for goal in goals]})
+        values = {name: value() for name, value in self._digest_data(rules).items()}
+        return canonical_json(
+            {**values, "goals": [(goal, str(self.network.objects[goal])) for goal in goals]}
+        )
 
-    def _described(self, rules: Iterable[Rule]) -> dict[str, Callable[[], object]]:
+    def _digest_data(self, rules: Iterable[Rule]) -> dict[str, Callable[[], object]]:
         """Return the name of each digest, with a function that returns the data of the digest."""
         network, rates, prices = self.network, self.rates, self.prices
-        places = [looked for rule in rules if (looked := looked_at(rule, network)) is not None]
+        places = [looked for rule in rules if (looked := sources_read(rule, network)) is not None]
         table = self.stand_ins
         return {
-            **({} if table is None else {"stand-ins": lambda: stand_in_prices(table)}),
-            "network": lambda: _described(network),
+            **({} if table is None else {"stand-ins": lambda: stand_in_price_data(table)}),
+            "network": lambda: _network_data(network),
             "kitchen": lambda: sorted(self.kitchen),
             "rates": lambda: rates and sorted([motion, str(rate)] for motion, rate in rates.items()),
             "utensils": lambda: sorted(self.utensils),
-            "prices": lambda: prices and _stated(prices, network.detailed or network),
+            "prices": lambda: prices and _price_data(prices, network.detailed or network),
             "sources": lambda: places or None,
         }
 
@@ -184,7 +195,7 @@ class Trusted(NamedTuple):
     costs: Mapping[int, Fraction]
 
 
-class UsedUp(NamedTuple):
+class ItemClaims(NamedTuple):
     """The statements about consumable items in a claim about plans.
 
     ``stock`` maps consumable kitchen items, by id, to their copies. ``stays`` maps labels, and object nodes
@@ -219,7 +230,7 @@ class Verified(NamedTuple):
     costs: tuple[int | Fraction, ...] | None
     cuts: int
     trusted: tuple[Trusted, ...] = ()
-    used_up: UsedUp | None = None
+    used_up: ItemClaims | None = None
 
 
 def load_certificate(file: Path) -> Any:
@@ -238,18 +249,20 @@ def load_certificate(file: Path) -> Any:
 def read_certificate(text: str) -> Any:
     """Return the parsed JSON of a certificate; raises :class:`RefusedError` if invalid or a key is double."""
 
-    def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    def unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         content = dict(pairs)
         require(len(content) == len(pairs), "a key stands twice in one object")
         return content
 
-    def no_float(number: str) -> None:
+    def refuse_float(number: str) -> None:
         raise RefusedError(f"found the number {number[:50]}, expected whole numbers, and fractions in quotes")
 
     if len(text) > ALLOWED.letters or text.count("[") + text.count("{") > ALLOWED.brackets:
         raise LimitError(f"it has more than {ALLOWED.letters:,} letters or {ALLOWED.brackets:,} brackets")
     try:
-        return json.loads(text, object_pairs_hook=once, parse_float=no_float, parse_constant=no_float)
+        return json.loads(
+            text, object_pairs_hook=unique_keys, parse_float=refuse_float, parse_constant=refuse_float
+        )
     except (ValueError, RecursionError) as error:
         raise RefusedError(f"not JSON: {error}") from None
 
@@ -259,13 +272,13 @@ def seal(certificate: Mapping[str, Any]) -> str:
     return _digest({key: value for key, value in certificate.items() if key != "seal"})
 
 
-def trusted(certificate: Mapping[str, Any]) -> Rule | None:
+def trusted_claims(certificate: Mapping[str, Any]) -> Rule | None:
     """Return the statements about user rules that a certificate takes on trust, ``None`` without any."""
     return next((rule for rule in certificate.get("rules", ()) if rule["rule"] == OWN), None)
 
 
 @contextmanager
-def refusing_depth() -> Iterator[None]:
+def refuse_deep_nesting() -> Iterator[None]:
     """Refuse a certificate that is nested too deeply."""
     try:
         yield
@@ -273,7 +286,7 @@ def refusing_depth() -> Iterator[None]:
         raise RefusedError("branches nested too deeply") from None
 
 
-@refusing_depth()
+@refuse_deep_nesting()
 def verify(certificate: Any, subject: Subject) -> Verified:
     """Check a certificate of a tree against its data.
 
@@ -281,11 +294,11 @@ def verify(certificate: Any, subject: Subject) -> Verified:
     the check would take more than a few seconds beyond the time for the digest of the network. Raises
     :class:`RefusedError` with the first fault that is found.
     """
-    rules = read_frame(certificate, TREE_FORM, subject)
-    return Check(certificate, rules, subject).claim()
+    rules = check_header(certificate, TREE_FORM, subject)
+    return Check(certificate, rules, subject).verify_claim()
 
 
-def read_frame(certificate: Any, form: Form, subject: Subject) -> tuple[Rule, ...]:
+def check_header(certificate: Any, form: Form, subject: Subject) -> tuple[Rule, ...]:
     """Check the form, the seal and the digests of a certificate; return its rules."""
     require(isinstance(certificate, dict), "expected an object with the keys of a certificate")
     require(certificate.get("format") == form.name, f"expected the format {form.name!r}")
@@ -318,31 +331,31 @@ class Check:
         self.allowed = ALLOWED.steps + ALLOWED.steps_each * (len(network) + len(network.objects))
         self.steps = self.allowed  # that are left
         self.minus_log = cache(self._minus_log)  # of a rate
-        self.all_multiples = cache(self._all_multiples)  # of a number, by an objective
-        self.looked_at: dict[str, dict[int, Fraction]] = {}  # costs by measures that the proof uses
+        self.are_multiples = cache(self._are_multiples)  # of a number, by an objective
+        self.trusted_costs: dict[str, dict[int, Fraction]] = {}  # costs by measures that the proof uses
         self.certificate, self.network, self.kitchen = certificate, network, kitchen
         self.utensils = utensils
         self.containers = certificate["containers"]
         require(self.containers in ("strict", "implied"), "expected the containers strict or implied")
         self.objectives = tuple(read_list(certificate["objective"]))
         measures = read_object(certificate.get("measures", {}))
-        self.measures = {name: self._measure(name, stated) for name, stated in measures.items()}
+        self.measures = {name: self._read_measure(name, stated) for name, stated in measures.items()}
         require(
             all(objective in (*OBJECTIVES, *self.measures) for objective in self.objectives),
             "an objective is unknown",
         )
         require(len(set(self.objectives)) == len(self.objectives), "an objective stands twice")
         by_rates = {"success", "attempts"} & set(self.objectives)
-        self.rates = self._rates(rates) if by_rates else {}
+        self.rates = self._required_rates(rates) if by_rates else {}
         self.costly = frozenset(self.rates.values()) - {0, 1}
-        self.prices = self._prices(prices) if "price" in self.objectives else []
-        self.goals = tuple(_goal(goal, network) for goal in read_list(certificate["goals"]))
+        self.prices = self._required_prices(prices) if "price" in self.objectives else []
+        self.goals = tuple(_read_goal(goal, network) for goal in read_list(certificate["goals"]))
         require(len(set(self.goals)) == len(self.goals) > 0, "expected goals, each of them once")
         self.needs, self.gives = cache(self._needs), cache(self._gives)  # of a unit, without its rules
         self.preconditions, self.cost = cache(self._preconditions), cache(self._cost)  # of a member
         self.stand_ins = subject.stand_ins
         self.rules, self.claimed = rules, 0
-        each_price = cache(lambda: self._each_price(prices))
+        each_price = cache(lambda: self._unit_prices(prices))
         question = Question(
             network,
             kitchen,
@@ -353,17 +366,17 @@ class Check:
             self.needs,
             self.gives,
         )
-        self.ruled = Ruled(
-            [self._meaning(rule, question) for rule in rules],
+        self.ruled = CompiledRules(
+            [self._rule_meaning(rule, question) for rule in rules],
             len(network.objects),
             len(network) + len(network.objects),
         )
-        self.not_covered = _names(certificate["not_covered"])
+        self.not_covered = _read_names(certificate["not_covered"])
         # these are nobody's labels, and could say anything in lines of their own
         require(all(name.isprintable() for name in self.not_covered), "a constraint has no printable name")
         nodes = len(network.objects) + len(self.ruled.makers)
         self.cuts = [frozenset(read_numbers(cut, nodes)) for cut in read_list(certificate["cuts"])]
-        self.members = [frozenset(self._members(cut)) for cut in self.cuts]
+        self.members = [frozenset(self._landmark(cut)) for cut in self.cuts]
         self.met: set[int] = set()  # the cuts that the proof uses
 
     def _check_stand_ins(self, least: Fraction | None) -> None:
@@ -377,13 +390,13 @@ class Check:
         ruled = any(rule["rule"] != ALL_STEPS for rule in self.rules)
         by_dissimilarity = self.objectives[:1] in {(), ("dissimilarity",)} and not ruled
         claim = StandInClaim(by_dissimilarity, least if by_dissimilarity else None)
-        makes = Makes(self.kitchen, self.needs, self.gives)
+        actions = Actions(self.kitchen, self.needs, self.gives)
         inputs = (o for unit in steps for o in self.needs(unit) if o is not None)
         wanted = [*dict.fromkeys((*self.goals, *inputs))]  # what every tree makes or takes
-        wrong = stand_in_fault(self.network, self.stand_ins, makes, wanted, claim)
+        wrong = stand_in_fault(self.network, self.stand_ins, actions, wanted, claim)
         require(wrong is None, f"{wrong}")
 
-    def _measure(self, name: str, stated: Any) -> Trusted:
+    def _read_measure(self, name: str, stated: Any) -> Trusted:
         """Read the stated costs of units by a measure."""
         require(
             bool(_MEASURE_NAME.fullmatch(name)) and name not in OBJECTIVES, "a measure has no name of its own"
@@ -400,17 +413,17 @@ class Check:
             for unit in read_numbers(units, len(self.network)):
                 require(unit not in costs, "a unit has two costs by a measure")
                 costs[unit] = cost
-        self.looked_at[name] = {}
+        self.trusted_costs[name] = {}
         return Trusted(name, rules, digest, costs)
 
-    def _measured(self, name: str, unit: int) -> Fraction:
+    def _stated_cost(self, name: str, unit: int) -> Fraction:
         """Return the stated cost of a unit by a measure, and note that it is taken on trust."""
         costs = self.measures[name].costs
         require(unit in costs, "the cost of a unit by a measure is not stated")
-        self.looked_at[name][unit] = costs[unit]
+        self.trusted_costs[name][unit] = costs[unit]
         return costs[unit]
 
-    def _rates(self, given_rates: Mapping[str, Fraction] | None) -> dict[str, Fraction]:
+    def _required_rates(self, given_rates: Mapping[str, Fraction] | None) -> dict[str, Fraction]:
         """Return the success rate of each motion."""
         motions = self.network.different_motions
         rates = {
@@ -419,7 +432,7 @@ class Check:
             if given_rates is not None and motion in given_rates
         }
         values = None if given_rates is None else [*rates.values()]
-        values_found = self._complete(values, len(motions), "success rates")
+        values_found = self._require_complete(values, len(motions), "success rates")
         require(all(rate <= 1 for rate in values_found), "a rate is above 1")
         require(
             "attempts" not in self.objectives or 0 not in values_found,
@@ -431,12 +444,12 @@ class Check:
         """Return the success rate of a unit."""
         return self.rates[self.network.motions[unit]]
 
-    def _prices(self, unit_prices: UnitPrices | None) -> list[Fraction]:
+    def _required_prices(self, unit_prices: UnitPrices | None) -> list[Fraction]:
         """Return the price of each unit."""
-        prices = None if unit_prices is None else self._each_price(unit_prices)
-        return self._complete(prices, len(self.network), "prices")
+        prices = None if unit_prices is None else self._unit_prices(unit_prices)
+        return self._require_complete(prices, len(self.network), "prices")
 
-    def _each_price(self, unit_prices: UnitPrices | None) -> Sequence[Fraction | None]:
+    def _unit_prices(self, unit_prices: UnitPrices | None) -> Sequence[Fraction | None]:
         """Return the price of each unit: its own, or else that of its motion; ``None`` without a price.
 
         Below level 3, it is the least price of the units of level 3 that the unit stands for; ``None`` if one
@@ -459,7 +472,9 @@ class Check:
             ]
         return prices
 
-    def _complete(self, values: Sequence[Fraction | None] | None, count: int, what: str) -> list[Fraction]:
+    def _require_complete(
+        self, values: Sequence[Fraction | None] | None, count: int, what: str
+    ) -> list[Fraction]:
         """Return the values of ``count`` units; refuse missing values and values below 0."""
         require(values is not None, f"a claim needs {what}, but none are given")
         present = [value for value in values or () if value is not None]
@@ -467,14 +482,14 @@ class Check:
         require(all(value >= 0 for value in present), f"one of the {what} is below 0")
         return present
 
-    def claim(self) -> Verified:
+    def verify_claim(self) -> Verified:
         """Check tree, costs and proof."""
         claim, listed, proof = (self.certificate[key] for key in ("claim", "tree", "proof"))
         costs: list[int | Fraction] | None = None
         amount: Amount = {}
         if listed is not None:
             require(bool(self.objectives), "a tree is given, but no objective")
-            amount, costs = self._tree(read_list(listed))
+            amount, costs = self._execute(read_list(listed))
             computed = json.dumps([str(c) if isinstance(c, Fraction) else c for c in costs])
             stated = json.dumps(self.certificate["costs"])  # which tells 1 from True and from 1.0
             require(stated == computed, f"the tree costs {computed}, not what is stated")
@@ -488,15 +503,13 @@ class Check:
             require(self.certificate["bound"] is None, "the bound of an optimal tree is what it costs")
         elif claim == "bound":
             require(bool(self.objectives), "expected objectives")
-            bound = self._read(self.certificate["bound"])
-            require(
-                listed is None or self.sign(self.sum([amount, negative(bound)])) >= 0, "the bound is false"
-            )
+            bound = self._read_amount(self.certificate["bound"])
+            require(listed is None or self.sign(self.sum([amount, negate(bound)])) >= 0, "the bound is false")
             amount = bound
         else:
             raise RefusedError("expected the claim optimal, bound or infeasible")
         self._check_stand_ins(None if claim == "infeasible" else amount.get((0, None), Fraction(0)))
-        self._prove(proof, None if claim == "infeasible" else amount)
+        self._check_proof(proof, None if claim == "infeasible" else amount)
         require(len(self.met) == len(self.cuts), "a cut is not used by the proof")
         return Verified(
             claim,
@@ -510,13 +523,13 @@ class Check:
             None if costs is None else tuple(costs),
             len(self.cuts),
             tuple(
-                measure._replace(costs=self.looked_at[name])
+                measure._replace(costs=self.trusted_costs[name])
                 for name, measure in self.measures.items()
                 if name in self.objectives
             ),
         )
 
-    def _tree(self, units: list[Any]) -> tuple[Amount, list[int | Fraction]]:
+    def _execute(self, units: list[Any]) -> tuple[Amount, list[int | Fraction]]:
         """Execute the tree as listed; return its cost as an amount and as figures."""
         made: set[int | None] = set()
         for unit in read_numbers(units, len(self.network), ascending=False):
@@ -527,13 +540,13 @@ class Check:
             made.update(self.gives(unit))
         unmade = [goal for goal in self.goals if goal not in made and goal not in self.kitchen]
         require(not unmade, "the tree does not make every goal")
-        self._keep(frozenset(units))
+        self._require_kept_rules(frozenset(units))
         items = {o for unit in units for o in self.needs(unit) if o is not None and o in self.kitchen}
         members = [*units, *(len(self.network) + o for o in sorted(items))]
         total = self.sum(map(self.cost, members))
-        return total, self._figures(units, total)
+        return total, self._written_costs(units, total)
 
-    def _figures(self, units: list[int], total: Amount) -> list[int | Fraction]:
+    def _written_costs(self, units: list[int], total: Amount) -> list[int | Fraction]:
         """Return the costs of a tree of the units by each objective, as figures."""
         costs: list[int | Fraction] = []
         for level, objective in enumerate(self.objectives):
@@ -551,7 +564,7 @@ class Check:
                 costs.append(figure if objective in sums else int(figure))
         return costs
 
-    def _keep(self, units: frozenset[int]) -> None:
+    def _require_kept_rules(self, units: frozenset[int]) -> None:
         """Refuse a tree that does not keep to the rules."""
         self._spend(len(self.ruled.makers) + len(self.network) * len(self.ruled.barred))
         self._spend(len(units) * len(self.ruled.limits))
@@ -559,13 +572,13 @@ class Check:
         fault = self.ruled.fault(units, others)
         require(fault is None, f"the tree {fault}")
 
-    def _barred(self, number: int, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
+    def _barred_units(self, number: int, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
         """Return the units barred by a rule: no tree with all ``used`` and none of ``without`` has them."""
         self._spend(len(self.network) + 5 * self.claimed)
         units = frozenset(member for member in used if member < len(self.network))
         return self.ruled.barred[number](units, without)
 
-    def _prove(self, proof: Any, least: Amount | None) -> None:
+    def _check_proof(self, proof: Any, least: Amount | None) -> None:
         """Check a proof, with its branches, that every tree costs at least ``least``.
 
         If ``least`` is ``None``, the proof is that no tree exists. All costs are then 0, so weights that add
@@ -578,7 +591,7 @@ class Check:
             self._spend(1 + len(used) + len(without))
             keys = set(read_object(node))
             if keys == {"branch", "without", "using"}:
-                member = self._branch(node["branch"])
+                member = self._read_branch_member(node["branch"])
                 require(member not in used | without, "a branch is taken twice")
                 waiting.append((node["without"], used, without | {member}))
                 waiting.append((node["using"], used | {member}, without))
@@ -586,12 +599,12 @@ class Check:
             if keys == {"broken"}:
                 number = read_number(node["broken"], range(len(self.rules)), "the number of a rule")
                 never, barring = number in self.ruled.never, number in self.ruled.barred
-                broken = never or (barring and not used.isdisjoint(self._barred(number, used, without)))
+                broken = never or (barring and not used.isdisjoint(self._barred_units(number, used, without)))
                 require(broken, "a rule called broken is kept")
                 continue
-            barred = without.union(*(self._barred(number, used, without) for number in self.ruled.barred))
+            excluded = without.union(*(self._barred_units(n, used, without) for n in self.ruled.barred))
             if keys == {"hopeless"}:
-                crossing = self._crossing(node["hopeless"], used, barred)
+                crossing = self._crossing_members(node["hopeless"], used, excluded)
                 require(not crossing, "a cut called hopeless is crossed")
                 continue
             above_cutoff: list[int] | None = None
@@ -604,28 +617,30 @@ class Check:
                 {"weights"} <= keys <= {"weights", "limits", "multiples"},
                 "expected weights, a hopeless cut, a broken rule or a branch",
             )
-            packed, reduced_cost = self._packed(node["weights"], node.get("limits", []), used, barred)
+            partition_sum, reduced_cost = self._check_cost_partition(
+                node["weights"], node.get("limits", []), used, excluded
+            )
             paid = self.sum(map(self.cost, used))
             for addition in [{}] if above_cutoff is None else map(reduced_cost, above_cutoff):
-                total = self._rounded(self.sum([packed, addition]), node.get("multiples", {}))
-                require(self._enough([total, paid], least), "the weights do not add up to enough")
+                total = self._round_up(self.sum([partition_sum, addition]), node.get("multiples", {}))
+                require(self._is_enough([total, paid], least), "the weights do not add up to enough")
 
     def _above_cutoff(self, choices: Any, decided: frozenset[int]) -> list[int]:
         """Read the members of a reduced-cost fixing, which are claimed to be above the cutoff."""
-        actions = [self._branch(choice) for choice in read_list(choices)]
+        actions = [self._read_branch_member(choice) for choice in read_list(choices)]
         require(len(actions) > 0, "nothing is too dear")
         require(
             decided.isdisjoint(actions) and len(set(actions)) == len(actions), "what is dear is decided twice"
         )
         return actions
 
-    def _enough(self, bound: Iterable[Amount], least: Amount | None) -> bool:
+    def _is_enough(self, bound: Iterable[Amount], least: Amount | None) -> bool:
         """Return whether a bound is at least ``least``; if ``least`` is ``None``, whether it is above 0."""
         if least is None:
             return self.sign(self.sum(bound)) > 0
-        return self.sign(self.sum([*bound, negative(least)])) >= 0
+        return self.sign(self.sum([*bound, negate(least)])) >= 0
 
-    def _packed(
+    def _check_cost_partition(
         self, weights: Any, limits: Any, used: frozenset[int], without: frozenset[int]
     ) -> tuple[Amount, Callable[[int], Amount]]:
         """Check a cost partition; return its sum and a function that returns the reduced cost of a member.
@@ -636,24 +651,24 @@ class Check:
         """
         total: Amount = {}
         carried: list[tuple[Amount, Mapping[int, Fraction]]] = []
-        for (limit_number,), weight in self.read_weights("limits", limits, self._read):
+        for (limit_number,), weight in self.read_weights("limits", limits, self._read_amount):
             limit = self.limit_at(limit_number)
             self._spend(len(used))
-            self._add(total, self.times(weight, -limit.remaining(used)))
+            self._add_to(total, self.times(weight, -limit.remaining(used)))
             carried.append((weight, limit.amounts))
-        rows = [*self.read_weights("weights", weights, self._read)]
+        rows = [*self.read_weights("weights", weights, self._read_amount)]
         scales = self._common_denominators([weight for _, weight in rows])
         # by part of a weight and member, over the common denominator: whole numbers are added quickly
         loads: dict[tuple[int, Fraction | None], defaultdict[int, int]] = {
             key: defaultdict(int) for key in scales
         }
         for (number,), weight in rows:
-            self._add(total, weight)
-            crossing = self._crossing(number, used, without)
+            self._add_to(total, weight)
+            crossing = self._crossing_members(number, used, without)
             for key, value in weight.items():
                 if not value:
                     continue
-                self._spend_on(bit_length(value) + scales[key].bit_length(), len(crossing))
+                self._spend_on_fractions(bit_length(value) + scales[key].bit_length(), len(crossing))
                 scaled, load = value.numerator * (scales[key] // value.denominator), loads[key]
                 for member in crossing:
                     load[member] += scaled
@@ -672,7 +687,7 @@ class Check:
             return capacity
 
         def reduced_cost(member: int) -> Amount:
-            return self.sum([allowed(member), negative(load_of(member))])
+            return self.sum([allowed(member), negate(load_of(member))])
 
         for member in dict.fromkeys(chain.from_iterable(loads.values())):
             if allowed(member) != load_of(member):
@@ -689,11 +704,11 @@ class Check:
                 scale = scales.get(key, 1)
                 if scale % value.denominator:
                     scale = math.lcm(scale, value.denominator)
-                    self._spend_on(scale.bit_length())
+                    self._spend_on_fractions(scale.bit_length())
                 scales[key] = scale
         return scales
 
-    def _rounded(self, amount: Amount, stated: Any) -> Amount:
+    def _round_up(self, amount: Amount, stated: Any) -> Amount:
         """Round up a bound to a stated common divisor of all costs.
 
         It is rounded at the first objective whose part is no multiple of the stated divisor. The parts after
@@ -705,28 +720,28 @@ class Check:
             if objective in multiples:
                 multiple = multiples[objective]
                 require(multiple > 0, "a multiple is not above zero")
-                require(self.all_multiples(level, multiple), "a cost is not a multiple of what is stated")
+                require(self.are_multiples(level, multiple), "a cost is not a multiple of what is stated")
                 times = amount.get((level, None), Fraction(0)) / multiple
                 if times.denominator > 1:
                     before = {key: value for key, value in amount.items() if key[0] < level}
                     return {**before, (level, None): math.ceil(times) * multiple}
         return amount
 
-    def _all_multiples(self, level: int, multiple: Fraction) -> bool:
+    def _are_multiples(self, level: int, multiple: Fraction) -> bool:
         """Return whether the costs of all units and items by an objective are multiples of a number."""
         if self.objectives[level] == "success":
             return False
         members = (*range(len(self.network)), *(len(self.network) + o for o in self.kitchen))
         self._spend(len(members))
-        costs = (self._cost_by(level, member) or Fraction(0) for member in members)
+        costs = (self._cost_by_objective(level, member) or Fraction(0) for member in members)
         for ratio in dict.fromkeys(cost.as_integer_ratio() for cost in costs):
             cost = Fraction(*ratio)
-            self._spend_on(bit_length(cost) + bit_length(multiple))
+            self._spend_on_fractions(bit_length(cost) + bit_length(multiple))
             if cost % multiple:
                 return False
         return True
 
-    def _crossing(self, number: Any, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
+    def _crossing_members(self, number: Any, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
         """Return the members of a cut that are not excluded, after checking that the cut is a landmark."""
         index = read_number(number, range(len(self.cuts)), "the number of a cut")
         self._spend(1 + len(self.goals) + len(used) + len(self.members[index]))
@@ -740,7 +755,7 @@ class Check:
         require(before, f"cut {number} holds neither a goal nor what a used unit needs")
         return self.members[index] - without
 
-    def _members(self, cut: frozenset[int]) -> Iterator[int]:
+    def _landmark(self, cut: frozenset[int]) -> Iterator[int]:
         """Yield the landmark of a cut: the units that make one of its nodes and need none, and its items."""
         network, own = self.network, self.ruled.makers
         self._spend(sum(1 + len(own[o] if o in own else network.producers[o]) for o in cut))
@@ -769,16 +784,16 @@ class Check:
 
         Below level 3, they are the common preconditions of all units of level 3 that the unit stands for.
         """
-        return frozenset.intersection(*(needed for needed, _ in self._details(unit)))
+        return frozenset.intersection(*(needed for needed, _ in self._detailed_effects(unit)))
 
     def _gives(self, unit: int) -> frozenset[int | None]:
         """Return the add effects of a unit.
 
         Below level 3, they are the add effects of all units of level 3 that the unit stands for.
         """
-        return frozenset.union(*(made for _, made in self._details(unit)))
+        return frozenset.union(*(made for _, made in self._detailed_effects(unit)))
 
-    def _details(self, unit: int) -> Iterator[tuple[frozenset[int | None], frozenset[int | None]]]:
+    def _detailed_effects(self, unit: int) -> Iterator[tuple[frozenset[int | None], frozenset[int | None]]]:
         """Yield preconditions and add effects of each unit of level 3 that a unit stands for.
 
         A unit of level 3 stands for itself. Containers that a unit may skip are omitted.
@@ -787,10 +802,13 @@ class Check:
         whole = network.detailed or network
         for detail in (unit,) if network.detailed is None else network.stands_for[unit]:
             inputs = set(whole.inputs[detail])
-            skipped = self._skipped(whole, inputs) if self.containers == "implied" else set()
-            yield self._at_level(inputs - skipped), self._at_level(set(whole.outputs[detail]) - skipped)
+            skipped = self._skipped_containers(whole, inputs) if self.containers == "implied" else set()
+            yield (
+                self._ids_at_level(inputs - skipped),
+                self._ids_at_level(set(whole.outputs[detail]) - skipped),
+            )
 
-    def _skipped(self, whole: Network, inputs: set[int]) -> set[int]:
+    def _skipped_containers(self, whole: Network, inputs: set[int]) -> set[int]:
         """Return the inputs of a unit that the rule ``implied`` takes as given.
 
         An input is taken as given if it is a utensil with exactly one ingredient, and this ingredient,
@@ -808,7 +826,7 @@ class Check:
             )
         }
 
-    def _at_level(self, nodes: set[int]) -> frozenset[int | None]:
+    def _ids_at_level(self, nodes: set[int]) -> frozenset[int | None]:
         """Return the ids at the network's level of nodes of level 3."""
         network = self.network
         if network.detailed is None:
@@ -816,11 +834,11 @@ class Check:
         nodes_at_level = (node_at_level(network.detailed.objects[o], network.level) for o in nodes)
         return frozenset(map(network.object_id, nodes_at_level))
 
-    def _meaning(self, rule: Rule, question: Question) -> Meaning:
+    def _rule_meaning(self, rule: Rule, question: Question) -> Meaning:
         """Return the meaning of a rule for the network."""
         self._spend(ALLOWED.rule_steps * (len(self.network) + len(self.network.objects)))
         self.claimed += sum(1 + len(used) + len(without) for used, without in rule.get("claims", ()))
-        return meaning(rule, question)
+        return meaning_of_rule(rule, question)
 
     def _cost(self, member: int) -> Amount:
         """Return the cost of a unit or an item, one part for each objective."""
@@ -828,12 +846,12 @@ class Check:
         if member in self.ruled.steps:
             return cost
         for level, objective in enumerate(self.objectives):
-            figure = self._cost_by(level, member)
+            figure = self._cost_by_objective(level, member)
             if figure is not None:
                 cost[level, self.rate(member) if objective == "success" else None] = figure
         return cost
 
-    def _cost_by(self, level: int, member: int) -> Fraction | None:
+    def _cost_by_objective(self, level: int, member: int) -> Fraction | None:
         """Return the cost of a unit or an item by an objective, ``None`` if the objective does not count it.
 
         By ``success``, it is the exponent of the unit's rate.
@@ -849,7 +867,7 @@ class Check:
         if objective in {"price", "dissimilarity"}:
             return self.prices[member] if objective == "price" else self._dissimilarity(member)
         if objective in self.measures:
-            return self._measured(objective, member)
+            return self._stated_cost(objective, member)
         require(objective in {"inputs", "inputs+ingredients"}, "an objective is unknown")
         inputs = network.inputs[member]
         count = len(inputs)
@@ -877,7 +895,7 @@ class Check:
                 return sign
         return 0
 
-    def _branch(self, choice: Any) -> int:
+    def _read_branch_member(self, choice: Any) -> int:
         """Read the member that a branch is about: a unit, an item or a step."""
         network, kinds = self.network, [*read_object(choice)]
         kind = kinds[0] if kinds in (["item"], ["step"]) else "unit"
@@ -898,12 +916,12 @@ class Check:
 
         The first ``numbers`` entries of each row are the numbers of the weighted condition.
         """
-        for name, value in self.read_named(key, stated, numbers):
+        for name, value in self.read_rows(key, stated, numbers):
             weight = read(value)
             require(self.sign(weight) > 0, f"{key}: a weight is not above zero")
             yield name, weight
 
-    def read_named(self, key: str, stated: Any, numbers: int = 1) -> Iterator[tuple[list[int], Any]]:
+    def read_rows(self, key: str, stated: Any, numbers: int = 1) -> Iterator[tuple[list[int], Any]]:
         """Yield the rows under a key, in order: the first ``numbers`` entries of a row, and its value."""
         rows = [read_list(row) for row in read_list(stated)]
         names = [row[:numbers] for row in rows]
@@ -921,7 +939,7 @@ class Check:
         require(number in self.ruled.limits, "a rule that limits nothing is given a weight")
         return self.ruled.limits[number]
 
-    def _read(self, stated: Any) -> Amount:
+    def _read_amount(self, stated: Any) -> Amount:
         """Read a weight or bound: for each objective a number, for success the exponent of each rate."""
         amount: Amount = {}
         parts = read_list(stated)
@@ -948,7 +966,7 @@ class Check:
             return never
         exponents = {rate: e for rate, e in exponents.items() if e and rate != 1}
         for size in accumulate(map(bit_length, exponents.values())):
-            self._spend_on(4000 + size)  # bounds of logarithms have hundreds of bits themselves
+            self._spend_on_fractions(4000 + size)  # bounds of logarithms have hundreds of bits themselves
         bounds = [[e * bound for bound in self.minus_log(rate)] for rate, e in exponents.items()]
         low, high = sum(map(min, bounds)), sum(map(max, bounds))
         if low > 0 or high < 0:
@@ -984,10 +1002,10 @@ class Check:
             high += sign * Fraction(logarithm) + unit
         return low, high
 
-    def _add(self, total: Amount, amount: Amount) -> None:
+    def _add_to(self, total: Amount, amount: Amount) -> None:
         for key, value in amount.items():
             total[key] = total[key] + value if key in total else value
-            self._spend_on(bit_length(total[key]))
+            self._spend_on_fractions(bit_length(total[key]))
 
     def times(self, amount: Amount, factor: Fraction) -> Amount:
         """Return an amount times a factor."""
@@ -997,10 +1015,10 @@ class Check:
         """Return the sum of amounts."""
         total: Amount = {}
         for amount in amounts:
-            self._add(total, amount)
+            self._add_to(total, amount)
         return total
 
-    def _spend_on(self, bits: int, times: int = 1) -> None:
+    def _spend_on_fractions(self, bits: int, times: int = 1) -> None:
         """Count the steps of operations on fractions of ``bits`` bits, whose time grows with the square."""
         if bits > ALLOWED.sum_bits:
             raise LimitError("its fractions add up to numbers that are too long")
@@ -1017,22 +1035,22 @@ def bit_length(value: Fraction) -> int:
     return value.numerator.bit_length() + value.denominator.bit_length()
 
 
-def negative(amount: Amount) -> Amount:
+def negate(amount: Amount) -> Amount:
     """Return an amount with the opposite sign."""
     return {key: -value for key, value in amount.items()}
 
 
-def _described(network: Network) -> list[Any]:
+def _network_data(network: Network) -> list[Any]:
     """Return all that a claim about a network can depend on; below level 3 with the network of level 3."""
     nodes = [
         (label, sorted(states), sorted(relations), contents)
         for label, states, relations, contents in network.objects
     ]
-    below = [] if network.detailed is None else [_described(network.detailed), network.stands_for]
+    below = [] if network.detailed is None else [_network_data(network.detailed), network.stands_for]
     return [network.level, nodes, network.motions, network.inputs, network.outputs, *below]
 
 
-def _stated(prices: UnitPrices, network: Network) -> list[list[Any]]:
+def _price_data(prices: UnitPrices, network: Network) -> list[list[Any]]:
     """Return the prices by motion, and the prices of single units by their id at level 3."""
     ids = ((network.unit_id(unit), price) for unit, price in prices.units.items())
     single = sorted([unit, str(price)] for unit, price in ids if unit is not None)
@@ -1040,10 +1058,10 @@ def _stated(prices: UnitPrices, network: Network) -> list[list[Any]]:
 
 
 def _digest(value: object) -> str:
-    return hashlib.sha256(canonical(value).encode()).hexdigest()
+    return hashlib.sha256(canonical_json(value).encode()).hexdigest()
 
 
-def canonical(value: object) -> str:
+def canonical_json(value: object) -> str:
     """Return plain values as canonical JSON, for digests."""
     return json.dumps(value, sort_keys=True, separators=(",", ":"), check_circular=False)
 
@@ -1082,7 +1100,7 @@ def read_number(value: Any, allowed: Container[int], what: str) -> int:
     return int(value)
 
 
-def _names(value: Any) -> tuple[str, ...]:
+def _read_names(value: Any) -> tuple[str, ...]:
     """Read a list of different names, in order and without half letters."""
     names = read_list(value)
     require(all(isinstance(name, str) for name in names), "expected names")
@@ -1100,7 +1118,7 @@ def read_numbers(value: Any, below: int, ascending: bool = True) -> list[int]:
     return numbers
 
 
-def _goal(value: Any, network: Network) -> int:
+def _read_goal(value: Any, network: Network) -> int:
     """Read a goal, given as id and text; return its id."""
     goal = read_object(value, ("id", "node"))
     (node,) = read_numbers([goal["id"]], len(network.objects))
@@ -1116,7 +1134,7 @@ def read_rules(value: Any, units: int) -> tuple[Rule, ...]:
     for rule in rules:
         name = rule.get("rule")
         if name == OWN:
-            _own(rule, units)
+            _check_user_rules(rule, units)
             continue
         if name == ALL_STEPS:
             read_object(rule, ("rule", "units"))
@@ -1127,25 +1145,25 @@ def read_rules(value: Any, units: int) -> tuple[Rule, ...]:
         read_object(rule, ("rule", *values))
         for key, kind in values.items():
             require(type(rule[key]) is kind, "a value of a rule is of another kind")
-            _names(rule[key] if kind is list else [rule[key]] if kind is str else [])
+            _read_names(rule[key] if kind is list else [rule[key]] if kind is str else [])
     require(sum(rule["rule"] == OWN for rule in rules) <= 1, "rules of the user's own stand twice")
-    texts = [canonical(rule) for rule in rules]
+    texts = [canonical_json(rule) for rule in rules]
     require(texts == sorted(set(texts)), "expected rules in order, each of them once")
     return tuple(rules)
 
 
-def _own(rule: Rule, units: int) -> None:
+def _check_user_rules(rule: Rule, units: int) -> None:
     """Check the form of claims about user rules; the claims themselves are taken on trust.
 
     The claims consist of the texts of the rules, their digests, and sets of units.
     """
     read_object(rule, ("rule", "claims", "constants", "files", "library", "limits"))
     for key in ("constants", "library"):
-        _names(rule[key])
+        _read_names(rule[key])
     for file in read_list(rule["files"]):
         read_object(file, ("name", "sha256", "text"))
-        _names([file["name"]])
-        _names([file["text"]])
+        _read_names([file["name"]])
+        _read_names([file["text"]])
         require(file["name"].isprintable(), "a file of rules has no printable name")
         sha = hashlib.sha256(file["text"].encode()).hexdigest()
         require(file["sha256"] == sha, "a text of rules does not have its digest")

@@ -26,19 +26,19 @@ from foon_asp.proof.verifier import (
     Amount,
     Check,
     Form,
+    ItemClaims,
     Subject,
-    UsedUp,
     Verified,
     bit_length,
-    negative,
-    read_frame,
+    check_header,
+    negate,
     read_list,
     read_number,
     read_numbers,
     read_object,
     read_pair,
     read_rational,
-    refusing_depth,
+    refuse_deep_nesting,
     require,
     verify,
 )
@@ -90,17 +90,19 @@ def verify_any(certificate: Any, subject: Subject) -> Verified:
     return check(certificate, subject)
 
 
-@refusing_depth()
+@refuse_deep_nesting()
 def verify_plan(certificate: Any, subject: Subject) -> Verified:
     """Check a certificate of a plan against the data it speaks about.
 
     Raises :class:`RefusedError` with the first fault that is found.
     """
-    rules = read_frame(certificate, PLAN, subject)
+    rules = check_header(certificate, PLAN, subject)
     require(subject.network.level == 3, "below level 3 nothing says what is used up: contents decide")
     require(PLAN_RULES.issuperset(rule["rule"] for rule in rules), "a rule that plans are not held against")
     check = PlanCheck(certificate, rules, subject)
-    return check.claim()._replace(used_up=UsedUp(check.stock, check.stays_stated, check.wanted_stated))
+    return check.verify_claim()._replace(
+        used_up=ItemClaims(check.stock, check.stays_stated, check.wanted_stated)
+    )
 
 
 class PlanCheck(Check):
@@ -113,14 +115,18 @@ class PlanCheck(Check):
     def __init__(self, certificate: dict[str, Any], rules: tuple[Rule, ...], subject: Subject) -> None:
         """Read the items of a certificate, and the parts that :class:`Check` reads; then its rounded sums."""
         items = read_object(certificate["items"], ("stock", "stays", "wanted", "amounts"))
-        self.stock = _stock(items["stock"], subject.kitchen)
-        self.stays_stated = _stays_stated(items["stays"], len(subject.network.objects))
-        self.wanted_stated = _copies(items["wanted"], "goals and how many of each are wanted")
+        self.stock = _read_stock(items["stock"], subject.kitchen)
+        self.stays_stated = _read_stays(items["stays"], len(subject.network.objects))
+        self.wanted_stated = _read_copies(items["wanted"], "goals and how many of each are wanted")
         require(all(n > 1 for n in self.wanted_stated.values()), "an amount of a goal is not above 1")
-        self.amounts = _amounts(items["amounts"], subject)
+        self.amounts = _read_amounts(items["amounts"], subject)
         self.endless = frozenset(subject.kitchen) - self.stock.keys()
-        self.flow, self.cap, self.whole = cache(self._flow), cache(self._cap), cache(self._whole)
-        self.lacks = cache(self._lacks)
+        self.flow, self.max_count_by_cost, self.cost_denominator = (
+            cache(self._flow),
+            cache(self._max_count_by_cost),
+            cache(self._cost_denominator),
+        )
+        self.unmet_preconditions = cache(self._unmet_preconditions)
         super().__init__(certificate, rules, subject)
         require(set(self.goals).issuperset(self.wanted_stated), "an amount is wanted of what is no goal")
         self.rounded = self._read_rounded()
@@ -134,7 +140,9 @@ class PlanCheck(Check):
         asks = {o: input_amounts.get(o, 1) for o in self.needs(unit) if o is not None}
         gives = {o: output_amounts.get(o, 1) for o in self.gives(unit) if o is not None}
         self._spend(len(inputs) * (1 + len(network.outputs[unit])))
-        kept = {o: self._kept(unit, o, amount, output_amounts.get(o, 1)) for o, amount in asks.items()}
+        kept = {
+            o: self._remaining_copies(unit, o, amount, output_amounts.get(o, 1)) for o, amount in asks.items()
+        }
         adds = {o: n - (input_amounts.get(o, 1) if o in inputs else 0) for o, n in gives.items()}
         return Flow(
             asks,
@@ -142,7 +150,7 @@ class PlanCheck(Check):
             {o: surplus for o, surplus in adds.items() if surplus > 0},
         )
 
-    def _lacks(self, unit: int) -> frozenset[int]:
+    def _unmet_preconditions(self, unit: int) -> frozenset[int]:
         """Return the preconditions of a unit that initial copies do not satisfy.
 
         With the objective ``kitchen``, initial copies satisfy none: they are members of cuts instead.
@@ -155,11 +163,11 @@ class PlanCheck(Check):
             return True
         return o not in self.endless and copies > self.stock.get(o, 0)
 
-    def wanted(self, goal: int) -> int:
+    def copies_wanted(self, goal: int) -> int:
         """Return how many copies of a goal are wanted."""
         return self.wanted_stated.get(goal, 1)
 
-    def _kept(self, unit: int, o: int, amount: int, made: int) -> int:
+    def _remaining_copies(self, unit: int, o: int, amount: int, made: int) -> int:
         """Return how many of the ``amount`` copies of an input remain after a unit has run.
 
         The certificate may state this. Otherwise, an output with the label of the input decides: the copies
@@ -174,9 +182,9 @@ class PlanCheck(Check):
         outputs = [objects[output] for output in network.outputs[unit]]
         if any(output.label == node.label for output in outputs):
             return min(amount, made) if o in network.outputs[unit] else 0
-        return amount if self._stays(unit, node, outputs) else 0
+        return amount if self._stays_by_rule(unit, node, outputs) else 0
 
-    def _stays(self, unit: int, node: ObjectNode, outputs: Sequence[ObjectNode]) -> bool:
+    def _stays_by_rule(self, unit: int, node: ObjectNode, outputs: Sequence[ObjectNode]) -> bool:
         """Return whether an input stays by the rule for utensils and places; no output has its label."""
         objects, network = self.network.objects, self.network
         if node.label in self.utensils:
@@ -210,7 +218,7 @@ class PlanCheck(Check):
     def _is_initial(self, o: int) -> bool:
         return o in self.endless or self.stock.get(o, 0) > 0
 
-    def _members(self, cut: frozenset[int]) -> Iterator[int]:
+    def _landmark(self, cut: frozenset[int]) -> Iterator[int]:
         """Yield the landmark of a cut: units that add one of its nodes and need none, and its items."""
         network, own = self.network, self.ruled.makers
         self._spend(sum(1 + len(own[o] if o in own else network.producers[o]) for o in cut))
@@ -225,7 +233,7 @@ class PlanCheck(Check):
                 yield from [len(network) + o] * counted
             if o not in self.endless:
                 units += (unit for unit in network.producers[o] if o in self.flow(unit).adds)
-        yield from (u for u in units if u not in self.idle and cut.isdisjoint(self.lacks(u)))
+        yield from (u for u in units if u not in self.idle and cut.isdisjoint(self.unmet_preconditions(u)))
 
     # --- conditions on counts alone
 
@@ -239,7 +247,7 @@ class PlanCheck(Check):
             flow = self.flow(unit)
             if change := flow.adds.get(o, 0) - flow.uses.get(o, 0):
                 changes[unit] = change
-        return changes, self.wanted(o) if o in self.goals else 0
+        return changes, self.copies_wanted(o) if o in self.goals else 0
 
     def _read_rounded(self) -> list[Row]:
         """Read the rounded sums: of balances, limits and earlier rounded sums, with positive weights."""
@@ -250,18 +258,18 @@ class PlanCheck(Check):
             )
             coefficients, least = dict[int, Fraction](), Fraction(0)
             for key, weights in stated.items():
-                for (number,), text in self.read_named(key, weights):
+                for (number,), text in self.read_rows(key, weights):
                     weight = read_rational(text)
                     require(weight > 0, "what is rounded has a weight that is not above zero")
-                    row, wanted = self._of_counts(key, number, rows)
+                    row, wanted = self._condition_on_counts(key, number, rows)
                     least += weight * wanted
                     for unit, n in row.items():
                         coefficients[unit] = coefficients.get(unit, Fraction(0)) + weight * n
-                        self._spend_on(bit_length(coefficients[unit]))
-            rows.append(_round(coefficients, least))
+                        self._spend_on_fractions(bit_length(coefficients[unit]))
+            rows.append(_round_row(coefficients, least))
         return rows
 
-    def _of_counts(self, key: str, number: int, earlier: Sequence[Row]) -> Row:
+    def _condition_on_counts(self, key: str, number: int, earlier: Sequence[Row]) -> Row:
         """Return a condition on counts alone: the coefficients of units, and a lower bound on their sum."""
         if key == "rounded":
             return earlier[read_number(number, range(len(earlier)), "the number of an earlier rounded sum")]
@@ -273,7 +281,7 @@ class PlanCheck(Check):
 
     # --- the plan
 
-    def _tree(self, units: list[Any]) -> tuple[Amount, list[int | Fraction]]:
+    def _execute(self, units: list[Any]) -> tuple[Amount, list[int | Fraction]]:
         """Execute the plan copy by copy; return its cost as an amount and as figures."""
         network = self.network
         copies, items_taken = Counter(self.stock), set[int]()
@@ -292,11 +300,11 @@ class PlanCheck(Check):
             copies.subtract({o: n for o, n in uses.items() if o not in self.endless})
             copies.update({o: n for o, n in adds.items() if o not in self.endless})
         for goal in set(self.goals) - self.endless:
-            wanted = self.wanted(goal)
+            wanted = self.copies_wanted(goal)
             require(copies[goal] >= wanted, "a copy of a goal is not there in the end")
             if goal in self.stock:
                 least[goal] = max(least[goal], wanted + self.stock[goal] - copies[goal])
-        self._keep_counts(Counter(units))
+        self._require_kept_rules_by_counts(Counter(units))
         first = len(network)
         members = [
             *units,
@@ -304,9 +312,9 @@ class PlanCheck(Check):
             *(first + o for o in sorted(least.elements())),
         ]
         total = self.sum(map(self._cost, members))
-        return total, self._figures(units, total)
+        return total, self._written_costs(units, total)
 
-    def _keep_counts(self, counts: Counter[int]) -> None:
+    def _require_kept_rules_by_counts(self, counts: Counter[int]) -> None:
         """Check the counts of a plan against the rules; limits count each execution."""
         ruled, units = self.ruled, frozenset(counts)
         require(not units & ruled.removed, "the plan has a unit that a rule removes")
@@ -318,7 +326,7 @@ class PlanCheck(Check):
 
     # --- the proof
 
-    def _prove(self, proof: Any, least: Amount | None) -> None:
+    def _check_proof(self, proof: Any, least: Amount | None) -> None:
         """Check for each objective that plans as good by earlier objectives cost at least ``least``.
 
         If ``least`` is ``None``, the proof is that no plan exists. All costs are then 0, and bounds have to
@@ -338,33 +346,35 @@ class PlanCheck(Check):
                 node = waiting.pop()
                 self._spend(1 + len(node.min_counts) + len(node.max_counts))
                 if "branch" in read_object(node.proof):
-                    waiting += self._divided(node)
+                    waiting += self._children(node)
                 else:
-                    self._prove_node(node, level)
+                    self._check_leaf(node, level)
 
-    def _divided(self, node: Node) -> Iterator[Node]:
+    def _children(self, node: Node) -> Iterator[Node]:
         """Yield the children of a node: counts of a member up to a number, and above it."""
         proof = read_object(node.proof, ("branch", "most", "up_to", "above"))
-        member = self._branch(proof["branch"])
+        member = self._read_branch_member(proof["branch"])
         max_count = read_number(proof["most"], range(_MAX_COUNT), "the most executions of a branch")
         up_to = min(max_count, node.max_counts.get(member, max_count))
         yield Node(proof["up_to"], node.min_counts, {**node.max_counts, member: up_to})
         above = max(max_count + 1, node.min_counts.get(member, 0))
         yield Node(proof["above"], {**node.min_counts, member: above}, node.max_counts)
 
-    def _prove_node(self, node: Node, level: int) -> None:
+    def _check_leaf(self, node: Node, level: int) -> None:
         """Check that the Farkas combination of a leaf proves the bound for its plans."""
         require(set(node.proof) <= _LEAF, "expected weights of conditions or a branch")
-        conditions = _Conditions(self, level, node.proof)
+        conditions = _FarkasCombination(self, level, node.proof)
         bound = conditions.constant
         for member in sorted({*conditions.executed, *conditions.used, *node.min_counts, *node.max_counts}):
-            cheapest = self._cheapest(member, level, node, conditions)
+            cheapest = self._least_reduced_cost(member, level, node, conditions)
             if cheapest is None:
                 return  # there are no such counts
-            self._add(bound, cheapest)
+            self._add_to(bound, cheapest)
         self._require_enough(bound, level)
 
-    def _cheapest(self, member: int, level: int, node: Node, conditions: "_Conditions") -> Amount | None:
+    def _least_reduced_cost(
+        self, member: int, level: int, node: Node, conditions: "_FarkasCombination"
+    ) -> Amount | None:
         """Return the least reduced cost of a member over all counts that are possible; ``None`` without any.
 
         From 1 on, the cost is linear in the count, so only 0 and the ends of the range from 1 on matter.
@@ -372,9 +382,14 @@ class PlanCheck(Check):
         low, high = node.min_counts.get(member, 0), self._max_count(member, level, node)
         if high is not None and high < low:
             return None
-        per_execution = self.sum([self.cost_by(member, level), conditions.executed.get(member, {})])
         per_execution = self.sum(
-            [per_execution, *(self.times(w, self.kept(member, at)) for at, w in conditions.levels)]
+            [self.amount_by_objective(member, level), conditions.executed.get(member, {})]
+        )
+        per_execution = self.sum(
+            [
+                per_execution,
+                *(self.times(w, self.cost_lower_bound(member, at)) for at, w in conditions.levels),
+            ]
         )
         once = conditions.used.get(member, {})
         ends: list[Amount] = [{}] if low == 0 else []
@@ -385,7 +400,7 @@ class PlanCheck(Check):
                 ends.append(self.sum([self.times(per_execution, Fraction(high or 0)), once]))
         cheapest = ends[0]
         for other in ends[1:]:
-            if self.sign(self.sum([other, negative(cheapest)])) < 0:
+            if self.sign(self.sum([other, negate(cheapest)])) < 0:
                 cheapest = other
         return cheapest
 
@@ -397,49 +412,51 @@ class PlanCheck(Check):
             return min([*bounds, self.stock.get(o, 1)])
         if member in self.idle:
             return 0
-        bounds += self._allowed(member)
+        bounds += self._max_counts_by_limits(member)
         if self.least is not None:
             bounds += (
-                cap for at in range(level + 1) if (cap := self.cap(member, at, at == level)) is not None
+                cap
+                for at in range(level + 1)
+                if (cap := self.max_count_by_cost(member, at, at == level)) is not None
             )
         return min(bounds, default=None)
 
-    def _allowed(self, unit: int) -> Iterator[int]:
+    def _max_counts_by_limits(self, unit: int) -> Iterator[int]:
         """Yield an upper bound on the count of a unit for each limit without negative amounts."""
         for limit in self.ruled.limits.values():
             amount = limit.amounts.get(unit, 0)
             if amount > 0 and min(limit.amounts.values()) >= 0:
                 yield max(0, math.floor(limit.max_sum / amount))
 
-    def _cap(self, unit: int, level: int, less: bool) -> int | None:
+    def _max_count_by_cost(self, unit: int, level: int, less: bool) -> int | None:
         """Return an upper bound on the count of a unit in plans that cost at most the incumbent.
 
         With ``less``, in plans that cost less. ``None`` if an execution costs nothing, so that there is no
         bound.
         """
-        per_execution, max_cost = self.kept(unit, level), self.limit(level)
+        per_execution, max_cost = self.cost_lower_bound(unit, level), self.claimed_cost(level)
         if per_execution == 0:
             return None
         exact = less and self.objectives[level] != "success"
         return math.ceil(max_cost / per_execution) - 1 if exact else math.floor(max_cost / per_execution)
 
-    def cost_by(self, member: int, level: int) -> Amount:
+    def amount_by_objective(self, member: int, level: int) -> Amount:
         """Return the cost of a member by one objective."""
         return {key: value for key, value in self._cost(member).items() if key[0] == level}
 
-    def kept(self, member: int, level: int) -> Fraction:
+    def cost_lower_bound(self, member: int, level: int) -> Fraction:
         """Return a lower bound on the cost of a member by an objective, as one number.
 
         It is the exact cost, except for ``success``: there -log of the rate is rounded down.
         """
         if self.objectives[level] != "success":
-            return self.cost_by(member, level).get((level, None), Fraction(0))
+            return self.amount_by_objective(member, level).get((level, None), Fraction(0))
         if member >= len(self.network):
             return Fraction(0)
         require(self.rate(member) > 0, "a unit that never succeeds is not compared")
         return Fraction(math.floor(LOGARITHM_SCALE * self.minus_log(self.rate(member))[0]), LOGARITHM_SCALE)
 
-    def limit(self, level: int) -> Fraction:
+    def claimed_cost(self, level: int) -> Fraction:
         """Return the claimed least cost of plans by an objective as one number; by ``success`` rounded up."""
         assert self.least is not None
         stated = {rate: value for (at, rate), value in self.least.items() if at == level}
@@ -448,38 +465,38 @@ class PlanCheck(Check):
         bounds = ([e * bound for bound in self.minus_log(rate)] for rate, e in stated.items() if rate)
         return Fraction(math.ceil(LOGARITHM_SCALE * sum(map(max, bounds), Fraction(0))), LOGARITHM_SCALE)
 
-    def cut(self, number: int) -> frozenset[int]:
+    def cut_nodes(self, number: int) -> frozenset[int]:
         """Return a cut by its number."""
         return self.cuts[read_number(number, range(len(self.cuts)), "the number of a cut")]
 
     def holds_goal(self, nodes: frozenset[int]) -> bool:
         """Return whether a cut holds a goal that is consumable or made, or a goal of a rule."""
         wanted = any(
-            goal in nodes and goal not in self.endless and self._is_lacking(goal, self.wanted(goal))
+            goal in nodes and goal not in self.endless and self._is_lacking(goal, self.copies_wanted(goal))
             for goal in self.goals
         )
         return wanted or not nodes.isdisjoint(self.ruled.goals)
 
-    def weight(self, stated: Any, level: int) -> Amount:
+    def read_weight(self, stated: Any, level: int) -> Amount:
         """Read a weight: a number, or by success the exponent of each rate."""
         parts = [*({} if objective == "success" else "0" for objective in self.objectives)] or ["0"]
         parts[level] = stated
-        return {key: value for key, value in self._read(parts).items() if key[0] == level}
+        return {key: value for key, value in self._read_amount(parts).items() if key[0] == level}
 
     def _require_enough(self, bound: Amount, level: int) -> None:
         """Require that a bound, rounded up to the next possible cost, is at least the claimed one."""
         if self.least is None:
             enough = self.sign(bound) > 0
         else:
-            parts = self.whole(level)
+            parts = self.cost_denominator(level)
             if parts is not None:
                 (at,) = bound or [(level, None)]
                 bound = {at: Fraction(math.ceil(bound.get(at, Fraction(0)) * parts), parts)}
             claimed = {key: value for key, value in self.least.items() if key[0] == level}
-            enough = self.sign(self.sum([bound, negative(claimed)])) >= 0
+            enough = self.sign(self.sum([bound, negate(claimed)])) >= 0
         require(enough, "the weights do not add up to enough")
 
-    def _whole(self, level: int) -> int | None:
+    def _cost_denominator(self, level: int) -> int | None:
         """Return the common denominator of unit costs by an objective; ``None`` by success or measures."""
         objective = self.objectives[level]
         if objective == "success" or objective in self.measures:
@@ -491,7 +508,7 @@ class PlanCheck(Check):
         return math.lcm(*(cost.denominator for cost in every))
 
 
-class _Conditions:
+class _FarkasCombination:
     """A Farkas combination: conditions with weights from 0, added up.
 
     ``executed`` maps each member to its coefficient per execution (or per copy taken). ``used`` maps each
@@ -507,39 +524,41 @@ class _Conditions:
         self.used: dict[int, Amount] = {}
         self.levels: list[tuple[int, Amount]] = []
         units = len(check.network)
-        for (cut,), weight in self._read("weights"):
-            self._cross(cut, weight, check.holds_goal(check.cut(cut)))
-        for (cut, stated), weight in self._read("before", 2):
+        for (cut,), weight in self._weighted_rows("weights"):
+            self._add_cut(cut, weight, check.holds_goal(check.cut_nodes(cut)))
+        for (cut, stated), weight in self._weighted_rows("before", 2):
             unit = read_number(stated, range(units), "the id of a unit that a cut is before")
-            self._cross(cut, weight, not check.cut(cut).isdisjoint(check.lacks(unit)))
-            self._bring(self.used, unit, weight, 1)
-            self._demand(weight, -1)
-        for (o, stated), weight in self._read("supply", 2):
-            self._supply(o, read_number(stated, range(units), "the id of a unit that is supplied"), weight)
-        for (o,), weight in self._read("balance"):
-            self._balance(o, weight)
-        for (number,), weight in self._read("limits"):
+            self._add_cut(cut, weight, not check.cut_nodes(cut).isdisjoint(check.unmet_preconditions(unit)))
+            self._add_coefficient(self.used, unit, weight, 1)
+            self._add_to_constant(weight, -1)
+        for (o, stated), weight in self._weighted_rows("supply", 2):
+            self._add_supply(
+                o, read_number(stated, range(units), "the id of a unit that is supplied"), weight
+            )
+        for (o,), weight in self._weighted_rows("balance"):
+            self._add_balance(o, weight)
+        for (number,), weight in self._weighted_rows("limits"):
             limit = check.limit_at(number)
-            self._demand(weight, -limit.max_sum)
+            self._add_to_constant(weight, -limit.max_sum)
             for member, amount in limit.amounts.items():
-                self._bring(self.executed, member, weight, amount)
-        for (number,), weight in self._read("rounded"):
+                self._add_coefficient(self.executed, member, weight, amount)
+        for (number,), weight in self._weighted_rows("rounded"):
             rows = check.rounded
             row, least = rows[read_number(number, range(len(rows)), "the number of a rounded sum")]
-            self._demand(weight, least)
+            self._add_to_constant(weight, least)
             for unit, coefficient in row.items():
-                self._bring(self.executed, unit, weight, -coefficient)
-        for (number,), weight in self._read("levels"):
+                self._add_coefficient(self.executed, unit, weight, -coefficient)
+        for (number,), weight in self._weighted_rows("levels"):
             require(0 <= number < level, "an objective that is not before this one is given a weight")
-            self._demand(weight, -check.limit(number))
+            self._add_to_constant(weight, -check.claimed_cost(number))
             self.levels.append((number, weight))
 
-    def _read(self, key: str, numbers: int = 1) -> Iterator[tuple[list[int], Amount]]:
+    def _weighted_rows(self, key: str, numbers: int = 1) -> Iterator[tuple[list[int], Amount]]:
         """Yield the weighted conditions under a key, each named by a tuple of ``numbers`` numbers."""
-        read = partial(self.check.weight, level=self.level)
+        read = partial(self.check.read_weight, level=self.level)
         return self.check.read_weights(key, self.proof.get(key, []), read, numbers)
 
-    def _cross(self, cut: int, weight: Amount, holds: bool) -> None:
+    def _add_cut(self, cut: int, weight: Amount, holds: bool) -> None:
         """Add the condition of a cut: a member is used, or a copy of an item in it is taken.
 
         Refuse the cut unless it ``holds`` a goal, or a precondition of the unit that it is before.
@@ -547,18 +566,19 @@ class _Conditions:
         check = self.check
         require(holds, f"cut {cut} holds neither a goal nor what the unit asks for")
         check.met.add(cut)
-        self._demand(weight, 1)
+        self._add_to_constant(weight, 1)
         for member in check.members[cut]:
-            self._bring(self.used if member < len(check.network) else self.executed, member, weight, -1)
+            coefficients = self.used if member < len(check.network) else self.executed
+            self._add_coefficient(coefficients, member, weight, -1)
 
-    def _balance(self, o: int, weight: Amount) -> None:
+    def _add_balance(self, o: int, weight: Amount) -> None:
         """Add the balance of a node: no more copies are consumed than exist, and the wanted ones are left."""
         changes, wanted = self.check.balance(o)
-        self._demand(weight, wanted - self._initial(o, weight))
+        self._add_to_constant(weight, wanted - self._initial_copies(o, weight))
         for unit, change in changes.items():
-            self._bring(self.executed, unit, weight, -change)
+            self._add_coefficient(self.executed, unit, weight, -change)
 
-    def _supply(self, o: int, supplied: int, weight: Amount) -> None:
+    def _add_supply(self, o: int, supplied: int, weight: Amount) -> None:
         """Add the supply of a unit: the copies of a node that it needs exist before it is executed.
 
         These copies are initial, or other units add them, since the unit adds none before its first
@@ -567,13 +587,13 @@ class _Conditions:
         check, network = self.check, self.check.network
         read_number(o, range(len(network.objects)), "the id of a node in a supply")
         require(o not in check.endless, "what never runs out needs no supply")
-        self._demand(weight, -self._initial(o, weight))
-        self._bring(self.used, supplied, weight, check.flow(supplied).asks.get(o, 0))
+        self._add_to_constant(weight, -self._initial_copies(o, weight))
+        self._add_coefficient(self.used, supplied, weight, check.flow(supplied).asks.get(o, 0))
         for unit in network.producers[o]:
             if unit != supplied and (added := check.flow(unit).adds.get(o, 0)):
-                self._bring(self.executed, unit, weight, -added)
+                self._add_coefficient(self.executed, unit, weight, -added)
 
-    def _initial(self, o: int, weight: Amount) -> int:
+    def _initial_copies(self, o: int, weight: Amount) -> int:
         """Return the initial copies of a node, as a constant.
 
         With the objective ``kitchen``, taking them has a cost: then add the item as a member, and return 0.
@@ -581,23 +601,25 @@ class _Conditions:
         check = self.check
         initial = check.stock.get(o, 0)
         if "kitchen" in check.objectives and initial:
-            self._bring(self.executed, len(check.network) + o, weight, -1)
+            self._add_coefficient(self.executed, len(check.network) + o, weight, -1)
             return 0
         return initial
 
-    def _demand(self, weight: Amount, factor: int | Fraction) -> None:
+    def _add_to_constant(self, weight: Amount, factor: int | Fraction) -> None:
         """Add ``factor`` times a weight to the right-hand side."""
-        self.constant = self._added(self.constant, weight, factor)
+        self.constant = self._plus_multiple(self.constant, weight, factor)
 
-    def _bring(self, to: dict[int, Amount], member: int, weight: Amount, factor: int | Fraction) -> None:
+    def _add_coefficient(
+        self, to: dict[int, Amount], member: int, weight: Amount, factor: int | Fraction
+    ) -> None:
         """Add ``factor`` times a weight to the coefficient of a member."""
-        to[member] = self._added(to.get(member, {}), weight, factor)
+        to[member] = self._plus_multiple(to.get(member, {}), weight, factor)
 
-    def _added(self, amount: Amount, weight: Amount, factor: int | Fraction) -> Amount:
+    def _plus_multiple(self, amount: Amount, weight: Amount, factor: int | Fraction) -> Amount:
         return self.check.sum([amount, self.check.times(weight, Fraction(factor))])
 
 
-def _round(coefficients: Mapping[int, Fraction], least: Fraction) -> Row:
+def _round_row(coefficients: Mapping[int, Fraction], least: Fraction) -> Row:
     """Return a condition rounded for counts that are integers from 0 (mixed-integer rounding).
 
     It is the new coefficient of each unit, and the new lower bound on the sum, which was ``least``.
@@ -612,7 +634,7 @@ def _round(coefficients: Mapping[int, Fraction], least: Fraction) -> Row:
     return {unit: rounded(n) for unit, n in coefficients.items()}, math.ceil(least)
 
 
-def _copies(value: Any, what: str) -> dict[int, int]:
+def _read_copies(value: Any, what: str) -> dict[int, int]:
     """Read numbers of copies by id."""
     pairs = [read_pair(pair, what) for pair in read_list(value)]
     for number in chain.from_iterable(pairs):
@@ -622,21 +644,21 @@ def _copies(value: Any, what: str) -> dict[int, int]:
     return dict(pairs)
 
 
-def _stock(value: Any, kitchen: Collection[int]) -> dict[int, int]:
+def _read_stock(value: Any, kitchen: Collection[int]) -> dict[int, int]:
     """Read the copies in stock of kitchen items, by id."""
-    stock = _copies(value, "items and their copies in stock")
+    stock = _read_copies(value, "items and their copies in stock")
     require(all(o in kitchen for o in stock), "expected kitchen items in stock")
     return stock
 
 
-def _amounts(value: Any, subject: Subject) -> dict[int, tuple[dict[int, int], dict[int, int]]]:
+def _read_amounts(value: Any, subject: Subject) -> dict[int, tuple[dict[int, int], dict[int, int]]]:
     """Read the amounts of inputs and outputs by unit id; refuse amounts that differ from the data."""
     what = "units and the amounts of their inputs and outputs"
     stated: dict[int, tuple[dict[int, int], dict[int, int]]] = {}
     for row in read_list(value):
         columns = read_list(row)
         require(len(columns) == 3 and type(columns[0]) is int, f"expected {what}")
-        stated[columns[0]] = _copies(columns[1], what), _copies(columns[2], what)
+        stated[columns[0]] = _read_copies(columns[1], what), _read_copies(columns[2], what)
     network = subject.network
     of_data: dict[int, tuple[dict[int, int], dict[int, int]]] = {}
     for unit, sides in subject.amounts.items():
@@ -651,7 +673,7 @@ def _amounts(value: Any, subject: Subject) -> dict[int, tuple[dict[int, int], di
     return stated
 
 
-def _stays_stated(value: Any, nodes: int) -> dict[str | int, bool]:
+def _read_stays(value: Any, nodes: int) -> dict[str | int, bool]:
     """Read which labels and nodes stay when they are used."""
     what = "labels and nodes, and whether they stay"
     pairs = [read_pair(pair, what) for pair in read_list(value)]

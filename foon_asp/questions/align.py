@@ -189,7 +189,7 @@ def _one_edit_away(node: ObjectNode, network: Network, table: StandInTable, pric
     """Return the id of the cheapest node one edit away from a node; ``None`` if none is, or it is known."""
     if network.object_id(node) is not None:
         return None
-    priced = sorted((price, o) for o, price in prices.of_node(node).items())
+    priced = sorted((price, o) for o, price in prices.servers_of_node(node).items())
     return next((o for _, o in priced if len(table.differences(network.objects[o], node) or ()) == 1), None)
 
 

@@ -185,7 +185,9 @@ def repair(
             write_whole(Path(certificate), proof.text().encode())
     shown, units = needed.shown, outcome.units
     if units is None:
-        lacking = nodes_of(shown.network, needed.lacking()) if outcome.status is Status.INFEASIBLE else ()
+        lacking = (
+            nodes_of(shown.network, needed.unmakeable_nodes()) if outcome.status is Status.INFEASIBLE else ()
+        )
     else:
         lacking = ()
     positions = {unit: number for number, unit in enumerate(units or (), 1)}
@@ -196,7 +198,7 @@ def repair(
         proof=outcome.proof,
         costs=None if units is None else shown.costs(units),
         stand_ins=() if units is None else stand_ins_in(shown, units),
-        added=tuple(positions[unit] for unit in needed.added(units or ())),
+        added=tuple(positions[unit] for unit in needed.added_units(units or ())),
         order=tuple(positions[unit] for unit in needed.steps) if positions else (),
         lacking=lacking,
         units=None if units is None else steps_of(shown, units),

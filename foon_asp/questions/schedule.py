@@ -17,7 +17,7 @@ from foon_asp.pictures.gantt import Gantt, time_text
 from foon_asp.planning.schedule_task import schedule_task
 from foon_asp.planning.scheduling import BestSchedule, shortest, timed_steps
 from foon_asp.problem import Number, Problem
-from foon_asp.proof.replay import Shortage, replay_for, replayable, waits
+from foon_asp.proof.replay import Shortage, predecessors, replay_for, replayable_problem
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.proof.timetable import Means, ToolName, timetable_fault
 from foon_asp.proof.timetable import TimedStep as Timed
@@ -308,7 +308,7 @@ def schedule(
     at_least(agents, 1, "agents")
     problem = read_as(problem, items)
     tree = _in_order(posed_tree(problem, plan))
-    replayed = replayable(tree.problem, tree)
+    replayed = replayable_problem(tree.problem, tree)
     replay = replay_for(replayed, tree)
     if replay.shortage is not None:
         raise NoTreeError(_shortage_text(tree, replay.shortage))
@@ -318,7 +318,9 @@ def schedule(
     timed = () if solution.starts is None else tuple(timed_steps(task, solution.starts))
     if solution.starts is not None and (fault := timetable_fault(replayed, tree.units, timed, means)):
         raise BugError(f"the schedule does not hold: {fault}")
-    after = [tuple(earlier + 1 for earlier in sorted(earlier_steps)) for earlier_steps in waits(replay)]
+    after = [
+        tuple(earlier + 1 for earlier in sorted(earlier_steps)) for earlier_steps in predecessors(replay)
+    ]
     return Schedule(
         **head_of(tree.problem),
         status=_status(solution),

@@ -34,7 +34,9 @@ def stand_ins_of(problem: Problem, tree: Collection[int]) -> list[Used]:
     for unit in units:
         (serving,), (served,) = network.inputs[unit], network.outputs[unit]
         available = _made(problem, [other for other in tree if other != unit])
-        others = ((price, o) for o, price in prices.of(served).items() if o in available and o != serving)
+        others = (
+            (price, o) for o, price in prices.servers_of(served).items() if o in available and o != serving
+        )
         cheapest = min(others, default=None)
         next_best = None if cheapest is None else (cheapest[1], Fraction(cheapest[0], prices.scale))
         used.append(Used(unit, serving, served, next_best))

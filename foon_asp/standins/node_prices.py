@@ -21,40 +21,45 @@ class NodePrices:
         self._edits = {edit: self._scaled(price) for edit, price in table.edits.items()}
         self._words = {word: self._scaled(price) for word, price in table.words.items()}
         self._pairs = {pair: self._scaled(price) for pair, price in table.pairs.items()}
-        self._labels: defaultdict[str, list[str]] = defaultdict(list)  # that serve a label
-        self._nodes: defaultdict[ObjectNode, list[int]] = defaultdict(list)  # that serve a node
+        self._labels_serving: defaultdict[str, list[str]] = defaultdict(list)  # that serve a label
+        self._nodes_serving: defaultdict[ObjectNode, list[int]] = defaultdict(list)  # that serve a node
         for serving, served in table.pairs:
             if isinstance(served, str) and isinstance(serving, str):
-                self._labels[served].append(serving)
+                self._labels_serving[served].append(serving)
             elif isinstance(served, ObjectNode) and isinstance(serving, ObjectNode):
                 number = network.object_id(serving)
                 if number is not None:
-                    self._nodes[served].append(number)
-        self._spelled: defaultdict[str, list[str]] = defaultdict(list)  # labels that are spelled alike
+                    self._nodes_serving[served].append(number)
+        self._labels_by_spelling: defaultdict[str, list[str]] = defaultdict(
+            list
+        )  # labels that are spelled alike
         for label in network.by_label:
-            self._spelled[spelling_key(label)].append(label)
-        self._of: dict[int, dict[int, int]] = {}
+            self._labels_by_spelling[spelling_key(label)].append(label)
+        self._servers: dict[int, dict[int, int]] = {}
 
     def _scaled(self, price: Fraction | None) -> int | None:
         return None if price is None else int(price * self.scale)
 
-    def of(self, served: int) -> dict[int, int]:
+    def servers_of(self, served: int) -> dict[int, int]:
         """Return the nodes that may stand in for a served node, by id, with their prices."""
-        servers = self._of.get(served)
+        servers = self._servers.get(served)
         if servers is None:
-            servers = self._of[served] = self.of_node(self._objects[served])
+            servers = self._servers[served] = self.servers_of_node(self._objects[served])
         return servers
 
-    def of_node(self, node: ObjectNode) -> dict[int, int]:
+    def servers_of_node(self, node: ObjectNode) -> dict[int, int]:
         """Return the nodes that may stand in for any node, by id, with prices."""
         objects, by_label = self._objects, self._by_label
-        labels = (*self._spelled.get(spelling_key(node.label), ()), *self._labels.get(node.label, ()))
+        labels = (
+            *self._labels_by_spelling.get(spelling_key(node.label), ()),
+            *self._labels_serving.get(node.label, ()),
+        )
         nodes = dict.fromkeys(o for label in labels for o in by_label.get(label, ()))
-        nodes |= dict.fromkeys(self._nodes.get(node, ()))
-        prices = ((o, self.between(objects[o], node)) for o in nodes if objects[o] != node)
+        nodes |= dict.fromkeys(self._nodes_serving.get(node, ()))
+        prices = ((o, self.price(objects[o], node)) for o in nodes if objects[o] != node)
         return {o: price for o, price in prices if price is not None}
 
-    def between(self, serving: ObjectNode, served: ObjectNode) -> int | None:
+    def price(self, serving: ObjectNode, served: ObjectNode) -> int | None:
         """Return the price of using one node in place of another, ``None`` where it never stands in."""
         if self._pairs and (serving, served) in self._pairs:
             return self._pairs[serving, served]
@@ -68,7 +73,7 @@ class NodePrices:
                 return None
             total += price
         if contents != served_contents:
-            price = self._of_contents(serving.ingredients, served.ingredients)
+            price = self._contents_price(serving.ingredients, served.ingredients)
             if price is None:
                 return None
             total += price
@@ -78,22 +83,22 @@ class NodePrices:
                 (Edit.MORE_STATE, states - served_states),
             ):
                 for name in names:
-                    price = self._word(edit, name)
+                    price = self._name_price(edit, name)
                     if price is None:
                         return None
                     total += price
         if relations != served_relations:
-            price = self._of_relations(relations, served_relations)
+            price = self._relations_price(relations, served_relations)
             if price is None:
                 return None
             total += price
         return total
 
-    def _word(self, edit: Edit, name: str) -> int | None:
+    def _name_price(self, edit: Edit, name: str) -> int | None:
         price = self._words.get((edit, name), -1)
         return self._edits[edit] if price == -1 else price
 
-    def _of_contents(self, ours: tuple[str, ...], theirs: tuple[str, ...]) -> int | None:
+    def _contents_price(self, ours: tuple[str, ...], theirs: tuple[str, ...]) -> int | None:
         """Return the price of the differences between two contents; ``None`` where the table forbids one.
 
         The differences are in ingredients, or else in the word that relates the contents.
@@ -119,13 +124,13 @@ class NodePrices:
             (Edit.FEWER_INGREDIENT, lacking - common),
         ):
             for name, count in items.items():
-                price = self._word(edit, name)
+                price = self._name_price(edit, name)
                 if price is None:
                     return None
                 total += price * count
         return total
 
-    def _of_relations(self, ours: frozenset[Relation], theirs: frozenset[Relation]) -> int | None:
+    def _relations_price(self, ours: frozenset[Relation], theirs: frozenset[Relation]) -> int | None:
         """Return the price of the differences between two sets of relations.
 
         ``None`` where the table forbids one of them.

@@ -79,19 +79,19 @@ class Repair:
         first = len(network.objects)
         marked = replace(
             problem,
-            network=_marked(network, steps),
+            network=_with_markers(network, steps),
             goals=(*problem.goals, *range(first, first + len(steps))),
         )
         posed = with_stand_ins(marked, table)
-        shown = replace(posed, network=_unmarked(posed.network, network), goals=problem.goals)
+        shown = replace(posed, network=_without_markers(posed.network, network), goals=problem.goals)
         return cls(posed, shown, steps)
 
-    def added(self, units: Sequence[int]) -> list[int]:
+    def added_units(self, units: Sequence[int]) -> list[int]:
         """Return the units of a repaired tree that are neither its own steps nor stand-ins, in order."""
         motions, steps = self.posed.network.motions, frozenset(self.steps)
         return [unit for unit in units if unit not in steps and motions[unit] != STAND_IN]
 
-    def lacking(self) -> list[int]:
+    def unmakeable_nodes(self) -> list[int]:
         """Return the nodes that steps or goals need and that cannot be made, even with stand-ins."""
         available = reach(self.posed).available
         made = {o for unit in self.steps for o in self.shown.gives[unit]}
@@ -100,7 +100,7 @@ class Repair:
         return [o for o in lacking if o not in made] or lacking
 
 
-def _marked(network: Network, steps: Sequence[int]) -> Network:
+def _with_markers(network: Network, steps: Sequence[int]) -> Network:
     """Return a network in which each of the ``steps`` has one more output, which only this step makes."""
     first = len(network.objects)
     markers = {unit: o for o, unit in enumerate(steps, first)}
@@ -123,7 +123,7 @@ def _marked(network: Network, steps: Sequence[int]) -> Network:
     )
 
 
-def _unmarked(extended: Network, plain: Network) -> Network:
+def _without_markers(extended: Network, plain: Network) -> Network:
     """Return an extended network without the nodes that mark steps; its stand-ins stay."""
     stand_ins = {key: unit for key, unit in extended._unit_ids.items() if unit >= len(plain)}
     return replace(

@@ -30,18 +30,18 @@ def read_stand_ins(
     table = StandInTable.usual()
     for file in similar:
         pairs = (row for row in STAND_INS.rows(file) if isinstance(row.name, tuple))
-        table = _changed(table, [row for row in pairs if not _has_utensil(row.name, utensils)])
+        table = _update_table(table, [row for row in pairs if not _names_utensil(row.name, utensils)])
     for file in files:
-        table = _changed(table, STAND_INS.rows(file))
+        table = _update_table(table, STAND_INS.rows(file))
     return table
 
 
-def _has_utensil(entry: Entry, utensils: Collection[str]) -> bool:
+def _names_utensil(entry: Entry, utensils: Collection[str]) -> bool:
     labels = {name.label if isinstance(name, ObjectNode) else name for name in entry}
     return not labels.isdisjoint(utensils)
 
 
-def _changed(table: StandInTable, rows: Sequence[Row[Entry, Fraction | None]]) -> StandInTable:
+def _update_table(table: StandInTable, rows: Sequence[Row[Entry, Fraction | None]]) -> StandInTable:
     """Return a table with the prices of rows."""
     edits, words, pairs = dict(table.edits), dict(table.words), dict(table.pairs)
     for name, price, _ in rows:
@@ -54,12 +54,12 @@ def _changed(table: StandInTable, rows: Sequence[Row[Entry, Fraction | None]]) -
     return StandInTable(edits, words, pairs)
 
 
-def _row(name: str, value: str, column: int) -> tuple[Entry, Fraction | None]:
+def _read_row(name: str, value: str, column: int) -> tuple[Entry, Fraction | None]:
     """Return the edit or pair of a row, and its price; ``None`` for the word ``never``."""
     served, tab, written = value.rpartition("\t")
-    price = _price(written.strip(), column + len(value) - len(written))
+    price = _read_price(written.strip(), column + len(value) - len(written))
     if not tab:
-        return _edit(name), price
+        return _read_edit(name), price
     serving_name, served_name = stated_name(name), stated_name(served)
     if isinstance(serving_name, str) is not isinstance(served_name, str):
         raise LineError(column, "a label and an object node", ("two labels", "two object nodes"))
@@ -68,7 +68,7 @@ def _row(name: str, value: str, column: int) -> tuple[Entry, Fraction | None]:
     return (serving_name, served_name), price
 
 
-def _edit(name: str) -> Edit | tuple[Edit, str]:
+def _read_edit(name: str) -> Edit | tuple[Edit, str]:
     """Return the edit that the name of a row means, with its state or ingredient if the name has one."""
     kind, colon, word = (text.strip() for text in name.partition(":"))
     if kind not in (_NAMED if colon else _KINDS) or (colon and not word):
@@ -77,7 +77,7 @@ def _edit(name: str) -> Edit | tuple[Edit, str]:
     return (Edit(kind), word) if colon else Edit(kind)
 
 
-def _price(written: str, column: int) -> Fraction | None:
+def _read_price(written: str, column: int) -> Fraction | None:
     """Return a price, ``None`` for ``never``; raises :class:`LineError` for other texts."""
     if written == _NEVER:
         return None
@@ -88,6 +88,6 @@ def _price(written: str, column: int) -> Fraction | None:
 
 
 STAND_INS: Table[Entry, Fraction | None] = Table(
-    "stand-in", NameKind.OBJECT, "a number or never", _row, "a second price for {name!r}"
+    "stand-in", NameKind.OBJECT, "a number or never", _read_row, "a second price for {name!r}"
 )
 """``USED⇥FOR⇥2`` of two labels or nodes; ``word⇥1`` of an edit, ``more state: dirty⇥never`` of a state."""

@@ -22,7 +22,7 @@ from foon_asp.planning.schedule_task import ScheduleTask, Use, schedule_task
 from foon_asp.planning.scheduling import shortest, timed_steps
 from foon_asp.problem import ContainerRule, UsedUp
 from foon_asp.processes.worker import Worker
-from foon_asp.proof.replay import replay_for, replayable
+from foon_asp.proof.replay import replay_for, replayable_problem
 from foon_asp.proof.timetable import Means, TimedStep, Tool, timetable_fault
 from foon_asp.text.clip_times import median_clips
 from foon_asp.text.diagnostics import InputError
@@ -384,7 +384,7 @@ def test_schedules_of_random_plans_hold(seeds: range) -> None:
         choose = random.Random(seed)
         problem = random_problem(seed)
         if choose.random() < 0.3:
-            problem = replayable(replace(problem, items=None), plan_of(problem))
+            problem = replayable_problem(replace(problem, items=None), plan_of(problem))
         plan = random_plan(problem, choose)
         lengths = {motion: Duration(choose.randint(1, 4), choose.random() < 0.3) for motion in "abcd"}
         tools: dict[Any, int | None] = {"bowl": choose.choice((1, 2, None)), "knife": 2}

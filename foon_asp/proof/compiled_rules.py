@@ -18,7 +18,7 @@ class Limit(NamedTuple):
         return self.max_sum - sum(self.amounts.get(member, 0) for member in used)
 
 
-class Ruled:
+class CompiledRules:
     """Constraints as nodes, steps and limits, numbered after the nodes and the units of a network.
 
     ``gives`` and ``needs`` map a unit to the additional nodes that it makes and needs. A step makes its node
@@ -45,25 +45,25 @@ class Ruled:
         self.limits: dict[int, Limit] = {}
         self._first_node, self._first_step = first_node, first_step
         for index, meaning in enumerate(meanings):
-            for alternatives in meaning.wanted:
-                goal = self._node()
+            for alternatives in meaning.requirements:
+                goal = self._add_node()
                 self.goals.append(goal)
                 for sets in alternatives:
-                    nodes = [goal] if len(sets) == 1 else [self._node() for _ in sets]
+                    nodes = [goal] if len(sets) == 1 else [self._add_node() for _ in sets]
                     for node, units in zip(nodes, sets, strict=True):
-                        self._make(node, units)
+                        self._add_achievers(node, units)
                     if nodes != [goal]:
-                        self._step(nodes, goal)
+                        self._add_step(nodes, goal)
             if meaning.max_sum is not None:
                 amounts: dict[int, Fraction] = {}
-                for units, amount in meaning.things:
-                    thing = self._thing(units)
-                    amounts[thing] = amounts[thing] + amount if thing in amounts else amount
+                for units, amount in meaning.counted_sets:
+                    member = self._counting_member(units)
+                    amounts[member] = amounts[member] + amount if member in amounts else amount
                 self.limits[index] = Limit(amounts, meaning.max_sum)
         several = (limit for meaning in meanings for limit in meaning.limits)
         self.limits.update((len(meanings) + number, Limit(*limit)) for number, limit in enumerate(several))
 
-    def bars(self, used: Units, without: Units) -> dict[int, Units]:
+    def barred_units(self, used: Units, without: Units) -> dict[int, Units]:
         """Return the barred units of each constraint, by its number.
 
         No tree with all used units and none of ``without`` has a barred unit.
@@ -72,18 +72,18 @@ class Ruled:
 
     def fault(self, units: Units, others: Units) -> str | None:
         """Return why a tree with all ``units`` and none of ``others`` breaks constraints, else ``None``."""
-        members = self.used(units)
+        members = self.units_and_steps(units)
         if removed := self.removed & units:
             return f"has unit {min(removed)}, which a rule removes"
         if not all(any(m in members for m in self.makers[goal]) for goal in self.goals):
             return "lacks what a rule asks for"
         if any(limit.remaining(members) < 0 for limit in self.limits.values()):
             return "exceeds what a rule limits"
-        if self.never or any(units & barred for barred in self.bars(units, others).values()):
+        if self.never or any(units & barred for barred in self.barred_units(units, others).values()):
             return "breaks a rule"
         return None
 
-    def used(self, units: Units) -> Units:
+    def units_and_steps(self, units: Units) -> Units:
         """Return a tree's units together with the steps that it uses."""
         made = {node for unit in units for node in self.gives.get(unit, ())}
         required = {node for unit in units for node in self.needs.get(unit, ())}.union(self.goals)
@@ -92,25 +92,25 @@ class Ruled:
         )
         return units.union(steps)
 
-    def _node(self) -> int:
+    def _add_node(self) -> int:
         """Add a node, and return its number."""
         node = self._first_node + len(self.makers)
         self.makers[node] = []
         return node
 
-    def _step(self, needs: Sequence[int], node: int) -> int:
+    def _add_step(self, needs: Sequence[int], node: int) -> int:
         """Add a step that makes a node from others, and return its number."""
         step = self._first_step + len(self.steps)
         self.steps[step] = needs, node
         self.makers[node].append(step)
         return step
 
-    def _make(self, node: int, units: Units) -> None:
+    def _add_achievers(self, node: int, units: Units) -> None:
         for unit in sorted(units):
             self.gives.setdefault(unit, []).append(node)
             self.makers[node].append(unit)
 
-    def _thing(self, units: Units) -> int:
+    def _counting_member(self, units: Units) -> int:
         """Return the member that counts once for a set of units.
 
         It is the only unit of the set, or a new step that all units of the set need.
@@ -118,7 +118,7 @@ class Ruled:
         if len(units) == 1:
             (only,) = units
             return only
-        node = self._node()
+        node = self._add_node()
         for unit in units:
             self.needs.setdefault(unit, []).append(node)
-        return self._step((), node)
+        return self._add_step((), node)
