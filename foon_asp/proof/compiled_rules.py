@@ -1,4 +1,7 @@
-"""Compilation of constraints into a network: additional nodes, steps and limits."""
+"""Compilation of constraints into a network: additional nodes, steps and limits.
+
+A *step* is like a unit without cost that only constraints know. docs/dev/certificates.md explains its use.
+"""
 
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
@@ -8,32 +11,36 @@ from foon_asp.proof.rule_meaning import Barred, Meaning, Units
 
 
 class Limit(NamedTuple):
-    """A limit on a sum: the amount of each unit or step, and the greatest sum."""
+    """A limit on a sum: the amounts of units and steps, by number, and the greatest sum."""
 
     amounts: Mapping[int, Fraction]
     max_sum: Fraction
 
     def remaining(self, used: Iterable[int]) -> Fraction:
-        """Return the greatest sum less the amounts of used units and steps."""
+        """Return the greatest sum less the amounts of the units and steps in ``used``."""
         return self.max_sum - sum(self.amounts.get(member, 0) for member in used)
 
 
 class CompiledRules:
-    """Constraints as nodes, steps and limits, numbered after the nodes and the units of a network.
+    """Constraints, compiled into nodes, steps and limits of a network.
 
-    ``gives`` and ``needs`` map a unit to the additional nodes that it makes and needs. A step makes its node
-    once all nodes that it needs are available, and costs nothing; ``steps`` maps it to its preconditions and
-    its node. A tree uses a step if one of its units needs the step's node, or if this node is a goal.
-    ``makers`` maps each additional node to the units and steps that make it.
+    New nodes are numbered after those of the network. A step makes one new node once all its preconditions
+    are available, and costs nothing. A tree uses a step if one of its units needs the step's node, or if this
+    node is a goal. A tree satisfies the constraints if all of these hold:
 
-    A tree that keeps to the constraints has no unit of ``removed``, reaches the nodes ``goals``, and stays
-    within each of the ``limits``. If ``never`` is not empty, there is no such tree. ``barred`` has functions
-    that find further units that no tree has (:class:`Meaning`). A limit has the number of its constraint;
-    limits of constraints that may have several are numbered after all constraints.
+    ``removed``: it has none of these units.
+    ``goals``: it makes each of these new nodes.
+    ``limits``: it keeps to each limit. A limit has the number of its constraint. Limits of constraints that
+    may have several are numbered after all constraints.
+    ``never``: this set is empty. It has the numbers of constraints that no tree satisfies.
+    ``barred``: it has no unit that these functions return, by number of the constraint (:class:`Meaning`).
+
+    ``gives`` and ``needs`` map a unit to the new nodes that it makes and needs. ``steps`` maps a step to its
+    preconditions and its node. ``makers`` maps a new node to the units and steps that make it.
     """
 
     def __init__(self, meanings: Sequence[Meaning], first_node: int, first_step: int) -> None:
-        """Compile the meanings of constraints into new nodes, steps and limits."""
+        """Compile meanings of constraints; new nodes and steps are numbered from the given numbers on."""
         self.removed: Units = frozenset().union(*(meaning.removed for meaning in meanings))
         self.never = {index for index, meaning in enumerate(meanings) if meaning.never}
         self.barred: dict[int, Barred] = {p: m.barred for p, m in enumerate(meanings) if m.barred}
@@ -64,14 +71,17 @@ class CompiledRules:
         self.limits.update((len(meanings) + number, Limit(*limit)) for number, limit in enumerate(several))
 
     def barred_units(self, used: Units, without: Units) -> dict[int, Units]:
-        """Return the barred units of each constraint, by its number.
+        """Return the units that each constraint bars, by number of the constraint.
 
-        No tree with all used units and none of ``without`` has a barred unit.
+        No tree with all units of ``used`` and none of ``without`` has a barred unit.
         """
         return {number: barred(used, without) for number, barred in self.barred.items()}
 
     def fault(self, units: Units, others: Units) -> str | None:
-        """Return why a tree with all ``units`` and none of ``others`` breaks constraints, else ``None``."""
+        """Return in words why a tree of ``units`` breaks constraints; ``None`` if it satisfies them.
+
+        ``others`` are the units that the tree does not have.
+        """
         members = self.units_and_steps(units)
         if removed := self.removed & units:
             return f"has unit {min(removed)}, which a rule removes"
@@ -93,27 +103,28 @@ class CompiledRules:
         return units.union(steps)
 
     def _add_node(self) -> int:
-        """Add a node, and return its number."""
+        """Add a node that nothing makes yet, and return its number."""
         node = self._first_node + len(self.makers)
         self.makers[node] = []
         return node
 
     def _add_step(self, needs: Sequence[int], node: int) -> int:
-        """Add a step that makes a node from others, and return its number."""
+        """Add a step that makes ``node`` from the nodes ``needs``, and return its number."""
         step = self._first_step + len(self.steps)
         self.steps[step] = needs, node
         self.makers[node].append(step)
         return step
 
     def _add_achievers(self, node: int, units: Units) -> None:
+        """Add a node to what each of the units makes."""
         for unit in sorted(units):
             self.gives.setdefault(unit, []).append(node)
             self.makers[node].append(unit)
 
     def _counting_member(self, units: Units) -> int:
-        """Return the member that counts once for a set of units.
+        """Return the number of a unit or step that a tree has once if it has a unit of the set.
 
-        It is the only unit of the set, or a new step that all units of the set need.
+        It is the only unit of the set. Otherwise it is a new step, whose node all units of the set need.
         """
         if len(units) == 1:
             (only,) = units

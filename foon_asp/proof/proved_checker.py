@@ -1,4 +1,4 @@
-"""The checker of certificates that is proved in Coq: a separate program, built from ``verified/``.
+"""Calls the checker of certificates that is proved in Coq: a separate program, built from ``verified/``.
 
 It shares no code with ``verify``. From the same data, it computes landmarks, costs and the meanings of
 constraints by definitions of its own. docs/proofs.md states the theorem that is proved about these
@@ -22,7 +22,10 @@ _BUILT = Path(__file__).resolve().parents[2] / "verified" / "build" / _PROGRAM
 
 
 def find_checker() -> Path | None:
-    """Return the path of the proved checker, from a build in a checkout or on PATH; ``None`` without one."""
+    """Return the path of the proved checker: the build of this checkout, or else the one on PATH.
+
+    ``None`` if neither exists.
+    """
     if _BUILT.is_file():
         return _BUILT
     installed = shutil.which(_PROGRAM)
@@ -30,12 +33,15 @@ def find_checker() -> Path | None:
 
 
 def run_checker(checker: Path, data: str, certificate: str) -> tuple[str, str]:
-    """Return the verdict of the proved checker: ``accepted``, ``refused`` or ``not checked``, and the reason.
+    """Run the proved checker; return its verdict and the reason.
+
+    The verdict is ``accepted``, ``refused`` or ``not checked``. It is ``not checked``, too, if the program
+    fails.
 
     Parameters:
-        checker: The program.
-        data: The data as :meth:`Subject.canonical_data` writes them.
-        certificate: The text of the certificate.
+        checker: The path of the program.
+        data: The data as :meth:`Subject.canonical_data` returns them.
+        certificate: The certificate as JSON text.
     """
     ended = subprocess.run(
         [checker], input=f"{data}\n{certificate}".encode(errors="replace"), capture_output=True, check=False
@@ -48,10 +54,10 @@ def run_checker(checker: Path, data: str, certificate: str) -> tuple[str, str]:
 
 
 def check_certificate(certificate: Mapping[str, Any], subject: Subject) -> str:
-    """Check a certificate that :func:`verify` accepts with the proved checker.
+    """Check a certificate with the proved checker, after :func:`verify` accepted it.
 
     Returns:
-        ``accepted``, or the reason why the checker did not check the certificate, in words.
+        ``accepted``, or in words why nothing was checked, such as that the checker is not built.
 
     Raises:
         RefusedError: if the proved checker refuses the certificate.

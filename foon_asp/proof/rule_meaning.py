@@ -1,6 +1,6 @@
 """The meanings of the ready-made constraints, computed from the plain network.
 
-Certificates are checked by these meanings, so nothing here uses clingo: each constraint of
+Certificates are checked by these meanings, so nothing here uses clingo. Each constraint of
 ``encodings/constraints`` is a few lines of Python, and :data:`LIBRARY` lists them. docs/dev/certificates.md
 says how their meanings enter a proof.
 """
@@ -19,10 +19,16 @@ Barred = Callable[[Units, Units], Units]
 
 
 class Question(NamedTuple):
-    """The data that constraints depend on.
+    """The parts of a planning question that constraints depend on.
 
-    Four fields are functions of a unit id: ``rate`` and ``price`` return its success rate and price, ``None``
-    where unknown; ``needs`` and ``gives`` return its preconditions and add effects.
+    ``network``: the network; units and nodes are given by id.
+    ``kitchen``: the nodes that are available at first.
+    ``goals``: the goal nodes.
+    ``utensils``: the labels of utensils.
+    ``rate``: a function that returns the success rate of a unit; ``None`` if unknown.
+    ``price``: a function that returns the price of a unit; ``None`` if unknown.
+    ``needs``, ``gives``: functions that return the preconditions and the add effects of a unit. They are
+    nodes, or ``None`` for a node that is not in the network.
     """
 
     network: Network
@@ -35,11 +41,11 @@ class Question(NamedTuple):
     gives: Callable[[int], frozenset[int | None]]
 
     def with_motion(self, motion: str) -> Units:
-        """Return the units with a motion."""
+        """Return the units with a motion, by id."""
         return frozenset(unit for unit, name in enumerate(self.network.motions) if name == motion)
 
     def touching(self, nodes: Iterable[int]) -> Units:
-        """Return the units with one of the nodes among their inputs or outputs."""
+        """Return the units that have one of the nodes among their inputs or outputs."""
         touched, network = frozenset(nodes), self.network
         sides = enumerate(zip(network.inputs, network.outputs, strict=True))
         return frozenset(
@@ -49,11 +55,11 @@ class Question(NamedTuple):
         )
 
     def labelled(self, label: str) -> list[int]:
-        """Return the nodes with a label."""
+        """Return the nodes with a label, by id, ascending."""
         return [o for o, node in enumerate(self.network.objects) if node.label == label]
 
     def made_with(self, names: Collection[str]) -> list[int]:
-        """Return the nodes that are labelled as one of some names, or contain one of them."""
+        """Return the nodes that have one of the names as label or among their ingredients, ascending."""
         wanted = frozenset(names)
         return [
             o
@@ -63,19 +69,19 @@ class Question(NamedTuple):
 
 
 class Meaning(NamedTuple):
-    """The meaning of a constraint: conditions that a tree has to satisfy, all of them together.
+    """The meaning of a constraint: all conditions that a tree has to satisfy. Units are given by id.
 
     Attributes:
         removed: Units that the tree does not have.
-        wanted: Requirements. Each is a list of alternatives, of which the tree has to satisfy one. An
-            alternative is a list of sets of units, and the tree has to have a unit of each set.
-        things: Sets of units, each with an amount from 0; the tree uses a thing if it has one of its units.
-        max_sum: The greatest sum of the amounts of the things that a tree may use; ``None`` is no limit.
+        requirements: Each requirement is a list of alternatives, and the tree satisfies one of them. An
+            alternative is a list of sets of units. The tree satisfies it if it has a unit of each set.
+        counted_sets: Sets of units, each with an amount from 0. A set counts once if the tree has a unit of
+            it.
+        max_sum: The greatest sum of the amounts of sets that count; ``None`` is no limit.
         never: Whether no tree satisfies the constraint.
-        barred: A function of two sets of units. It returns units that are in no tree with all of the first
-            set and none of the second.
-        limits: Further limits, each as the amounts of units, from 0, and the greatest sum that a tree may
-            have.
+        barred: A function of two sets of units. It returns units that no tree has together with all of the
+            first set and none of the second.
+        limits: Further limits. Each has the amounts of units, from 0, and the greatest sum for a tree.
     """
 
     removed: Units = frozenset()
@@ -88,10 +94,13 @@ class Meaning(NamedTuple):
 
 
 class Constraint(NamedTuple):
-    """A ready-made constraint: the types of its values by name (``list`` is of texts), and its meaning.
+    """A ready-made constraint.
 
-    ``removes`` says that the constraint only removes units. ``places`` returns the parts of a unit's sources
-    that the constraint reads; it is ``None`` where the constraint reads no sources.
+    ``values``: the type of each value of the constraint, by name; ``list`` is a list of texts.
+    ``meaning``: a function from a :class:`Question` and the values, as keyword arguments, to the meaning.
+    ``removes``: whether the constraint only removes units.
+    ``read_sources``: a function from the network, a unit and the values to what the constraint reads of the
+    unit's sources, such as file names. ``None`` if it reads no sources.
     """
 
     values: Mapping[str, type]
@@ -103,8 +112,8 @@ class Constraint(NamedTuple):
 def meaning_of_rule(rule: Rule, question: Question) -> Meaning:
     """Return the meaning of a rule of a certificate.
 
-    A rule is a ready-made constraint with its values, claims about user rules (:data:`OWN`), or units that
-    every tree has (:data:`ALL_STEPS`).
+    A rule is one of three: a ready-made constraint with its values, claims about user rules (:data:`OWN`), or
+    a list of units that every tree has (:data:`ALL_STEPS`).
     """
     if rule["rule"] == OWN:
         return meaning_of_user_rules(rule)
@@ -114,7 +123,10 @@ def meaning_of_rule(rule: Rule, question: Question) -> Meaning:
 
 
 def sources_read(rule: Rule, network: Network) -> list[list[str]] | None:
-    """Return for each unit the sources that a constraint reads; ``None`` where it reads no sources."""
+    """Return for each unit, by id, what a rule reads of the unit's sources, sorted.
+
+    ``None`` if the rule reads no sources.
+    """
     read_sources = None if rule["rule"] in {OWN, ALL_STEPS} else LIBRARY[rule["rule"]].read_sources
     if read_sources is None:
         return None
@@ -122,30 +134,41 @@ def sources_read(rule: Rule, network: Network) -> list[list[str]] | None:
 
 
 def _values_of_rule(rule: Rule) -> dict[str, Any]:
+    """Return the values of a ready-made constraint by name, without its own name."""
     return {name: value for name, value in rule.items() if name != "rule"}
 
 
 def _forbid_motion(question: Question, forbidden_motion: str) -> Meaning:
+    """Remove the units with the motion."""
     return Meaning(question.with_motion(forbidden_motion))
 
 
 def _forbid_object(question: Question, forbidden_object: str) -> Meaning:
+    """Remove the units with an object of this label among inputs or outputs."""
     return Meaning(question.touching(question.labelled(forbidden_object)))
 
 
 def _forbid_ingredient(question: Question, allergen: list[str]) -> Meaning:
+    """Remove the units that touch an object labelled as, or made with, one of the names in ``allergen``.
+
+    If a goal is such an object, no tree satisfies the constraint.
+    """
     tainted = question.made_with(allergen)
     return Meaning(question.touching(tainted), never=not set(tainted).isdisjoint(question.goals))
 
 
 def _least_rate(question: Question, least_rate: int) -> Meaning:
+    """Remove the units whose success rate is unknown or below ``least_rate``.
+
+    Rates are compared in millionths, rounded down.
+    """
     rates = map(question.rate, range(len(question.network)))
     enough = [rate is not None and rate * 1_000_000 // 1 >= least_rate for rate in rates]
     return Meaning(frozenset(unit for unit, reliable in enumerate(enough) if not reliable))
 
 
 def _matching_source_names(network: Network, unit: int, allowed: list[str]) -> set[str]:
-    """Return the names that match the source of a unit: a file name, a path, or the address of a video."""
+    """Return the names of ``allowed`` that name a source of the unit: a path, file name or video address."""
     return {
         name
         for source in network.sources[unit]
@@ -155,6 +178,7 @@ def _matching_source_names(network: Network, unit: int, allowed: list[str]) -> s
 
 
 def _only_sources(question: Question, allowed: list[str]) -> Meaning:
+    """Remove the units without a source in ``allowed``."""
     network = question.network
     return Meaning(
         frozenset(u for u in range(len(network)) if not _matching_source_names(network, u, allowed))
@@ -162,17 +186,19 @@ def _only_sources(question: Question, allowed: list[str]) -> Meaning:
 
 
 def _videos(network: Network, unit: int, least_videos: int) -> set[str]:
+    """Return the video addresses of all sources of a unit; ``least_videos`` is not read."""
     return {video for source in network.sources[unit] for video in source.videos}
 
 
 def _at_least_videos(question: Question, least_videos: int) -> Meaning:
+    """Remove the units that are in fewer videos than ``least_videos``."""
     network = question.network
     seen = [len(_videos(network, unit, least_videos)) for unit in range(len(network))]
     return Meaning(frozenset(unit for unit, videos in enumerate(seen) if videos < least_videos))
 
 
 def _motion_only_with(question: Question, tied_motion: str, tied_utensil: str) -> Meaning:
-    """Remove the units with the motion that do not touch the utensil."""
+    """Remove the units with the motion that have no object of the utensil's label."""
     return Meaning(question.with_motion(tied_motion) - question.touching(question.labelled(tied_utensil)))
 
 
@@ -185,19 +211,25 @@ def _never_heated(question: Question, unheated_ingredient: str, heats: list[str]
 
 
 def _require_motion(question: Question, required_motion: str) -> Meaning:
+    """Require a unit with the motion."""
     return Meaning(requirements=[[[question.with_motion(required_motion)]]])
 
 
 def _require_object(question: Question, required_object: str) -> Meaning:
+    """Require a unit with an object of this label among inputs or outputs."""
     return Meaning(requirements=[[[question.touching(question.labelled(required_object))]]])
 
 
 def _require_ingredient(question: Question, required_ingredient: str) -> Meaning:
+    """Require a unit that touches an object labelled as, or made with, the ingredient."""
     return Meaning(requirements=[[[question.touching(question.made_with([required_ingredient]))]]])
 
 
 def _require_intermediate(question: Question, required_intermediate: str) -> Meaning:
-    """Require a unit that makes one of the nodes without needing it, and another one that needs it."""
+    """Require that the tree makes and uses an object of this label that the kitchen does not have.
+
+    For one such node, the tree has a unit that needs it, and a unit that makes it without needing it.
+    """
     network = question.network
     wanted = []
     for o in question.labelled(required_intermediate):
@@ -208,21 +240,23 @@ def _require_intermediate(question: Question, required_intermediate: str) -> Mea
 
 
 def _singletons(units: Iterable[int]) -> list[tuple[Units, Fraction]]:
-    """Return units as things, each of amount 1."""
+    """Return a set for each unit, with the unit alone and the amount 1, ascending."""
     one = Fraction(1)
     return [(frozenset({unit}), one) for unit in sorted(units)]
 
 
 def _at_most_units(question: Question, max_units: int) -> Meaning:
+    """Limit the number of units."""
     return Meaning(counted_sets=_singletons(range(len(question.network))), max_sum=Fraction(max_units))
 
 
 def _at_most_motion(question: Question, limited_motion: str, max_uses: int) -> Meaning:
+    """Limit the number of units with the motion."""
     return Meaning(counted_sets=_singletons(question.with_motion(limited_motion)), max_sum=Fraction(max_uses))
 
 
 def _at_most_utensils(question: Question, max_utensils: int) -> Meaning:
-    """Return a limit on the utensils that the units of a tree touch, by label."""
+    """Limit the number of different utensil labels among the inputs and outputs of the tree's units."""
     network, utensils = question.network, question.utensils
     labels = {o: node.label for o, node in enumerate(network.objects) if node.label in utensils}
     touching: dict[str, list[int]] = {label: [] for label in sorted(utensils)}
@@ -235,12 +269,13 @@ def _at_most_utensils(question: Question, max_utensils: int) -> Meaning:
 
 
 def _at_most_utensil_uses(question: Question, limited_utensil: str, max_utensil_uses: int) -> Meaning:
+    """Limit the number of units with an object of the utensil's label."""
     units = question.touching(question.labelled(limited_utensil))
     return Meaning(counted_sets=_singletons(units), max_sum=Fraction(max_utensil_uses))
 
 
 def _at_most_price(question: Question, max_price: int) -> Meaning:
-    """Limit the sum of prices, in hundredths; a unit without a price is excluded."""
+    """Limit the sum of prices to ``max_price`` hundredths; remove the units without a price."""
     prices = {unit: question.price(unit) for unit in range(len(question.network))}
     unknown = frozenset(unit for unit, price in prices.items() if price is None)
     things = [(frozenset({unit}), price * 100) for unit, price in prices.items() if price is not None]
@@ -248,23 +283,25 @@ def _at_most_price(question: Question, max_price: int) -> Meaning:
 
 
 def _not_both_motions(question: Question, one_motion: str, other_motion: str) -> Meaning:
+    """Allow units with one of the two motions, but not with both."""
     motions = [question.with_motion(motion) for motion in (one_motion, other_motion)]
     return Meaning(counted_sets=[(units, Fraction(1)) for units in motions], max_sum=Fraction(1))
 
 
 def _before(question: Question, earlier_motion: str, later_motion: str) -> Meaning:
-    """Forbid units with the later motion that need no node made with or after the earlier motion.
+    """Bar units with the later motion that cannot come after the earlier motion.
 
-    On a branch, the nodes that the used units can make without the earlier motion are *early*. Any other node
-    becomes late only through a unit that makes it, is not excluded, and either has the earlier motion or
-    needs a late node. A unit with the later motion is barred if it needs no late node.
+    The certificate is at a branch, on which some units are used and others excluded. Nodes that the used
+    units can make without the earlier motion are *early*. Other nodes are *late* if a unit that is not
+    excluded makes them, and has the earlier motion or needs a late node. A unit with the later motion is
+    barred if it needs no late node.
     """
     network, needs, gives = question.network, question.needs, question.gives
     first = question.with_motion(earlier_motion)
     later = question.with_motion(later_motion) - first
 
     def early(used: Units) -> set[int | None]:
-        """Return the nodes that ``used`` units can make without the earlier motion."""
+        """Return the early nodes: those that ``used`` units can make without the earlier motion."""
         available: set[int | None] = set(question.kitchen)
         waiting = used - first
         while runs := {unit for unit in waiting if needs(unit) <= available}:
@@ -292,10 +329,10 @@ OWN = "own"  # in place of a constraint's name: user rules
 
 
 def meaning_of_user_rules(rule: Rule) -> Meaning:
-    """Return the meaning of claims about user rules: no tree has all units of one set and none of another.
+    """Return the meaning of claims about user rules, which a certificate takes on trust.
 
-    Limits are claims, too. On a branch, unit propagation bars a unit: it is the only unit of the first set
-    that is not used, and all units of the second set are excluded.
+    A claim is a pair of sets: no tree has all units of the first and none of the second. Limits on sums of
+    amounts are claims, too.
     """
     claims = [(frozenset(used), frozenset(without)) for used, without in rule["claims"]]
     removed = [used for used, without in claims if len(used) == 1 and not without]
@@ -303,6 +340,11 @@ def meaning_of_user_rules(rule: Rule) -> Meaning:
     others = [(used, without) for used, without in claims if used and (len(used) > 1 or without)]
 
     def barred(used: Units, without: Units) -> Units:
+        """Return the units that claims bar (unit propagation).
+
+        In such a claim, all units of the second set are excluded. Either the unit is the only one of the
+        first set that is not used, or all of the first set are used, and then all are barred.
+        """
         unused = [together - used for together, excluded in others if excluded <= without]
         whole = [together for together, excluded in others if excluded <= without and together <= used]
         return frozenset().union(*(one for one in unused if len(one) == 1), *whole)

@@ -1,7 +1,8 @@
-"""Check, for certificates, that a network has the stand-ins of its table.
+"""Check, for certificates, that a network has the stand-ins that its table asks for.
 
-docs/stand-ins.md has the definition, and the argument why no other stand-in can be in a best tree. The code
-that makes stand-ins is not used here: the prices are computed anew.
+A stand-in is a unit that uses an available node in place of one that cannot be made. docs/stand-ins.md argues
+why no other stand-in can be in a best tree. Prices are computed here anew, without the code that adds
+stand-ins.
 """
 
 from collections import Counter, deque
@@ -16,7 +17,10 @@ Sides = Callable[[int], Collection[int | None]]
 
 
 class Actions(NamedTuple):
-    """The kitchen, and the inputs and outputs of each unit, by id; ``None`` is a node outside the network."""
+    """The kitchen, and functions from a unit to its preconditions (``needs``) and add effects (``gives``).
+
+    All are ids of nodes; ``None`` is a node that is not in the network.
+    """
 
     kitchen: Collection[int]
     needs: Sides
@@ -24,10 +28,11 @@ class Actions(NamedTuple):
 
 
 class StandInClaim(NamedTuple):
-    """The part of a claim that concerns stand-ins.
+    """The part of a certificate's claim that concerns stand-ins.
 
-    It says whether dissimilarity is the first objective, and has a lower bound on dissimilarity. ``bound`` is
-    ``None`` where there is no tree, or where the claim does not bound dissimilarity.
+    ``by_dissimilarity``: whether dissimilarity is the first objective.
+    ``bound``: the claimed lower bound on the dissimilarity of trees. ``None`` if the claim has none, or is
+    that there is no tree.
     """
 
     by_dissimilarity: bool
@@ -35,7 +40,7 @@ class StandInClaim(NamedTuple):
 
 
 def stand_in_price_data(table: StandInTable) -> list[list[str]]:
-    """Return all data about stand-ins that a claim depends on, in a fixed order."""
+    """Return the prices of a table as sorted rows of texts, for the digest of a certificate."""
     edits = [[str(edit), str(price)] for edit, price in table.edits.items()]
     words = [[str(edit), word, str(price)] for (edit, word), price in table.words.items()]
     kinds = {str: "label", ObjectNode: "node"}
@@ -47,9 +52,10 @@ def stand_in_price_data(table: StandInTable) -> list[list[str]]:
 
 
 def price_of(table: StandInTable, serving: ObjectNode, served: ObjectNode) -> Fraction | None:
-    """Return the price of using ``serving`` in place of ``served``; ``None`` where the table forbids it.
+    """Return the price of using ``serving`` in place of ``served``; ``None`` if the table forbids it.
 
-    The price is the table's price of the pair of nodes, or else the sum of the prices of all differences.
+    The table's price of the pair of nodes takes precedence. Otherwise the prices of all differences are added
+    up.
     """
     if (serving, served) in table.pairs:
         return table.pairs[serving, served]
@@ -84,12 +90,15 @@ def price_of(table: StandInTable, serving: ObjectNode, served: ObjectNode) -> Fr
 def stand_in_fault(
     network: Network, table: StandInTable, actions: Actions, goals: Sequence[int], claim: StandInClaim
 ) -> str | None:
-    """Return the first fault of the stand-ins of a network; ``None`` if they agree with its table.
+    """Return in words the first fault of the stand-ins of a network; ``None`` without one.
 
-    Each stand-in has to have a price, and to serve a node that cannot be made without stand-ins. No stand-in
-    may be missing. If ``claim`` is by dissimilarity, two kinds may be missing: stand-ins that cost more than
-    a free node in the same place, and stand-ins that lead to more than ``claim.bound``. A free node can be
-    made without stand-ins. ``goals`` are all nodes that every tree makes or takes.
+    A stand-in of the network needs a price above 0, and has to serve a node that is not free. A node is
+    *free* if it can be made without stand-ins. Other pairs with a price are missing stand-ins, which are
+    faults, too.
+
+    If the claim is by dissimilarity, fewer are missing. A serving node need not cost more than the cheapest
+    free node in its place. A tree with the stand-in need not exceed ``claim.bound``. ``goals`` are the nodes
+    that every tree makes or takes from the kitchen.
     """
     objects = network.objects
     listed: set[tuple[int, int]] = set()
@@ -121,7 +130,7 @@ def stand_in_fault(
 
 
 def _singular_word(label: str) -> str:
-    """Return a label as a single word in the singular."""
+    """Return a label in lower case, in the singular, without spaces, hyphens and underscores."""
     word = "".join(letter for letter in label.casefold() if letter not in " -_")
     if len(word) > 5 and word[-3:] in {"ies", "oes"}:
         return word[:-3] + {"i": "y", "o": "o"}[word[-3]]
@@ -132,10 +141,10 @@ def _singular_word(label: str) -> str:
 
 
 class _Servers:
-    """The nodes that may stand in for others, by a table.
+    """The nodes that may stand in for others by a table (*serving* nodes).
 
-    ``free`` are the nodes that can be made without stand-ins. With ``nearest``, a node that costs more than
-    the cheapest free node is left out.
+    ``free``: the nodes that can be made without stand-ins.
+    ``nearest``: whether to omit nodes that cost more than the cheapest free node.
     """
 
     def __init__(self, network: Network, table: StandInTable, free: Collection[int], nearest: bool) -> None:
@@ -151,7 +160,7 @@ class _Servers:
         self._of: dict[int, dict[int, Fraction]] = {}
 
     def prices_of(self, served: int) -> dict[int, Fraction]:
-        """Return the nodes that may serve for a node, by id, with their prices."""
+        """Return the price of each node that may serve in place of a node, by id; cached."""
         if served not in self._of:
             objects = self._network.objects
             node = objects[served]
@@ -167,7 +176,10 @@ class _Servers:
         return self._of[served]
 
     def _candidates(self, node: ObjectNode) -> Iterator[int]:
-        """Yield the nodes to be priced: those whose label is spelled alike, and those paired by the table."""
+        """Yield the nodes that may have a price in place of ``node``, perhaps twice.
+
+        Their label is spelled alike, or the table lists the pair of labels or nodes.
+        """
         yield from self._spelled[_singular_word(node.label)]
         for serving, served in self._table.pairs:
             if served == node.label and isinstance(serving, str):
@@ -181,9 +193,10 @@ class _Servers:
 def _least_dissimilarities(
     network: Network, servers: _Servers, goals: Sequence[int], actions: Actions
 ) -> dict[int, Fraction]:
-    """Return a lower bound on the dissimilarity of making each node; 0 for nodes that need no stand-in.
+    """Return a lower bound on the dissimilarity of making each node that is not free (h_max).
 
-    A unit costs at least as much as its most expensive input; a stand-in adds its price.
+    A unit costs at least as much as its most expensive input; a stand-in adds its price. Nodes that cannot be
+    made even with stand-ins are omitted, as are nodes that no goal needs.
     """
     makers: dict[int, list[set[int]]] = {}
     stack = [goal for goal in goals if goal not in servers.free]
@@ -227,7 +240,7 @@ def _least_dissimilarities(
 
 
 def _nodes_made(network: Network, actions: Actions) -> set[int]:
-    """Return the nodes that can be made from the kitchen without stand-ins."""
+    """Return the nodes that can be made from the kitchen without stand-ins, and those of the kitchen."""
     units = [unit for unit, motion in enumerate(network.motions) if motion != STAND_IN]
     needs, gives = actions.needs, actions.gives
     waiting = {unit: {o for o in needs(unit) if o is not None} for unit in units}
@@ -255,7 +268,7 @@ def _nodes_made(network: Network, actions: Actions) -> set[int]:
 def _nodes_needed(
     network: Network, goals: Sequence[int], free: Collection[int], actions: Actions
 ) -> set[int]:
-    """Return the nodes that a tree can need although they cannot be made without stand-ins."""
+    """Return the goals that are not free and, recursively, the inputs of their achievers that are not."""
     needed = {goal for goal in goals if goal not in free}
     stack = list(needed)
     while stack:
