@@ -1,4 +1,4 @@
-"""Check of a schedule by simulating it in time, in plain Python and independent of the scheduler."""
+"""Check of a schedule by simulating it in time, in plain Python and without the scheduler's code."""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -15,25 +15,30 @@ ToolName = str | ObjectNode
 
 
 class Tool(NamedTuple):
-    """One tool or vessel: the ``number``-th (from 1) of a ``name``, which is a label or an object node."""
+    """One tool or vessel: the ``number``-th, from 1, of those that are counted under ``name``.
+
+    ``name`` is a label, or an object node for a tool that the kitchen has with contents.
+    """
 
     name: ToolName
     number: int
 
     def __str__(self) -> str:
+        """Return the name and the number, such as ``bowl 2``."""
         return f"{self.name} {self.number}"
 
     @property
     def label(self) -> str:
-        """The label of its object nodes."""
+        """The label of the tool: its name, or the label of the object node that is its name."""
         return self.name if isinstance(self.name, str) else self.name.label
 
 
 class TimedStep(NamedTuple):
-    """A scheduled step: its times, its agent and its tools.
+    """A scheduled step.
 
-    ``start`` and ``end`` are in seconds. ``agent`` is a number from 1, ``None`` where nobody has to stand by.
-    ``tools`` are used only by this step while it runs; they are in the order of the unit's objects.
+    ``start``, ``end``: its times, in seconds.
+    ``agent``: the number of its agent, from 1; ``None`` if nobody has to stand by.
+    ``tools``: the tools that no other step may use while it runs, in the order of the unit's objects.
     """
 
     start: Fraction
@@ -45,8 +50,9 @@ class TimedStep(NamedTuple):
 class Means(NamedTuple):
     """The resources of a schedule.
 
-    ``durations`` are those of motions. ``tools`` maps tools to their number, ``None`` for an unlimited
-    number. There is one of each utensil that ``tools`` omits.
+    ``durations``: how long each motion takes, and whether somebody has to stand by.
+    ``agents``: the number of agents.
+    ``tools``: the number of tools by name; ``None`` if unlimited. Utensils that it omits exist once each.
     """
 
     durations: Mapping[str, Duration]
@@ -54,21 +60,25 @@ class Means(NamedTuple):
     tools: Mapping[ToolName, int | None]
 
     def is_limited(self, problem: Problem, label: str) -> bool:
-        """Return whether a step may have to wait for objects of a label, as tools in limited number."""
+        """Return whether objects of a label are tools in limited number, so that steps may wait for them."""
         if label in self.tools:
             return self.tools[label] is not None
         named = any(isinstance(name, ObjectNode) and name.label == label for name in self.tools)
         return named or label in problem.utensils
 
     def is_unlimited(self, label: str) -> bool:
-        """Return whether several steps can share one object of a label at the same time."""
+        """Return whether ``tools`` says that the number of a label is unlimited.
+
+        Several steps can then share one object of the label at the same time.
+        """
         return label in self.tools and self.tools[label] is None
 
     def counted_name(self, node: ObjectNode, label: str) -> ToolName:
         """Return the name under which a tool is counted.
 
-        ``label`` is the label of the tool, and ``node`` is the tool or an object in it. The name is the node
-        or the label if ``tools`` lists it. Otherwise, a tool with contents is named by its contents.
+        ``label`` is the tool's label, and ``node`` is the tool itself or an object in it. The name is the
+        node if ``tools`` lists it, or else the label if ``tools`` lists that. A tool that is not listed is
+        named by an object node that has only its contents. An empty one is named by its label.
         """
         if node in self.tools:
             return node
@@ -78,7 +88,11 @@ class Means(NamedTuple):
         return ObjectNode.of(label, (), (), [Contents("contains", tuple(sorted({*inside})))])
 
     def number_of(self, problem: Problem, name: ToolName) -> int:
-        """Return the number of tools of a name: as in ``tools``, else as in the stock, else 1."""
+        """Return the number of tools of a name.
+
+        It is the number in ``tools``, or else the number of such nodes in the stock of the problem, at least
+        1.
+        """
         stated = self.tools.get(name)
         if stated is not None:
             return stated
@@ -87,11 +101,13 @@ class Means(NamedTuple):
 
 
 class ToolNeed(NamedTuple):
-    """The tools of one label that a unit needs.
+    """The objects of one label that a unit needs as tools.
 
-    ``kept`` are inputs that stay as they are, ``changed`` inputs that change, and ``made`` are the outputs.
-    ``others`` are tools that are no preconditions: skipped containers, the contents of a tool that the unit
-    does not list, or ``None`` for a tool that something is put in, on or by.
+    ``kept``: preconditions that stay as they are.
+    ``changed``: preconditions that are no outputs.
+    ``made``: outputs that the unit makes.
+    ``others``: tools that are no preconditions. They are skipped inputs. If the label is no input or output,
+    it is one object that the unit uses in, on or at the tool, or ``None`` if there is no such input.
     """
 
     kept: tuple[ObjectNode, ...]
@@ -101,14 +117,14 @@ class ToolNeed(NamedTuple):
 
     @property
     def number(self) -> int:
-        """The number of the tools."""
+        """The number of tools of the label that the unit occupies."""
         return len(self.kept) + max(len(self.changed) + len(self.others), len(self.made))
 
 
 def tools_needed(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[str, ToolNeed]:
-    """Return the tools that a unit needs, by label.
+    """Return the tools that a unit needs, by label, if their number is limited.
 
-    They are its utensils, and the tools that its objects are in, on or at.
+    They are its utensils, and the tools that its inputs or outputs are in, on or at.
     """
     needed, _, made = Executions(problem).of(unit)
     needs: dict[str, ToolNeed] = {}
@@ -132,11 +148,14 @@ def tools_needed(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[s
 def timetable_fault(
     problem: Problem, plan: Sequence[FunctionalUnit], steps: Sequence[TimedStep], means: Means
 ) -> str | None:
-    """Return the first fault of a schedule of a plan in words; ``None`` without one.
+    """Return in words the first fault of a schedule of a plan; ``None`` without one.
 
-    At each moment, there have to be enough copies for all running steps, and each agent and each tool may be
-    at only one step. A tool has to be in the state in which an earlier step left it, or as the kitchen has
-    it. Items of the problem have to be used up (:func:`foon_asp.proof.replay.replayable`).
+    Steps have to take the durations in ``means``. At each moment, there have to be enough copies for all
+    running steps. Each agent and each tool may be at only one step. A tool has to be in the state in which an
+    earlier step left it, or as the kitchen has it.
+
+    ``steps`` has the times of each unit of ``plan``, in the same order. Items of the problem have to be used
+    up (:func:`foon_asp.proof.replay.replayable_problem`).
     """
     if len(steps) != len(plan):
         return f"there are {len(plan)} steps, and times for {len(steps)}"
@@ -152,7 +171,7 @@ def timetable_fault(
 
 
 class _Run:
-    """The state of the kitchen while steps start and end."""
+    """The state of a kitchen while the steps of a schedule start and end."""
 
     def __init__(
         self, problem: Problem, plan: Sequence[FunctionalUnit], steps: Sequence[TimedStep], means: Means
@@ -166,9 +185,9 @@ class _Run:
         self._states: dict[Tool, frozenset[ObjectNode]] = {}
 
     def fault(self) -> str | None:
-        """Return the first fault of the schedule in words; ``None`` without one.
+        """Simulate the schedule; return its first fault in words, ``None`` without one.
 
-        At the same time, ends of steps come before starts of steps.
+        Of events at the same time, ends of steps come first.
         """
         events = [(step.end, False, number) for number, step in enumerate(self._steps)]
         events += [(step.start, True, number) for number, step in enumerate(self._steps)]
@@ -180,7 +199,10 @@ class _Run:
         return None
 
     def _start_step(self, number: int) -> Iterator[str]:
-        """Start a step; yield each reason why it cannot."""
+        """Start the step of this number, from 0, and yield each reason in words why it cannot start.
+
+        It takes its copies, agent and tools from the kitchen, up to the reason at which the caller stops.
+        """
         unit, step = self._plan[number], self._steps[number]
         resources = _resources_of(step)
         if len(set(resources)) < len(resources):
@@ -202,7 +224,7 @@ class _Run:
         self._step_using.update(dict.fromkeys(resources, number))
 
     def _end_step(self, number: int) -> None:
-        """End a step: add its outputs, and release its tools and its agent."""
+        """End a step: add its outputs, update the states of its tools, and release its tools and agent."""
         unit, step = self._plan[number], self._steps[number]
         needed, consumes, made = self._executions.of(unit)
         for node, amount in needed.items():
@@ -217,7 +239,10 @@ class _Run:
             self._step_using.pop(resource, None)
 
     def _tool_faults(self, unit: FunctionalUnit, tools: Sequence[Tool]) -> Iterator[str]:
-        """Yield each fault of the tools with which a step starts."""
+        """Yield in words each fault of the tools with which a step starts.
+
+        A tool that holds no needed object counts as fetched from the kitchen: what it held is forgotten.
+        """
         problem, means = self._problem, self._means
         needs, needed = tools_needed(problem, means, unit), self._executions.of(unit).preconditions
         brought = Counter(tool.label for tool in tools)
@@ -244,5 +269,5 @@ class _Run:
 
 
 def _resources_of(step: TimedStep) -> list[int | Tool]:
-    """Return the resources that a step occupies: its tools, and its agent as a number."""
+    """Return the resources that a step occupies: its tools, and its agent as a number if it has one."""
     return [*step.tools] + ([] if step.agent is None else [step.agent])

@@ -2,15 +2,17 @@
 
 docs/dev/certificates.md describes certificates and proves that what passes here is true. In short: take a set
 T of object nodes with a goal in it (a *cut*). The first unit of a tree that makes a node of T needs no node
-of T. So every tree uses one of the *members* of T: the units that make a node of T and need no node of T. Now
-give each cut a positive weight such that for every unit, the weights of the cuts that it is a member of add
-up to at most its cost. Then the sum of all weights is a lower bound on every tree's cost. A cut without
-members shows that there is no tree.
+of T. So every tree uses one of the *members* of T: the units that make a node of T and need no node of T. A
+cut without members shows that there is no tree.
 
-Weights and costs have one part for each objective and are compared objective by objective, like words. The
-part for ``success`` is a sum of ``e * -log(rate)`` with rational ``e``. Its sign is found by bounds of the
-logarithms. Where these are too close, the product of ``rate ** e`` is compared with 1 in whole numbers. This
-module imports the standard library and the plain network, and nothing of the rest of the package.
+Now give each cut a positive weight. For every unit, the weights of the cuts that it is a member of may add up
+to at most its cost. Then the sum of all weights is a lower bound on every tree's cost.
+
+Weights and costs have one part for each objective, and are compared lexicographically. The part for
+``success`` is a sum of ``e * -log(rate)`` with rational ``e``. Bounds of the logarithms decide its sign. If
+they are too close, the product of ``rate ** e`` is compared with 1 in whole numbers.
+
+This module imports the standard library and the plain network, and nothing of the rest of the package.
 """
 
 import hashlib
@@ -71,14 +73,14 @@ class CertificateLimits(NamedTuple):
     Attributes:
         letters: Characters of the file.
         brackets: Lists and objects in the file.
-        steps: Steps of the check. A look at a unit is one step; arithmetic takes more.
+        steps: Steps of the check. To look at a unit is one step; arithmetic takes more.
         steps_each: Additional steps for each unit and object node of the network.
         rules: Rules of a claim.
-        rule_steps: Steps for each unit and object node that a rule is checked against.
-        digits: Digits of a fraction that is read.
+        rule_steps: Steps that a rule counts for, for each unit and object node.
+        digits: Digits of a fraction in the file.
         sum_bits: Bits of a sum of fractions.
         product_bits: Bits of a product of rates.
-        written_bits: Bits of the cost of a tree; Python writes numbers of up to 4,300 digits.
+        written_bits: Bits of the cost of a tree, since Python writes numbers of up to 4,300 digits.
     """
 
     letters: int = 16_000_000
@@ -100,7 +102,7 @@ Amount: TypeAlias = dict[tuple[int, Fraction | None], Fraction]
 
 
 class Form(NamedTuple):
-    """A form of certificates: its name, its version, and the keys that each of them has."""
+    """A form of certificates: its name, its version, and the keys that every certificate of the form has."""
 
     name: str
     version: int
@@ -111,11 +113,17 @@ TREE_FORM = Form("foon-asp certificate", 5, CERTIFICATE_KEYS)
 
 
 class Subject(NamedTuple):
-    """The data that a certificate is about; ``kitchen`` are object node ids.
+    """The data that a certificate is about.
 
-    ``stated`` has digests by name that replace those computed from the other fields. ``trusted`` names those
-    stated digests that nobody computed. ``stand_ins`` is the table by which stand-ins were added to the
-    network, ``None`` without stand-ins. ``amounts`` matter only for plans.
+    ``network``: the network; units and nodes are given by id.
+    ``kitchen``: the nodes that are available at first.
+    ``rates``: the success rate of each motion; ``None`` if unknown.
+    ``utensils``: the labels of utensils.
+    ``prices``: the prices of motions and units; ``None`` if unknown.
+    ``stated``: digests by name that are used as they are, in place of computed ones.
+    ``trusted``: the names of those stated digests that nobody computed from the data.
+    ``amounts``: the amounts of inputs and outputs, which only plans read.
+    ``stand_ins``: the table by which stand-ins were added to the network; ``None`` without stand-ins.
     """
 
     network: Network
@@ -129,10 +137,10 @@ class Subject(NamedTuple):
     stand_ins: StandInTable | None = None
 
     def digests(self, rules: Iterable[Rule] = ()) -> dict[str, str]:
-        """Return the SHA-256 digests of the data, by name, as a certificate states them.
+        """Return the SHA-256 digests of the data, by name, as a certificate with these rules states them.
 
-        A digest in ``stated`` is returned as it is. The digest of sources covers only the parts of sources
-        that the rules read.
+        A digest in ``stated`` is returned as it is. The digest of sources covers only what the rules read of
+        them.
         """
         return {
             name: self.stated.get(name) or _digest(value())
@@ -140,9 +148,10 @@ class Subject(NamedTuple):
         }
 
     def canonical_data(self, rules: Iterable[Rule] = (), goals: Iterable[int] = ()) -> str:
-        """Return all that a certificate with these goals depends on, as canonical JSON.
+        """Return all data that a certificate with these rules and goals depends on, as canonical JSON.
 
-        These are the values of the digests by name and, as ``goals``, the text of each goal with its id.
+        It is an object with the data of each digest, by name, and under ``goals`` the id and text of each
+        goal.
         """
         values = {name: value() for name, value in self._digest_data(rules).items()}
         return canonical_json(
@@ -150,7 +159,7 @@ class Subject(NamedTuple):
         )
 
     def _digest_data(self, rules: Iterable[Rule]) -> dict[str, Callable[[], object]]:
-        """Return the name of each digest, with a function that returns the data of the digest."""
+        """Return for each digest, by name, a function that returns the data to be digested."""
         network, rates, prices = self.network, self.rates, self.prices
         places = [looked for rule in rules if (looked := sources_read(rule, network)) is not None]
         table = self.stand_ins
@@ -179,14 +188,16 @@ class RefusedError(Exception):
 
 
 class LimitError(RefusedError):
-    """The certificate may be right, but to check it takes more than is reasonable."""
+    """The certificate may be right, but it exceeds a limit of :class:`CertificateLimits`."""
 
 
 class Trusted(NamedTuple):
-    """A statement taken on trust: the costs of units by a user measure.
+    """A statement taken on trust: what units cost by a measure of the user.
 
-    The statement is that the ``rules`` give the units these ``costs``, by id, and no unit a negative cost.
-    ``sha256`` is the digest of the rules.
+    ``name``: the name of the measure.
+    ``rules``: the text of the rules that define the measure.
+    ``sha256``: the digest of this text.
+    ``costs``: the costs by unit id, as stated. No unit has a negative cost; this is taken on trust, too.
     """
 
     name: str
@@ -196,11 +207,11 @@ class Trusted(NamedTuple):
 
 
 class ItemClaims(NamedTuple):
-    """The statements about consumable items in a claim about plans.
+    """The statements about consumable items that a claim about plans rests on.
 
-    ``stock`` maps consumable kitchen items, by id, to their copies. ``stays`` maps labels, and object nodes
-    by id, to whether they stay when used, which overrides the rule. ``wanted`` maps goals to the number of
-    copies wanted, if above 1.
+    ``stock``: the copies of kitchen items, by id of the node. Other kitchen items never run out.
+    ``stays``: for labels, and for nodes by id, whether they stay when used, whatever the rule says.
+    ``wanted``: the number of copies wanted of a goal, by id, if it is not 1.
     """
 
     stock: Mapping[int, int]
@@ -211,12 +222,21 @@ class ItemClaims(NamedTuple):
 class Verified(NamedTuple):
     """What a certificate proves about the data it was checked with.
 
-    ``claim`` is ``optimal``: no tree is better than ``tree`` by the ``objectives``, most important first;
-    ``bound``: no tree costs less than the certificate's bound; or ``infeasible``: there is no tree.
-    The claim is about the trees that keep to the ``rules``: ready-made constraints, each by its name
-    (``rule``) and its values. ``costs`` are those of the tree, one for each objective. ``trusted`` are the
-    statements that the claim rests on and that are not in the data. Where items are used up, the claim is
-    about plans in place of trees, and ``used_up`` are its statements about items.
+    ``claim`` is one of three. ``optimal``: no tree is better than ``tree`` by the ``objectives``, most
+    important first. ``bound``: no tree costs less than the certificate's bound. ``infeasible``: there is no
+    tree.
+
+    ``goals``: the goal nodes, by id.
+    ``containers``: the container rule, ``strict`` or ``implied``.
+    ``level``: the level of the network.
+    ``rules``: the constraints that all these trees satisfy, each with its name (``rule``) and its values.
+    ``not_covered``: names of constraints that the claim does not take into account.
+    ``tree``: the units by id, in an order that executes; ``None`` without a tree.
+    ``costs``: the costs of the tree, one for each objective; ``None`` without a tree.
+    ``cuts``: the number of cuts.
+    ``trusted``: statements that the claim rests on and that are not in the data.
+    ``used_up``: statements about items, if items are used up. All claims are then about plans in place of
+    trees.
     """
 
     claim: str
@@ -234,10 +254,10 @@ class Verified(NamedTuple):
 
 
 def load_certificate(file: Path) -> Any:
-    """Return the content of a certificate file; no more than the greatest length of certificates is read.
+    """Return the parsed JSON of a certificate file.
 
-    Raises ``OSError`` and ``UnicodeDecodeError`` where the file cannot be read, and otherwise as
-    :func:`read_certificate`.
+    The file is read up to the greatest length of certificates. Raises ``OSError`` and ``UnicodeDecodeError``
+    if it cannot be read, and :class:`RefusedError` if it is too long, invalid, or has a key twice.
     """
     with file.open("rb") as stream:
         raw = stream.read(ALLOWED.letters)
@@ -247,14 +267,19 @@ def load_certificate(file: Path) -> Any:
 
 
 def read_certificate(text: str) -> Any:
-    """Return the parsed JSON of a certificate; raises :class:`RefusedError` if invalid or a key is double."""
+    """Return the parsed JSON of a certificate.
+
+    Raises :class:`RefusedError` if the text is too long or no JSON, or has a key twice or a float.
+    """
 
     def unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        """Return a JSON object as a dictionary; refuse a key that occurs twice."""
         content = dict(pairs)
         require(len(content) == len(pairs), "a key stands twice in one object")
         return content
 
     def refuse_float(number: str) -> None:
+        """Refuse a number that is no whole number."""
         raise RefusedError(f"found the number {number[:50]}, expected whole numbers, and fractions in quotes")
 
     if len(text) > ALLOWED.letters or text.count("[") + text.count("{") > ALLOWED.brackets:
@@ -268,18 +293,21 @@ def read_certificate(text: str) -> Any:
 
 
 def seal(certificate: Mapping[str, Any]) -> str:
-    """Return the seal of a certificate: the digest of all other content."""
+    """Return the seal of a certificate: the SHA-256 digest of all its content except its key ``seal``."""
     return _digest({key: value for key, value in certificate.items() if key != "seal"})
 
 
 def trusted_claims(certificate: Mapping[str, Any]) -> Rule | None:
-    """Return the statements about user rules that a certificate takes on trust, ``None`` without any."""
+    """Return the rule of a certificate that has claims about user rules, which are taken on trust.
+
+    ``None`` if it has none.
+    """
     return next((rule for rule in certificate.get("rules", ()) if rule["rule"] == OWN), None)
 
 
 @contextmanager
 def refuse_deep_nesting() -> Iterator[None]:
-    """Refuse a certificate that is nested too deeply."""
+    """Turn a ``RecursionError`` of the decorated check into :class:`RefusedError`."""
     try:
         yield
     except RecursionError:
@@ -288,18 +316,21 @@ def refuse_deep_nesting() -> Iterator[None]:
 
 @refuse_deep_nesting()
 def verify(certificate: Any, subject: Subject) -> Verified:
-    """Check a certificate of a tree against its data.
+    """Check a certificate of a tree against its data; return what it proves.
 
-    The time is linear in the number of cuts times the size of the network. Raises :class:`LimitError` where
-    the check would take more than a few seconds beyond the time for the digest of the network. Raises
-    :class:`RefusedError` with the first fault that is found.
+    The time is linear in the number of cuts times the size of the network. Raises :class:`RefusedError` with
+    the first fault that is found. Raises :class:`LimitError` if the check takes more steps than
+    :class:`CertificateLimits` allows, which is a few seconds.
     """
     rules = check_header(certificate, TREE_FORM, subject)
     return Check(certificate, rules, subject).verify_claim()
 
 
 def check_header(certificate: Any, form: Form, subject: Subject) -> tuple[Rule, ...]:
-    """Check the form, the seal and the digests of a certificate; return its rules."""
+    """Check all of a certificate that depends neither on its tree nor on its proof; return its rules.
+
+    These are the form, the version, the keys, the seal, the level and the digests.
+    """
     require(isinstance(certificate, dict), "expected an object with the keys of a certificate")
     require(certificate.get("format") == form.name, f"expected the format {form.name!r}")
     version = certificate.get("version")
@@ -320,13 +351,14 @@ def check_header(certificate: Any, form: Form, subject: Subject) -> tuple[Rule, 
 class Check:
     """One certificate, checked against its network.
 
-    A *member* is a unit, a kitchen item or a step of a constraint. A unit has its id as number; item ``k``
-    has the number of units plus ``k``; steps are numbered from the number of units and nodes on. Items are
-    members only where the objective ``kitchen`` counts them.
+    A *member* of a cut is a unit, a kitchen item, or a step of a constraint (:class:`CompiledRules`). All
+    members are numbered together. A unit has its id as number. Kitchen item ``k`` has the number of units
+    plus ``k``. Steps are numbered from the number of units and nodes on. Items are members only if the
+    objective ``kitchen`` counts them.
     """
 
     def __init__(self, certificate: dict[str, Any], rules: tuple[Rule, ...], subject: Subject) -> None:
-        """Read objectives, costs, goals, rules and cuts of a certificate; its proof is read later."""
+        """Read objectives, costs, goals, rules and cuts of a certificate; tree and proof are read later."""
         network, kitchen, rates, utensils, prices = subject[:5]
         self.allowed = ALLOWED.steps + ALLOWED.steps_each * (len(network) + len(network.objects))
         self.steps = self.allowed  # that are left
@@ -380,9 +412,9 @@ class Check:
         self.met: set[int] = set()  # the cuts that the proof uses
 
     def _check_stand_ins(self, least: Fraction | None) -> None:
-        """Check the stand-ins of the network against their table.
+        """Refuse a network whose stand-ins do not agree with their table, if it has a table.
 
-        ``least`` is the claimed lower bound on the dissimilarity of trees, ``None`` where no tree exists.
+        ``least`` is the claimed lower bound on the dissimilarity of trees, ``None`` if no tree exists.
         """
         if self.stand_ins is None:
             return
@@ -397,7 +429,7 @@ class Check:
         require(wrong is None, f"{wrong}")
 
     def _read_measure(self, name: str, stated: Any) -> Trusted:
-        """Read the stated costs of units by a measure."""
+        """Return the statement of a certificate about what units cost by a measure; check its digest."""
         require(
             bool(_MEASURE_NAME.fullmatch(name)) and name not in OBJECTIVES, "a measure has no name of its own"
         )
@@ -417,14 +449,20 @@ class Check:
         return Trusted(name, rules, digest, costs)
 
     def _stated_cost(self, name: str, unit: int) -> Fraction:
-        """Return the stated cost of a unit by a measure, and note that it is taken on trust."""
+        """Return the stated cost of a unit by a measure, and record that it is taken on trust.
+
+        Refuse a unit without stated cost.
+        """
         costs = self.measures[name].costs
         require(unit in costs, "the cost of a unit by a measure is not stated")
         self.trusted_costs[name][unit] = costs[unit]
         return costs[unit]
 
     def _required_rates(self, given_rates: Mapping[str, Fraction] | None) -> dict[str, Fraction]:
-        """Return the success rate of each motion."""
+        """Return the success rate of each motion of the network; refuse missing rates and rates not in 0..1.
+
+        With the objective ``attempts``, a rate of 0 is refused, too.
+        """
         motions = self.network.different_motions
         rates = {
             motion: given_rates[motion]
@@ -445,15 +483,15 @@ class Check:
         return self.rates[self.network.motions[unit]]
 
     def _required_prices(self, unit_prices: UnitPrices | None) -> list[Fraction]:
-        """Return the price of each unit."""
+        """Return the price of each unit, by id; refuse missing prices, and prices below 0."""
         prices = None if unit_prices is None else self._unit_prices(unit_prices)
         return self._require_complete(prices, len(self.network), "prices")
 
     def _unit_prices(self, unit_prices: UnitPrices | None) -> Sequence[Fraction | None]:
-        """Return the price of each unit: its own, or else that of its motion; ``None`` without a price.
+        """Return the price of each unit, by id: its own, or else that of its motion; ``None`` if unknown.
 
-        Below level 3, it is the least price of the units of level 3 that the unit stands for; ``None`` if one
-        of them has no price.
+        Below level 3, it is the least price of the units of level 3 that the unit stands for. It is ``None``
+        if one of them has no price.
         """
         network = self.network
         if unit_prices is None:
@@ -475,7 +513,7 @@ class Check:
     def _require_complete(
         self, values: Sequence[Fraction | None] | None, count: int, what: str
     ) -> list[Fraction]:
-        """Return the values of ``count`` units; refuse missing values and values below 0."""
+        """Return ``count`` values; refuse missing values and values below 0; ``what`` names them in errors."""
         require(values is not None, f"a claim needs {what}, but none are given")
         present = [value for value in values or () if value is not None]
         require(len(present) == count, f"a unit has none of the {what} that a claim needs")
@@ -483,7 +521,7 @@ class Check:
         return present
 
     def verify_claim(self) -> Verified:
-        """Check tree, costs and proof."""
+        """Check the tree, its costs and the proof; return what is proved."""
         claim, listed, proof = (self.certificate[key] for key in ("claim", "tree", "proof"))
         costs: list[int | Fraction] | None = None
         amount: Amount = {}
@@ -530,7 +568,10 @@ class Check:
         )
 
     def _execute(self, units: list[Any]) -> tuple[Amount, list[int | Fraction]]:
-        """Execute the tree as listed; return its cost as an amount and as figures."""
+        """Execute the tree as listed; return its cost twice, as an amount and as written in a certificate.
+
+        Refuse a tree that does not execute, misses a goal, or breaks a rule.
+        """
         made: set[int | None] = set()
         for unit in read_numbers(units, len(self.network), ascending=False):
             lacking = (o for o in self.needs(unit) if o not in made and o not in self.kitchen)
@@ -547,7 +588,11 @@ class Check:
         return total, self._written_costs(units, total)
 
     def _written_costs(self, units: list[int], total: Amount) -> list[int | Fraction]:
-        """Return the costs of a tree of the units by each objective, as figures."""
+        """Return the cost of a tree by each objective, as written in a certificate.
+
+        ``units`` are the units of the tree, and ``total`` is its cost as an amount. By ``success``, the cost
+        is the product of the rates. Costs that are too long to be written are refused.
+        """
         costs: list[int | Fraction] = []
         for level, objective in enumerate(self.objectives):
             if objective == "success":
@@ -565,7 +610,7 @@ class Check:
         return costs
 
     def _require_kept_rules(self, units: frozenset[int]) -> None:
-        """Refuse a tree that does not keep to the rules."""
+        """Refuse a tree of ``units`` that does not keep to the rules."""
         self._spend(len(self.ruled.makers) + len(self.network) * len(self.ruled.barred))
         self._spend(len(units) * len(self.ruled.limits))
         others = frozenset(range(len(self.network))) - units if self.rules else frozenset[int]()
@@ -573,7 +618,10 @@ class Check:
         require(fault is None, f"the tree {fault}")
 
     def _barred_units(self, number: int, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
-        """Return the units barred by a rule: no tree with all ``used`` and none of ``without`` has them."""
+        """Return the units that the constraint ``number`` bars on a branch.
+
+        No tree of the branch has such a unit: it has all members ``used``, and none of ``without``.
+        """
         self._spend(len(self.network) + 5 * self.claimed)
         units = frozenset(member for member in used if member < len(self.network))
         return self.ruled.barred[number](units, without)
@@ -626,7 +674,10 @@ class Check:
                 require(self._is_enough([total, paid], least), "the weights do not add up to enough")
 
     def _above_cutoff(self, choices: Any, decided: frozenset[int]) -> list[int]:
-        """Read the members of a reduced-cost fixing, which are claimed to be above the cutoff."""
+        """Return the members that a reduced-cost fixing claims to be above the cutoff.
+
+        Refuse an empty list, double members, and members in ``decided``, which are used or excluded already.
+        """
         actions = [self._read_branch_member(choice) for choice in read_list(choices)]
         require(len(actions) > 0, "nothing is too dear")
         require(
@@ -635,7 +686,7 @@ class Check:
         return actions
 
     def _is_enough(self, bound: Iterable[Amount], least: Amount | None) -> bool:
-        """Return whether a bound is at least ``least``; if ``least`` is ``None``, whether it is above 0."""
+        """Return whether the sum of ``bound`` is at least ``least`` or, if ``least`` is ``None``, above 0."""
         if least is None:
             return self.sign(self.sum(bound)) > 0
         return self.sign(self.sum([*bound, negate(least)])) >= 0
@@ -643,11 +694,14 @@ class Check:
     def _check_cost_partition(
         self, weights: Any, limits: Any, used: frozenset[int], without: frozenset[int]
     ) -> tuple[Amount, Callable[[int], Amount]]:
-        """Check a cost partition; return its sum and a function that returns the reduced cost of a member.
+        """Check a cost partition on a branch; return its sum, and a function that returns reduced costs.
 
-        A tree with a member costs at least the sum plus the reduced cost of the member. A limit may have a
-        weight, too. A member then carries this weight for each unit that it consumes from the limit. In
-        return, the weight of the remaining limit, after the used members, is subtracted from the sum.
+        The sum bounds the cost of the members that a tree has in addition to ``used``. A tree with a member
+        costs at least its reduced cost more. Members in ``without`` are excluded.
+
+        ``weights`` and ``limits`` are rows of a proof: the weights of cuts and of limits. Each unit that a
+        member consumes of a limit raises the cost that its cuts may share by the limit's weight. In return,
+        the weight of the remaining limit is subtracted from the sum.
         """
         total: Amount = {}
         carried: list[tuple[Amount, Mapping[int, Fraction]]] = []
@@ -678,7 +732,10 @@ class Check:
             return {key: Fraction(load.get(member, 0), scales[key]) for key, load in loads.items()}
 
         def allowed(member: int) -> Amount:
-            """Return the greatest load of a member: its cost, and the weights of limits that it carries."""
+            """Return the greatest load of a member: its cost, and the weights of limits that it consumes.
+
+            It is 0 for a used member, whose cost was paid before.
+            """
             # a member that is used anyway was paid for, and can carry nothing more
             capacity = {} if member in used else self.cost(member)
             if carried and member not in used:
@@ -687,6 +744,7 @@ class Check:
             return capacity
 
         def reduced_cost(member: int) -> Amount:
+            """Return the part of a member's greatest load that its cuts do not take."""
             return self.sum([allowed(member), negate(load_of(member))])
 
         for member in dict.fromkeys(chain.from_iterable(loads.values())):
@@ -697,7 +755,7 @@ class Check:
         return total, reduced_cost
 
     def _common_denominators(self, amounts: Sequence[Amount]) -> dict[tuple[int, Fraction | None], int]:
-        """Return the least common denominator of each part of some amounts."""
+        """Return, for each part of amounts (objective and rate), the least common denominator."""
         scales: dict[tuple[int, Fraction | None], int] = {}
         for amount in amounts:
             for key, value in amount.items():
@@ -709,10 +767,11 @@ class Check:
         return scales
 
     def _round_up(self, amount: Amount, stated: Any) -> Amount:
-        """Round up a bound to a stated common divisor of all costs.
+        """Return a bound, rounded up to a stated common divisor of all costs by an objective.
 
         It is rounded at the first objective whose part is no multiple of the stated divisor. The parts after
-        this objective become 0, since no cost is below 0.
+        this objective become 0, since no cost is below 0. A stated divisor that does not divide all costs is
+        refused.
         """
         multiples = {name: read_rational(multiple) for name, multiple in read_object(stated).items()}
         require(multiples.keys() <= set(self.objectives), "a multiple is stated for another objective")
@@ -728,7 +787,10 @@ class Check:
         return amount
 
     def _are_multiples(self, level: int, multiple: Fraction) -> bool:
-        """Return whether the costs of all units and items by an objective are multiples of a number."""
+        """Return whether the costs of all units and items by an objective are multiples of a number.
+
+        ``level`` is the index of the objective. By ``success``, return ``False``.
+        """
         if self.objectives[level] == "success":
             return False
         members = (*range(len(self.network)), *(len(self.network) + o for o in self.kitchen))
@@ -742,7 +804,10 @@ class Check:
         return True
 
     def _crossing_members(self, number: Any, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
-        """Return the members of a cut that are not excluded, after checking that the cut is a landmark."""
+        """Return the members of the cut ``number`` that are not in ``without``, and record that it is used.
+
+        Refuse a cut that contains neither a goal nor a precondition of a member in ``used``.
+        """
         index = read_number(number, range(len(self.cuts)), "the number of a cut")
         self._spend(1 + len(self.goals) + len(used) + len(self.members[index]))
         self.met.add(index)
@@ -756,7 +821,11 @@ class Check:
         return self.members[index] - without
 
     def _landmark(self, cut: frozenset[int]) -> Iterator[int]:
-        """Yield the landmark of a cut: the units that make one of its nodes and need none, and its items."""
+        """Yield the members of a cut.
+
+        They are the units and steps that make one of its nodes and need none, and its kitchen items. Refuse a
+        cut with a kitchen item unless the objective ``kitchen`` counts items.
+        """
         network, own = self.network, self.ruled.makers
         self._spend(sum(1 + len(own[o] if o in own else network.producers[o]) for o in cut))
         for o in cut:
@@ -771,7 +840,7 @@ class Check:
                         yield unit
 
     def _preconditions(self, member: int) -> frozenset[int | None]:
-        """Return the preconditions of a unit or a step, including those by rules; an item has none."""
+        """Return the preconditions of a unit or a step, with nodes that constraints add; none for an item."""
         if member in self.ruled.steps:
             return frozenset(self.ruled.steps[member][0])
         if member >= len(self.network):
@@ -780,14 +849,14 @@ class Check:
         return self.needs(member).union(own) if own else self.needs(member)
 
     def _needs(self, unit: int) -> frozenset[int | None]:
-        """Return the preconditions of a unit.
+        """Return the preconditions of a unit, without nodes that constraints add.
 
         Below level 3, they are the common preconditions of all units of level 3 that the unit stands for.
         """
         return frozenset.intersection(*(needed for needed, _ in self._detailed_effects(unit)))
 
     def _gives(self, unit: int) -> frozenset[int | None]:
-        """Return the add effects of a unit.
+        """Return the add effects of a unit, without nodes that constraints add.
 
         Below level 3, they are the add effects of all units of level 3 that the unit stands for.
         """
@@ -796,7 +865,8 @@ class Check:
     def _detailed_effects(self, unit: int) -> Iterator[tuple[frozenset[int | None], frozenset[int | None]]]:
         """Yield preconditions and add effects of each unit of level 3 that a unit stands for.
 
-        A unit of level 3 stands for itself. Containers that a unit may skip are omitted.
+        Nodes are ids at the network's level. A unit of level 3 stands for itself. Containers that the
+        container rule skips are omitted.
         """
         network = self.network
         whole = network.detailed or network
@@ -809,10 +879,10 @@ class Check:
             )
 
     def _skipped_containers(self, whole: Network, inputs: set[int]) -> set[int]:
-        """Return the inputs of a unit that the rule ``implied`` takes as given.
+        """Return the inputs of a unit that the container rule ``implied`` takes as given.
 
-        An input is taken as given if it is a utensil with exactly one ingredient, and this ingredient,
-        located in the utensil, is another input.
+        Such an input is a utensil with exactly one ingredient. This ingredient, located in the utensil, is
+        another input.
         """
         nodes = [(o, whole.objects[o]) for o in inputs]
         return {
@@ -827,7 +897,7 @@ class Check:
         }
 
     def _ids_at_level(self, nodes: set[int]) -> frozenset[int | None]:
-        """Return the ids at the network's level of nodes of level 3."""
+        """Return nodes of level 3 as ids at the network's level; ``None`` for nodes that it does not have."""
         network = self.network
         if network.detailed is None:
             return frozenset(nodes)
@@ -835,13 +905,15 @@ class Check:
         return frozenset(map(network.object_id, nodes_at_level))
 
     def _rule_meaning(self, rule: Rule, question: Question) -> Meaning:
-        """Return the meaning of a rule for the network."""
+        """Return the meaning of a rule for the network, and count the steps that this takes."""
         self._spend(ALLOWED.rule_steps * (len(self.network) + len(self.network.objects)))
         self.claimed += sum(1 + len(used) + len(without) for used, without in rule.get("claims", ()))
         return meaning_of_rule(rule, question)
 
     def _cost(self, member: int) -> Amount:
-        """Return the cost of a unit or an item, one part for each objective."""
+        """Return the cost of a unit or an item, one part for each objective that counts it; a step costs
+        nothing.
+        """
         cost: Amount = {}
         if member in self.ruled.steps:
             return cost
@@ -852,9 +924,9 @@ class Check:
         return cost
 
     def _cost_by_objective(self, level: int, member: int) -> Fraction | None:
-        """Return the cost of a unit or an item by an objective, ``None`` if the objective does not count it.
+        """Return the cost of a unit or an item by an objective; ``None`` if the objective does not count it.
 
-        By ``success``, it is the exponent of the unit's rate.
+        ``level`` is the index of the objective. By ``success``, it is 1, the exponent of the unit's rate.
         """
         network, objective = self.network, self.objectives[level]
         item = member >= len(network)
@@ -876,7 +948,7 @@ class Check:
         return Fraction(count)
 
     def _dissimilarity(self, unit: int) -> Fraction:
-        """Return what a stand-in costs by the table, 0 for other units."""
+        """Return the price of a stand-in by the table; 0 for other units."""
         network = self.network
         if self.stand_ins is None or network.motions[unit] != STAND_IN:
             return Fraction(0)
@@ -885,7 +957,7 @@ class Check:
         return price_of(self.stand_ins, network.objects[serving], network.objects[served]) or Fraction(0)
 
     def sign(self, amount: Amount) -> Fraction | int:
-        """Return a number with the sign of an amount; the first objective that is not 0 decides."""
+        """Return a number with the sign of an amount, exactly; the first objective that is not 0 decides."""
         for level, objective in enumerate(self.objectives or (_UNMEASURED,)):
             if objective == "success":
                 sign = self._minus_log_sign({r: e for (_, r), e in amount.items() if r is not None})
@@ -896,7 +968,11 @@ class Check:
         return 0
 
     def _read_branch_member(self, choice: Any) -> int:
-        """Read the member that a branch is about: a unit, an item or a step."""
+        """Return the member that a branch is about, from an object such as ``{"unit": 3}``.
+
+        A kitchen item has the key ``item`` and its id as node; a step of constraints has ``step`` and its
+        number from 0.
+        """
         network, kinds = self.network, [*read_object(choice)]
         kind = kinds[0] if kinds in (["item"], ["step"]) else "unit"
         number = read_object(choice, (kind,))[kind]
@@ -912,9 +988,10 @@ class Check:
     def read_weights(
         self, key: str, stated: Any, read: Callable[[Any], Amount], numbers: int = 1
     ) -> Iterator[tuple[list[int], Amount]]:
-        """Read the weights under a key of a proof.
+        """Yield the weighted conditions under a key of a proof; refuse weights that are not above 0.
 
-        The first ``numbers`` entries of each row are the numbers of the weighted condition.
+        A row names its condition by its first ``numbers`` entries, which are yielded as a list, and has the
+        weight last. ``read`` turns the stated weight into an amount.
         """
         for name, value in self.read_rows(key, stated, numbers):
             weight = read(value)
@@ -922,7 +999,10 @@ class Check:
             yield name, weight
 
     def read_rows(self, key: str, stated: Any, numbers: int = 1) -> Iterator[tuple[list[int], Any]]:
-        """Yield the rows under a key, in order: the first ``numbers`` entries of a row, and its value."""
+        """Yield rows under a key: their first ``numbers`` entries as a list, and the last entry.
+
+        The first entries have to be whole numbers; rows have to be in order, and to differ in them.
+        """
         rows = [read_list(row) for row in read_list(stated)]
         names = [row[:numbers] for row in rows]
         require(
@@ -935,12 +1015,15 @@ class Check:
         yield from ((name, row[numbers]) for name, row in zip(names, rows, strict=True))
 
     def limit_at(self, number: int) -> Limit:
-        """Return the limit that a weight is for, by the limit's number."""
+        """Return the limit with a number; refuse a number that is of no limit."""
         require(number in self.ruled.limits, "a rule that limits nothing is given a weight")
         return self.ruled.limits[number]
 
     def _read_amount(self, stated: Any) -> Amount:
-        """Read a weight or bound: for each objective a number, for success the exponent of each rate."""
+        """Return a weight or bound as an amount, from a list with one entry for each objective.
+
+        An entry is a fraction or, for ``success``, an object from rate to exponent.
+        """
         amount: Amount = {}
         parts = read_list(stated)
         objectives = self.objectives or (_UNMEASURED,)
@@ -956,11 +1039,11 @@ class Check:
         return amount
 
     def _minus_log_sign(self, exponents: Mapping[Fraction, Fraction]) -> Fraction | int:
-        """Return a number with the sign of the sum of ``e * -log(rate)``: is the product below or above 1?
+        """Return a number with the sign of the sum of ``e * -log(rate)`` over ``exponents``, exactly.
 
-        Bounds of the logarithms decide where they can. Otherwise the product of ``rate ** e`` is raised to
-        the common denominator of the exponents. The power is a quotient of whole numbers, and below 1 exactly
-        when the product is. A rate of 0 costs more than any weight.
+        Bounds of the logarithms decide if they can. Otherwise, exponents are multiplied by their common
+        denominator. The product of all ``rate ** e`` is then a quotient of whole numbers, and is compared
+        with 1. The sign is positive if it is below 1. A rate of 0 costs more than any weight.
         """
         if never := exponents.get(Fraction(0)):
             return never
@@ -1003,28 +1086,34 @@ class Check:
         return low, high
 
     def _add_to(self, total: Amount, amount: Amount) -> None:
+        """Add ``amount`` to ``total`` in place, and count the steps."""
         for key, value in amount.items():
             total[key] = total[key] + value if key in total else value
             self._spend_on_fractions(bit_length(total[key]))
 
     def times(self, amount: Amount, factor: Fraction) -> Amount:
-        """Return an amount times a factor."""
+        """Return an amount times a factor, and count the steps."""
         return self.sum([{key: value * factor for key, value in amount.items()}])
 
     def sum(self, amounts: Iterable[Amount]) -> Amount:
-        """Return the sum of amounts."""
+        """Return the sum of amounts, and count the steps."""
         total: Amount = {}
         for amount in amounts:
             self._add_to(total, amount)
         return total
 
     def _spend_on_fractions(self, bits: int, times: int = 1) -> None:
-        """Count the steps of operations on fractions of ``bits`` bits, whose time grows with the square."""
+        """Count the steps of ``times`` operations on fractions of ``bits`` bits.
+
+        The steps grow with the square of the bits. Raises :class:`LimitError` if the fractions or the check
+        are too long.
+        """
         if bits > ALLOWED.sum_bits:
             raise LimitError("its fractions add up to numbers that are too long")
         self._spend(times * (5 + (bits // 512) ** 2))
 
     def _spend(self, steps: int) -> None:
+        """Count steps of the check; raises :class:`LimitError` if there are too many."""
         self.steps -= steps
         if self.steps < 0:
             raise LimitError(f"to check it takes more than {self.allowed:,} steps")
@@ -1041,7 +1130,10 @@ def negate(amount: Amount) -> Amount:
 
 
 def _network_data(network: Network) -> list[Any]:
-    """Return all that a claim about a network can depend on; below level 3 with the network of level 3."""
+    """Return all that a claim about a network can depend on, as lists that JSON can write.
+
+    Below level 3, this includes the network of level 3.
+    """
     nodes = [
         (label, sorted(states), sorted(relations), contents)
         for label, states, relations, contents in network.objects
@@ -1051,29 +1143,30 @@ def _network_data(network: Network) -> list[Any]:
 
 
 def _price_data(prices: UnitPrices, network: Network) -> list[list[Any]]:
-    """Return the prices by motion, and the prices of single units by their id at level 3."""
+    """Return the prices by motion, and the prices of single units by their id in ``network``, sorted."""
     ids = ((network.unit_id(unit), price) for unit, price in prices.units.items())
     single = sorted([unit, str(price)] for unit, price in ids if unit is not None)
     return [sorted([motion, str(price)] for motion, price in prices.motions.items()), single]
 
 
 def _digest(value: object) -> str:
+    """Return the SHA-256 digest of plain values, written as canonical JSON."""
     return hashlib.sha256(canonical_json(value).encode()).hexdigest()
 
 
 def canonical_json(value: object) -> str:
-    """Return plain values as canonical JSON, for digests."""
+    """Return plain values as canonical JSON: keys in order, without spaces."""
     return json.dumps(value, sort_keys=True, separators=(",", ":"), check_circular=False)
 
 
 def require(holds: bool, otherwise: str) -> None:
-    """Raise :class:`RefusedError` with a message unless something holds."""
+    """Raise :class:`RefusedError` with the message ``otherwise`` unless ``holds`` is true."""
     if not holds:
         raise RefusedError(otherwise)
 
 
 def read_object(value: Any, keys: Sequence[str] | None = None) -> dict[str, Any]:
-    """Read a JSON object; with ``keys``, it must have exactly these keys."""
+    """Return a value that has to be a JSON object; with ``keys``, one with exactly these keys."""
     require(isinstance(value, dict), "expected an object")
     content: dict[str, Any] = value
     require(keys is None or set(content) == set(keys), f"expected the keys {', '.join(keys or ())}")
@@ -1081,27 +1174,30 @@ def read_object(value: Any, keys: Sequence[str] | None = None) -> dict[str, Any]
 
 
 def read_list(value: Any) -> list[Any]:
-    """Read a JSON list."""
+    """Return a value that has to be a JSON list."""
     require(isinstance(value, list), "expected a list")
     items: list[Any] = value
     return items
 
 
 def read_pair(value: Any, what: str) -> tuple[Any, Any]:
-    """Read a list of two entries; ``what`` names it in the error."""
+    """Return the two entries of a value that has to be a list of two; ``what`` names it in the error."""
     require(isinstance(value, list) and len(value) == 2, f"expected {what}")
     first, second = value
     return first, second
 
 
 def read_number(value: Any, allowed: Container[int], what: str) -> int:
-    """Read an id or number from the allowed ones, for ``what`` in errors; JSON's true is no number."""
+    """Return a value that has to be one of the allowed whole numbers; ``what`` names it in the error.
+
+    JSON's ``true`` is no number.
+    """
     require(type(value) is int and value in allowed, f"expected {what}")
     return int(value)
 
 
 def _read_names(value: Any) -> tuple[str, ...]:
-    """Read a list of different names, in order and without half letters."""
+    """Return a list of different texts, which has to be sorted and free of surrogates (half letters)."""
     names = read_list(value)
     require(all(isinstance(name, str) for name in names), "expected names")
     require(names == sorted(set(names)), "expected names in order, each of them once")
@@ -1110,7 +1206,10 @@ def _read_names(value: Any) -> tuple[str, ...]:
 
 
 def read_numbers(value: Any, below: int, ascending: bool = True) -> list[int]:
-    """Read distinct ids; with ``ascending``, at least one, in ascending order."""
+    """Return a list that has to have distinct numbers from 0 to ``below - 1``.
+
+    With ``ascending``, it has to be ascending and not empty.
+    """
     numbers = read_list(value)
     require(all(type(n) is int and 0 <= n < below for n in numbers), "expected ids of the network")
     require(len(set(numbers)) == len(numbers), "an id stands twice")
@@ -1119,7 +1218,7 @@ def read_numbers(value: Any, below: int, ascending: bool = True) -> list[int]:
 
 
 def _read_goal(value: Any, network: Network) -> int:
-    """Read a goal, given as id and text; return its id."""
+    """Return the id of a goal, from an object with its id and its text, which have to agree."""
     goal = read_object(value, ("id", "node"))
     (node,) = read_numbers([goal["id"]], len(network.objects))
     require(str(network.objects[node]) == goal["node"], "a goal is not the node of its id")
@@ -1127,7 +1226,10 @@ def _read_goal(value: Any, network: Network) -> int:
 
 
 def read_rules(value: Any, units: int) -> tuple[Rule, ...]:
-    """Read the constraints of a claim, and its statements about user rules that are taken on trust."""
+    """Return the rules of a claim; refuse rules that are unknown, malformed, repeated or not sorted.
+
+    ``units`` is the number of units. Claims about user rules are rules, too; only their form is checked.
+    """
     rules = [read_object(rule) for rule in read_list(value)]
     if len(rules) > ALLOWED.rules:
         raise LimitError(f"it has more than {ALLOWED.rules} rules")
@@ -1153,9 +1255,9 @@ def read_rules(value: Any, units: int) -> tuple[Rule, ...]:
 
 
 def _check_user_rules(rule: Rule, units: int) -> None:
-    """Check the form of claims about user rules; the claims themselves are taken on trust.
+    """Check the form of claims about user rules; their truth is taken on trust.
 
-    The claims consist of the texts of the rules, their digests, and sets of units.
+    They consist of the texts of the rules with their digests, pairs of sets of units, and limits on sums.
     """
     read_object(rule, ("rule", "claims", "constants", "files", "library", "limits"))
     for key in ("constants", "library"):
@@ -1183,7 +1285,7 @@ def _check_user_rules(rule: Rule, units: int) -> None:
 
 
 def read_rational(value: Any) -> Fraction:
-    """Read a fraction in lowest terms."""
+    """Return a fraction from a text in lowest terms, such as ``3/2`` or ``-7``."""
     require(isinstance(value, str) and bool(_RATIONAL.fullmatch(value)), "expected a number such as 3/2")
     if len(value) > ALLOWED.digits:
         raise LimitError(f"a fraction has more than {ALLOWED.digits:,} digits")
