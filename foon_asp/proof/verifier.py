@@ -513,7 +513,7 @@ class Check:
     def _require_complete(
         self, values: Sequence[Fraction | None] | None, count: int, what: str
     ) -> list[Fraction]:
-        """Return ``count`` values; refuse missing values and values below 0; ``what`` names them in errors."""
+        """Return ``count`` values; refuse missing ones and values below 0; ``what`` names them in errors."""
         require(values is not None, f"a claim needs {what}, but none are given")
         present = [value for value in values or () if value is not None]
         require(len(present) == count, f"a unit has none of the {what} that a claim needs")
@@ -911,8 +911,9 @@ class Check:
         return meaning_of_rule(rule, question)
 
     def _cost(self, member: int) -> Amount:
-        """Return the cost of a unit or an item, one part for each objective that counts it; a step costs
-        nothing.
+        """Return the cost of a unit or an item, with a part for each objective that counts it.
+
+        A step of constraints costs nothing.
         """
         cost: Amount = {}
         if member in self.ruled.steps:

@@ -1,14 +1,16 @@
 """Is a certificate of a plan right, where items are used up? Without a solver, a linear program or floats.
 
-docs/dev/certificates.md describes these certificates and proves that what passes here is true. In short: how
-often a plan executes each unit satisfies conditions that can be read from the network. No more copies of a
-node are used up than are initial or added (the *balance* of the node). For each cut before a goal, or before
-a unit that is executed, a member is executed. Counts are integers, so sums of balances can be rounded. A
-Farkas combination of the conditions, with weights from 0, bounds the cost of every plan. The bound is the
-sum of the right-hand sides plus, for each unit, the least of its reduced cost over all the counts that it may
-have.
+docs/dev/certificates.md describes these certificates and proves that what passes here is true. In short: the
+*count* of a unit says how often a plan executes it. Counts satisfy linear conditions that can be read from
+the network. One is the *balance* of a node: no more copies are used up than are initial or added. Another is
+a cut before a goal, or before a unit that is executed: a member of the cut is executed. Counts are integers,
+so sums of balances can be rounded.
 
-Which inputs a unit uses up, and whether a plan runs, is computed here anew from the plain network.
+A Farkas combination of the conditions, with weights from 0, bounds the cost of every plan. The bound is the
+sum of the right-hand sides and of one number for each unit. This number is the least reduced cost over all
+counts that the unit may have.
+
+The inputs that a unit uses up are computed here anew from the plain network, and so is whether the plan runs.
 """
 
 import math
@@ -57,7 +59,7 @@ _LEAF = {"weights", "before", "supply", "balance", "limits", "levels", "rounded"
 
 
 class Flow(NamedTuple):
-    """The object nodes that a unit needs, consumes and adds, each with the number of copies."""
+    """The copies of object nodes that a unit needs (``asks``), consumes (``uses``) and adds, by node id."""
 
     asks: Mapping[int, int]
     uses: Mapping[int, int]
@@ -69,9 +71,11 @@ Row: TypeAlias = tuple[Mapping[int, int | Fraction], int | Fraction]
 
 
 class Node(NamedTuple):
-    """A node of the branching: its proof, and the least and greatest counts of its members, by member.
+    """A node of the branching over counts.
 
-    The count of an item is the number of its copies that are taken.
+    ``proof``: the proof of the node, as JSON.
+    ``min_counts``, ``max_counts``: the bounds of counts by member, if branches set them. The count of an item
+    is the number of its copies that are taken.
     """
 
     proof: Any
@@ -80,21 +84,25 @@ class Node(NamedTuple):
 
 
 def is_of_plan(certificate: Any) -> bool:
-    """Return whether a certificate claims to be one of a plan."""
+    """Return whether a certificate claims, by its format, to be one of a plan."""
     return isinstance(certificate, dict) and certificate.get("format") == PLAN.name
 
 
 def verify_any(certificate: Any, subject: Subject) -> Verified:
-    """Check a certificate of a tree or of a plan; raises :class:`RefusedError`."""
+    """Check a certificate of a tree or of a plan; return what it proves.
+
+    Raises :class:`RefusedError` with the first fault that is found.
+    """
     check = verify_plan if is_of_plan(certificate) else verify
     return check(certificate, subject)
 
 
 @refuse_deep_nesting()
 def verify_plan(certificate: Any, subject: Subject) -> Verified:
-    """Check a certificate of a plan against the data it speaks about.
+    """Check a certificate of a plan against its data; return what it proves.
 
-    Raises :class:`RefusedError` with the first fault that is found.
+    Raises :class:`RefusedError` with the first fault that is found. Below level 3, every certificate is
+    refused, since consumption depends on contents.
     """
     rules = check_header(certificate, PLAN, subject)
     require(subject.network.level == 3, "below level 3 nothing says what is used up: contents decide")
@@ -108,12 +116,12 @@ def verify_plan(certificate: Any, subject: Subject) -> Verified:
 class PlanCheck(Check):
     """One certificate of a plan, checked against its network.
 
-    Where the objective ``kitchen`` counts items, a *member* is also an item: its count is 0 or 1 for an item
-    that is not consumable, else the number of copies taken from the stock.
+    If the objective ``kitchen`` counts items, they are members of cuts, too. The count of an endless item is
+    0 or 1. The count of another item is the number of copies taken from the stock.
     """
 
     def __init__(self, certificate: dict[str, Any], rules: tuple[Rule, ...], subject: Subject) -> None:
-        """Read the items of a certificate, and the parts that :class:`Check` reads; then its rounded sums."""
+        """Read the items of a certificate, then all that :class:`Check` reads, and then the rounded sums."""
         items = read_object(certificate["items"], ("stock", "stays", "wanted", "amounts"))
         self.stock = _read_stock(items["stock"], subject.kitchen)
         self.stays_stated = _read_stays(items["stays"], len(subject.network.objects))
@@ -134,7 +142,10 @@ class PlanCheck(Check):
     # --- what units do
 
     def _flow(self, unit: int) -> Flow:
-        """Return preconditions, consumption and add effects of a unit; an input adds only its surplus."""
+        """Return the copies that one execution of a unit needs, consumes and adds.
+
+        Of an output that is also an input, only the surplus over the input is added.
+        """
         network, inputs = self.network, self.network.inputs[unit]
         input_amounts, output_amounts = self.amounts.get(unit, ({}, {}))
         asks = {o: input_amounts.get(o, 1) for o in self.needs(unit) if o is not None}
@@ -153,26 +164,29 @@ class PlanCheck(Check):
     def _unmet_preconditions(self, unit: int) -> frozenset[int]:
         """Return the preconditions of a unit that initial copies do not satisfy.
 
-        With the objective ``kitchen``, initial copies satisfy none: they are members of cuts instead.
+        With the objective ``kitchen``, these are all preconditions, since initial copies are members of cuts.
         """
         return frozenset(o for o, n in self.flow(unit).asks.items() if self._is_lacking(o, n))
 
     def _is_lacking(self, o: int, copies: int) -> bool:
-        """Return whether initial copies do not satisfy the need for a number of copies of a node."""
+        """Return whether initial copies of a node are fewer than ``copies``.
+
+        With the objective ``kitchen``, return ``True``, since initial copies are members of cuts.
+        """
         if "kitchen" in self.objectives:
             return True
         return o not in self.endless and copies > self.stock.get(o, 0)
 
     def copies_wanted(self, goal: int) -> int:
-        """Return how many copies of a goal are wanted."""
+        """Return how many copies of a goal have to exist in the end."""
         return self.wanted_stated.get(goal, 1)
 
     def _remaining_copies(self, unit: int, o: int, amount: int, made: int) -> int:
         """Return how many of the ``amount`` copies of an input remain after a unit has run.
 
-        The certificate may state this. Otherwise, an output with the label of the input decides: the copies
-        that the unit makes of the same node remain, at most ``amount``. Without such an output, the rule for
-        utensils and places decides.
+        The certificate may state that all or none remain. Otherwise, an output with the label of the input
+        decides: the ``made`` copies of the same node remain, at most ``amount``. Without such an output, the
+        rule for utensils and places decides (:meth:`_stays_by_rule`).
         """
         objects, network = self.network.objects, self.network
         node = objects[o]
@@ -185,7 +199,11 @@ class PlanCheck(Check):
         return amount if self._stays_by_rule(unit, node, outputs) else 0
 
     def _stays_by_rule(self, unit: int, node: ObjectNode, outputs: Sequence[ObjectNode]) -> bool:
-        """Return whether an input stays by the rule for utensils and places; no output has its label."""
+        """Return whether an input stays although no output has its label.
+
+        A utensil stays if it is empty, or if an output is in, on or at it. An input that is in another input
+        stays if an output with that one's label still contains it.
+        """
         objects, network = self.network.objects, self.network
         if node.label in self.utensils:
             holds = any(contents.ingredients for contents in node.contents)
@@ -199,8 +217,8 @@ class PlanCheck(Check):
     def idle(self) -> frozenset[int]:
         """The units that no plan executes: removed by a rule, or with an unreachable precondition.
 
-        This holds because no node of ``unreached`` is initial, and each achiever of such a node is removed or
-        has a node of ``unreached`` as a precondition.
+        The certificate lists the unreachable nodes under ``unreached``. Refuse the list if a node of it is
+        initial. Refuse it, too, if some unit adds such a node, needs none of them and is not removed.
         """
         network = self.network
         stated = self.certificate["unreached"]
@@ -216,10 +234,16 @@ class PlanCheck(Check):
         return removed | asking
 
     def _is_initial(self, o: int) -> bool:
+        """Return whether a node is endless or has copies in the stock."""
         return o in self.endless or self.stock.get(o, 0) > 0
 
     def _landmark(self, cut: frozenset[int]) -> Iterator[int]:
-        """Yield the landmark of a cut: units that add one of its nodes and need none, and its items."""
+        """Yield the members of a cut.
+
+        They are the units that add one of its nodes and need none, except units that no plan executes. The
+        cut may have nodes that rules add. If the objective ``kitchen`` counts items, its initial nodes are
+        members, too.
+        """
         network, own = self.network, self.ruled.makers
         self._spend(sum(1 + len(own[o] if o in own else network.producers[o]) for o in cut))
         units: list[int] = []
@@ -238,7 +262,10 @@ class PlanCheck(Check):
     # --- conditions on counts alone
 
     def balance(self, o: int) -> tuple[dict[int, int], int]:
-        """Return each unit's net effect on the copies of a node, and the copies wanted in the end."""
+        """Return the net effect of each unit on the copies of a node, and the copies wanted in the end.
+
+        Units without effect on the node are omitted.
+        """
         network = self.network
         read_number(o, range(len(network.objects)), "the id of a node in a balance")
         require(o not in self.endless, "what never runs out has no balance")
@@ -250,7 +277,11 @@ class PlanCheck(Check):
         return changes, self.copies_wanted(o) if o in self.goals else 0
 
     def _read_rounded(self) -> list[Row]:
-        """Read the rounded sums: of balances, limits and earlier rounded sums, with positive weights."""
+        """Return the rounded sums of the certificate as rows.
+
+        Each is a sum of balances, limits and earlier rounded sums, with weights above 0, which is then
+        rounded.
+        """
         rows: list[Row] = []
         for stated in read_list(self.certificate["rounded"]):
             require(
@@ -270,7 +301,10 @@ class PlanCheck(Check):
         return rows
 
     def _condition_on_counts(self, key: str, number: int, earlier: Sequence[Row]) -> Row:
-        """Return a condition on counts alone: the coefficients of units, and a lower bound on their sum."""
+        """Return the condition of a certificate that ``key`` and ``number`` name, as a row.
+
+        ``key`` is ``balance``, ``limits`` or ``rounded``. ``earlier`` has the rounded sums before this one.
+        """
         if key == "rounded":
             return earlier[read_number(number, range(len(earlier)), "the number of an earlier rounded sum")]
         if key == "limits":
@@ -282,7 +316,10 @@ class PlanCheck(Check):
     # --- the plan
 
     def _execute(self, units: list[Any]) -> tuple[Amount, list[int | Fraction]]:
-        """Execute the plan copy by copy; return its cost as an amount and as figures."""
+        """Execute the plan copy by copy; return its cost twice, as an amount and as written in a certificate.
+
+        Refuse a plan that does not run, does not make the wanted copies of goals, or breaks a rule.
+        """
         network = self.network
         copies, items_taken = Counter(self.stock), set[int]()
         least: Counter[int] = Counter()  # copies of the stock that the plan cannot do without
@@ -315,7 +352,7 @@ class PlanCheck(Check):
         return total, self._written_costs(units, total)
 
     def _require_kept_rules_by_counts(self, counts: Counter[int]) -> None:
-        """Check the counts of a plan against the rules; limits count each execution."""
+        """Refuse a plan with these counts of units if it breaks a rule; limits count each execution."""
         ruled, units = self.ruled, frozenset(counts)
         require(not units & ruled.removed, "the plan has a unit that a rule removes")
         wanted = all(not units.isdisjoint(ruled.makers[goal]) for goal in ruled.goals)
@@ -327,7 +364,7 @@ class PlanCheck(Check):
     # --- the proof
 
     def _check_proof(self, proof: Any, least: Amount | None) -> None:
-        """Check for each objective that plans as good by earlier objectives cost at least ``least``.
+        """Check for each objective that no plan as good by the earlier objectives costs less than ``least``.
 
         If ``least`` is ``None``, the proof is that no plan exists. All costs are then 0, and bounds have to
         be above 0.
@@ -351,7 +388,7 @@ class PlanCheck(Check):
                     self._check_leaf(node, level)
 
     def _children(self, node: Node) -> Iterator[Node]:
-        """Yield the children of a node: counts of a member up to a number, and above it."""
+        """Yield the two children of a node: counts of a member up to a number, and counts above it."""
         proof = read_object(node.proof, ("branch", "most", "up_to", "above"))
         member = self._read_branch_member(proof["branch"])
         max_count = read_number(proof["most"], range(_MAX_COUNT), "the most executions of a branch")
@@ -361,7 +398,10 @@ class PlanCheck(Check):
         yield Node(proof["above"], {**node.min_counts, member: above}, node.max_counts)
 
     def _check_leaf(self, node: Node, level: int) -> None:
-        """Check that the Farkas combination of a leaf proves the bound for its plans."""
+        """Check that the Farkas combination of a leaf proves the bound for the counts of this node.
+
+        Nothing has to be proved if the node leaves no count for a member.
+        """
         require(set(node.proof) <= _LEAF, "expected weights of conditions or a branch")
         conditions = _FarkasCombination(self, level, node.proof)
         bound = conditions.constant
@@ -375,9 +415,11 @@ class PlanCheck(Check):
     def _least_reduced_cost(
         self, member: int, level: int, node: Node, conditions: "_FarkasCombination"
     ) -> Amount | None:
-        """Return the least reduced cost of a member over all counts that are possible; ``None`` without any.
+        """Return the least reduced cost of a member over all its possible counts at a node.
 
-        From 1 on, the cost is linear in the count, so only 0 and the ends of the range from 1 on matter.
+        ``None`` if no count is possible. ``level`` is the index of the objective. From 1 on, the cost is
+        linear in the count, so it is enough to compare 0 and the ends of the range from 1 on. Refuse costs
+        that fall without end.
         """
         low, high = node.min_counts.get(member, 0), self._max_count(member, level, node)
         if high is not None and high < low:
@@ -405,7 +447,10 @@ class PlanCheck(Check):
         return cheapest
 
     def _max_count(self, member: int, level: int, node: Node) -> int | None:
-        """Return an upper bound on the count of a member; ``None`` where there is no bound."""
+        """Return an upper bound on the count of a member at a node; ``None`` if there is none.
+
+        Bounds come from branches, the stock, limits, and the claimed cost by this and earlier objectives.
+        """
         bounds = [node.max_counts[member]] if member in node.max_counts else []
         if member >= len(self.network):
             o = member - len(self.network)
@@ -422,17 +467,19 @@ class PlanCheck(Check):
         return min(bounds, default=None)
 
     def _max_counts_by_limits(self, unit: int) -> Iterator[int]:
-        """Yield an upper bound on the count of a unit for each limit without negative amounts."""
+        """Yield an upper bound on the count of a unit for each limit that counts it.
+
+        Limits with negative amounts are skipped.
+        """
         for limit in self.ruled.limits.values():
             amount = limit.amounts.get(unit, 0)
             if amount > 0 and min(limit.amounts.values()) >= 0:
                 yield max(0, math.floor(limit.max_sum / amount))
 
     def _max_count_by_cost(self, unit: int, level: int, less: bool) -> int | None:
-        """Return an upper bound on the count of a unit in plans that cost at most the incumbent.
+        """Return an upper bound on the count of a unit in plans of at most the claimed cost by an objective.
 
-        With ``less``, in plans that cost less. ``None`` if an execution costs nothing, so that there is no
-        bound.
+        With ``less``, the bound is for plans that cost less. ``None`` if an execution costs nothing.
         """
         per_execution, max_cost = self.cost_lower_bound(unit, level), self.claimed_cost(level)
         if per_execution == 0:
@@ -441,13 +488,13 @@ class PlanCheck(Check):
         return math.ceil(max_cost / per_execution) - 1 if exact else math.floor(max_cost / per_execution)
 
     def amount_by_objective(self, member: int, level: int) -> Amount:
-        """Return the cost of a member by one objective."""
+        """Return the cost of a member by the objective with the index ``level``, as an amount."""
         return {key: value for key, value in self._cost(member).items() if key[0] == level}
 
     def cost_lower_bound(self, member: int, level: int) -> Fraction:
         """Return a lower bound on the cost of a member by an objective, as one number.
 
-        It is the exact cost, except for ``success``: there -log of the rate is rounded down.
+        It is the exact cost, except by ``success``: there, ``-log`` of the rate is rounded down.
         """
         if self.objectives[level] != "success":
             return self.amount_by_objective(member, level).get((level, None), Fraction(0))
@@ -457,7 +504,10 @@ class PlanCheck(Check):
         return Fraction(math.floor(LOGARITHM_SCALE * self.minus_log(self.rate(member))[0]), LOGARITHM_SCALE)
 
     def claimed_cost(self, level: int) -> Fraction:
-        """Return the claimed least cost of plans by an objective as one number; by ``success`` rounded up."""
+        """Return the claimed least cost of plans by an objective, as one number.
+
+        By ``success``, it is ``-log`` of the product, rounded up.
+        """
         assert self.least is not None
         stated = {rate: value for (at, rate), value in self.least.items() if at == level}
         if self.objectives[level] != "success":
@@ -466,11 +516,11 @@ class PlanCheck(Check):
         return Fraction(math.ceil(LOGARITHM_SCALE * sum(map(max, bounds), Fraction(0))), LOGARITHM_SCALE)
 
     def cut_nodes(self, number: int) -> frozenset[int]:
-        """Return a cut by its number."""
+        """Return the nodes of the cut with a number."""
         return self.cuts[read_number(number, range(len(self.cuts)), "the number of a cut")]
 
     def holds_goal(self, nodes: frozenset[int]) -> bool:
-        """Return whether a cut holds a goal that is consumable or made, or a goal of a rule."""
+        """Return whether a cut has a goal of a rule, or a goal that initial copies do not satisfy."""
         wanted = any(
             goal in nodes and goal not in self.endless and self._is_lacking(goal, self.copies_wanted(goal))
             for goal in self.goals
@@ -478,13 +528,19 @@ class PlanCheck(Check):
         return wanted or not nodes.isdisjoint(self.ruled.goals)
 
     def read_weight(self, stated: Any, level: int) -> Amount:
-        """Read a weight: a number, or by success the exponent of each rate."""
+        """Return a stated weight for one objective as an amount.
+
+        It is a fraction or, by ``success``, an object from rate to exponent.
+        """
         parts = [*({} if objective == "success" else "0" for objective in self.objectives)] or ["0"]
         parts[level] = stated
         return {key: value for key, value in self._read_amount(parts).items() if key[0] == level}
 
     def _require_enough(self, bound: Amount, level: int) -> None:
-        """Require that a bound, rounded up to the next possible cost, is at least the claimed one."""
+        """Refuse a bound that is below the claimed cost by an objective.
+
+        The bound is first rounded up to the next cost that a plan can have.
+        """
         if self.least is None:
             enough = self.sign(bound) > 0
         else:
@@ -509,15 +565,18 @@ class PlanCheck(Check):
 
 
 class _FarkasCombination:
-    """A Farkas combination: conditions with weights from 0, added up.
+    """A Farkas combination: conditions on counts with weights from 0, added up.
 
-    ``executed`` maps each member to its coefficient per execution (or per copy taken). ``used`` maps each
-    member to its coefficient for being used at all. Both have the sign reversed. ``constant`` is the
-    right-hand side, and ``levels`` has the weights of earlier objectives, each after the objective's number.
+    ``executed``: the coefficient of each member for each execution, or for each copy taken.
+    ``used``: the coefficient of each member for being executed at all.
+    ``constant``: the right-hand side of the sum.
+    ``levels``: the weights of earlier objectives, as pairs of the objective's index and the weight.
+
+    Coefficients have the sign reversed, so that they can be added to costs.
     """
 
     def __init__(self, check: PlanCheck, level: int, proof: Mapping[str, Any]) -> None:
-        """Read the weighted conditions of a proof for one objective, and add them up."""
+        """Read the weighted conditions of a proof for the objective with the index ``level``; add them up."""
         self.check, self.level, self.proof = check, level, proof
         self.constant: Amount = {}
         self.executed: dict[int, Amount] = {}
@@ -554,14 +613,18 @@ class _FarkasCombination:
             self.levels.append((number, weight))
 
     def _weighted_rows(self, key: str, numbers: int = 1) -> Iterator[tuple[list[int], Amount]]:
-        """Yield the weighted conditions under a key, each named by a tuple of ``numbers`` numbers."""
+        """Yield the weighted conditions under a key: the numbers that name each, and its weight.
+
+        ``numbers`` says how many numbers name a condition.
+        """
         read = partial(self.check.read_weight, level=self.level)
         return self.check.read_weights(key, self.proof.get(key, []), read, numbers)
 
     def _add_cut(self, cut: int, weight: Amount, holds: bool) -> None:
-        """Add the condition of a cut: a member is used, or a copy of an item in it is taken.
+        """Add the condition of a cut: a member is executed, or a copy of an item in it is taken.
 
-        Refuse the cut unless it ``holds`` a goal, or a precondition of the unit that it is before.
+        Refuse the cut unless ``holds`` is true: it has a goal, or a precondition of the unit that it is
+        before.
         """
         check = self.check
         require(holds, f"cut {cut} holds neither a goal nor what the unit asks for")
@@ -572,17 +635,16 @@ class _FarkasCombination:
             self._add_coefficient(coefficients, member, weight, -1)
 
     def _add_balance(self, o: int, weight: Amount) -> None:
-        """Add the balance of a node: no more copies are consumed than exist, and the wanted ones are left."""
+        """Add the balance of a node: its initial copies and net effects are at least the copies wanted."""
         changes, wanted = self.check.balance(o)
         self._add_to_constant(weight, wanted - self._initial_copies(o, weight))
         for unit, change in changes.items():
             self._add_coefficient(self.executed, unit, weight, -change)
 
     def _add_supply(self, o: int, supplied: int, weight: Amount) -> None:
-        """Add the supply of a unit: the copies of a node that it needs exist before it is executed.
+        """Add the condition that the unit ``supplied`` gets the copies of a node that it needs.
 
-        These copies are initial, or other units add them, since the unit adds none before its first
-        execution.
+        These copies are initial or added by other units, since the unit adds none before its first execution.
         """
         check, network = self.check, self.check.network
         read_number(o, range(len(network.objects)), "the id of a node in a supply")
@@ -594,9 +656,10 @@ class _FarkasCombination:
                 self._add_coefficient(self.executed, unit, weight, -added)
 
     def _initial_copies(self, o: int, weight: Amount) -> int:
-        """Return the initial copies of a node, as a constant.
+        """Return the initial copies of a node, to be used as a constant.
 
-        With the objective ``kitchen``, taking them has a cost: then add the item as a member, and return 0.
+        With the objective ``kitchen``, taking them has a cost. Then add the item as a member instead, and
+        return 0.
         """
         check = self.check
         initial = check.stock.get(o, 0)
@@ -612,22 +675,25 @@ class _FarkasCombination:
     def _add_coefficient(
         self, to: dict[int, Amount], member: int, weight: Amount, factor: int | Fraction
     ) -> None:
-        """Add ``factor`` times a weight to the coefficient of a member."""
+        """Add ``factor`` times a weight to the coefficient of a member in ``to``, in place."""
         to[member] = self._plus_multiple(to.get(member, {}), weight, factor)
 
     def _plus_multiple(self, amount: Amount, weight: Amount, factor: int | Fraction) -> Amount:
+        """Return an amount plus ``factor`` times a weight."""
         return self.check.sum([amount, self.check.times(weight, Fraction(factor))])
 
 
 def _round_row(coefficients: Mapping[int, Fraction], least: Fraction) -> Row:
-    """Return a condition rounded for counts that are integers from 0 (mixed-integer rounding).
+    """Return a row that whole counts from 0 satisfy if they satisfy the given one (mixed-integer rounding).
 
-    It is the new coefficient of each unit, and the new lower bound on the sum, which was ``least``.
+    The given row is its coefficients by unit, and ``least``, a lower bound on the sum. It has to be no whole
+    number.
     """
     fraction = least - math.floor(least)
     require(fraction > 0, "a sum is rounded that is whole")
 
     def rounded(coefficient: Fraction) -> Fraction:
+        """Return the coefficient of a unit in the rounded row."""
         below = math.floor(coefficient)
         return below + min(Fraction(1), (coefficient - below) / fraction)
 
@@ -635,7 +701,7 @@ def _round_row(coefficients: Mapping[int, Fraction], least: Fraction) -> Row:
 
 
 def _read_copies(value: Any, what: str) -> dict[int, int]:
-    """Read numbers of copies by id."""
+    """Return numbers of copies by id, from a list of pairs in order; ``what`` names them in errors."""
     pairs = [read_pair(pair, what) for pair in read_list(value)]
     for number in chain.from_iterable(pairs):
         read_number(number, range(_MAX_COUNT), what)
@@ -645,14 +711,17 @@ def _read_copies(value: Any, what: str) -> dict[int, int]:
 
 
 def _read_stock(value: Any, kitchen: Collection[int]) -> dict[int, int]:
-    """Read the copies in stock of kitchen items, by id."""
+    """Return the copies in stock by id; refuse nodes that are no kitchen items."""
     stock = _read_copies(value, "items and their copies in stock")
     require(all(o in kitchen for o in stock), "expected kitchen items in stock")
     return stock
 
 
 def _read_amounts(value: Any, subject: Subject) -> dict[int, tuple[dict[int, int], dict[int, int]]]:
-    """Read the amounts of inputs and outputs by unit id; refuse amounts that differ from the data."""
+    """Return the stated amounts of inputs and of outputs by unit id.
+
+    Refuse amounts that differ from the data.
+    """
     what = "units and the amounts of their inputs and outputs"
     stated: dict[int, tuple[dict[int, int], dict[int, int]]] = {}
     for row in read_list(value):
@@ -674,7 +743,7 @@ def _read_amounts(value: Any, subject: Subject) -> dict[int, tuple[dict[int, int
 
 
 def _read_stays(value: Any, nodes: int) -> dict[str | int, bool]:
-    """Read which labels and nodes stay when they are used."""
+    """Return for labels, and for nodes by id, whether they stay when used, as the certificate states it."""
     what = "labels and nodes, and whether they stay"
     pairs = [read_pair(pair, what) for pair in read_list(value)]
     well_formed = all(type(name) in (int, str) and type(stays) is bool for name, stays in pairs)
