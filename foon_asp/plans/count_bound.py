@@ -1,10 +1,10 @@
 """Operator counting with the state equation: lower bounds on the cost of plans that consume objects.
 
-The counts of executions in a plan satisfy linear conditions (operator counting, Pommerening et al. 2014): of
-every object no more copies are consumed than there are, a copy of every target remains, and each action that
-is executed has achievers of its preconditions, if they are not initial. Landmarks of the delete relaxation
-hold as well. HiGHS solves the relaxations in floats; bounds are recomputed in whole numbers, so that no float
-decides.
+The counts of executions in a plan satisfy linear conditions (operator counting, Pommerening et al. 2014). Of
+every object, no more copies are consumed than exist, and the copies of targets remain. An executed action has
+achievers of its preconditions, if they are not initial. Landmarks of the delete relaxation hold as well.
+
+HiGHS solves the relaxations in floats. Bounds are recomputed in whole numbers, so that no float decides.
 """
 
 import math
@@ -25,7 +25,7 @@ from foon_asp.plans.whole_program import INTEGRALITY, Bounds, Solved, Stopped, W
 
 
 class BetterError(Exception):
-    """The counts of a plan better than the incumbent were found."""
+    """Raised when a plan better than the incumbent is found; ``counts`` are those for which it was found."""
 
     def __init__(self, counts: Counts) -> None:
         super().__init__("a better plan was found")
@@ -36,11 +36,13 @@ class CountBound:
     """Branch and bound over the counts of executions in plans for one question.
 
     ``required``: disjunctive action landmarks.
-    ``limits``: bounds on weighted sums, with weights from 0, over executions or over the actions used.
+    ``limits``: limits on weighted sums, with weights from 0.
     ``derivation``: actions that reach the targets in the delete relaxation; landmarks are grown around them.
     ``levels``: plans that are worse than the incumbent by any level are excluded.
     ``excluded_counts``: plans that execute each action at least as often as any of the counts are excluded.
     ``expired``: returns whether time is up; the methods then raise :class:`Stopped`.
+
+    ``proved`` is a lower bound on the cost of every plan by the first level; the methods raise it.
     """
 
     def __init__(
@@ -67,9 +69,10 @@ class CountBound:
     def cheapest_counts_by_equation(self, measures: Sequence[Measure]) -> Counts | None:
         """Return counts of least cost in floats, the first measure most important.
 
-        As in :meth:`cheapest_counts`, the counts are of a plan of the delete relaxation. This is faster,
-        as few actions have an indicator. Returns ``None`` if no counts are found, or if items have costs or
-        counts are excluded; it does not search then.
+        The counts are of a plan of the delete relaxation, as those of :meth:`cheapest_counts`. They are found
+        by the state equation, where few actions have indicators, which is much faster. Returns ``None`` if no
+        counts are found. It does not search, and returns ``None``, if items have costs or counts are
+        excluded.
         """
         if self._excluded_counts or any(measure.item for measure in measures):
             return None
@@ -92,14 +95,17 @@ class CountBound:
             self._stop_if_expired()
 
     def _assumed_caps(self, measure: Measure, assumed_cost: int | None) -> Sequence[int | None]:
-        """Return upper bounds on counts in plans of up to an assumed cost, to tie indicators to counts."""
+        """Return an upper bound on the count of each action in plans of up to an assumed cost.
+
+        Indicators need such bounds. Empty if no cost is assumed.
+        """
         if assumed_cost is None:
             return ()
         free = PLANS.first_executions * max(self._flows.targets.values(), default=1)
         return [assumed_cost // cost if cost else free for cost in measure.costs]
 
     def _state_equation(self, levels: Sequence[Level] = (), caps: Sequence[int | None] = ()) -> StateEquation:
-        """Return the state equation with all known conditions, and the rows of levels."""
+        """Return a new state equation with all known conditions, ``caps`` on counts and ``levels``."""
         equation = StateEquation(self._flows, self._limits, caps, self._expired)
         for condition, row, least in self._rounded_rows:
             equation.add((condition,), row, least)
@@ -112,7 +118,7 @@ class CountBound:
         return equation
 
     def _add_violated(self, x: Sequence[float], equation: StateEquation) -> bool:
-        """Add a violated landmark, supply or remainder that is new; return whether there is one."""
+        """Add a new landmark, supply or remainder that a solution violates; return whether there is one."""
         used = {a for a in range(self._size) if x[a] > INTEGRALITY}
         landmark = self._violated_landmark(used, set(), {})
         if landmark is not None and landmark not in self._landmarks:
@@ -130,10 +136,11 @@ class CountBound:
         return False
 
     def cheapest_counts(self, measures: Sequence[Measure], rounds: int = 30) -> Counts | None:
-        """Return counts of least cost in floats, the first measure most important; ``None`` if infeasible.
+        """Return counts of least cost in floats, the first measure most important.
 
-        The counts are of a plan of the delete relaxation. There may be no plan with these counts, and their
-        optimality is not proved.
+        ``None`` if HiGHS finds none. The counts are of a plan of the delete relaxation. There may be no plan
+        with these counts, and their optimality is not proved. Up to ``rounds`` times, landmarks that the
+        counts violate are added.
         """
         counts = None
         wanted = max(self._flows.targets.values(), default=1)
@@ -146,7 +153,7 @@ class CountBound:
     def _cheapest_counts_up_to(
         self, measures: Sequence[Measure], rounds: int, assumed_cap: int
     ) -> Counts | None:
-        """Return counts of least cost as :meth:`cheapest_counts` does, under an assumed cap of counts."""
+        """Return counts of least cost as :meth:`cheapest_counts`, under an assumed cap on all counts."""
         counts: Counts | None = None
         for _ in range(rounds):
             model = self._new_model(measures, assumed_cap)
@@ -167,7 +174,7 @@ class CountBound:
         return counts
 
     def _solve_relaxed(self, model: CountModel, objective: Mapping[int, int]) -> list[float] | None:
-        """Add violated landmarks to the relaxation; return its solution if it is whole, else ``None``."""
+        """Add violated landmarks to the relaxation; return its solution if that is whole, else ``None``."""
         while True:
             self._stop_if_expired()
             x = model.program.solve(objective).x
@@ -198,7 +205,10 @@ class CountBound:
         return None if abs(bound) == math.inf else math.floor(-bound)
 
     def max_counts(self, level: Level) -> list[int | None]:
-        """Return the greatest count of each action in plans as good as a level; ``None``: unbounded."""
+        """Return an upper bound on the count of each action in plans as good as a level.
+
+        ``None`` for an action is no bound.
+        """
         model = self._new_model((level.measure,))
         model.add_level(level)
         caps: list[int | None] = []
@@ -213,9 +223,8 @@ class CountBound:
     def prove(self, levels: Sequence[Level], is_better: Callable[[Counts], bool]) -> None:
         """Prove that no plan is better than the incumbent, the first level most important.
 
-        ``is_better`` is called with counts of lower cost, and returns whether some order of them is a better
-        plan. Raises :class:`BetterError` with the counts of a better plan, and :class:`Stopped` if time is
-        up.
+        Counts that might be of a better plan are passed to ``is_better``. It returns whether some order of
+        them is a better plan. Raises :class:`BetterError` if so, and :class:`Stopped` if time is up.
         """
         for i, level in enumerate(levels):
             before, rounded = levels[:i], level.measure.exact is not None
@@ -228,16 +237,16 @@ class CountBound:
     def visit_counts(self, levels: Sequence[Level], ask: Callable[[Counts], None]) -> None:
         """Call ``ask`` with all counts that a plan as good as the incumbent by each level can have.
 
-        Costs of the last level are whole numbers. Raises :class:`Stopped` if time is up.
+        Costs of the last level have to be whole. Raises :class:`Stopped` if time is up.
         """
         *before, last = levels
         self._search_counts(last.measure, last.max_cost, ask, before, before)
 
     def prove_infeasible(self, measure: Measure, is_better: Callable[[Counts], bool]) -> None:
-        """Prove that there is no plan at all, looking at counts of low cost by ``measure`` first.
+        """Prove that there is no plan at all; counts of low cost by ``measure`` are tried first.
 
         ``is_better`` is called with counts, and returns whether some order of them is a plan. Raises
-        :class:`BetterError` if there is a plan, and :class:`Stopped` if nothing is proved.
+        :class:`BetterError` if so, and :class:`Stopped` if nothing is proved.
         """
         proved = self.proved
         try:
@@ -253,10 +262,11 @@ class CountBound:
         before: Sequence[Level] = (),
         levels: Sequence[Level] = (),
     ) -> None:
-        """Call ``is_better`` with all counts of cost up to ``max_cost`` (``None``: any), by branch and bound.
+        """Call ``is_better`` with all counts of cost up to ``max_cost``, by branch and bound.
 
-        Only counts as good as the incumbent are considered: by rounded costs for each level in ``before``,
-        and by exact costs for each of ``levels``.
+        ``None`` is no limit of cost. Only counts as good as the incumbent are considered: by rounded costs
+        for each level in ``before``, and by exact costs for each of ``levels``. Raises :class:`BetterError`
+        if ``is_better`` returns true, and :class:`Stopped` after too many nodes.
         """
         if max_cost is not None and not measure.item and self._equation_exceeds(measure, max_cost, before):
             return
@@ -286,9 +296,10 @@ class CountBound:
                 raise Stopped
 
     def _equation_exceeds(self, measure: Measure, max_cost: int, before: Sequence[Level]) -> bool:
-        """Whether the state equation proves that plans as good by earlier levels cost above ``max_cost``.
+        """Return whether the state equation proves that plans cost more than ``max_cost`` by a measure.
 
-        It branches over counts, and adds landmarks while some are violated.
+        Only plans as good as the incumbent by the levels in ``before`` are considered. The search branches
+        over counts, and adds landmarks that are violated.
         """
         costs = {a: cost for a, cost in enumerate(measure.costs) if cost}
         caps = [max(max_cost, 0) // cost if cost else None for cost in measure.costs]
@@ -314,7 +325,7 @@ class CountBound:
     def _solve_equation_node(
         self, equation: StateEquation, costs: Mapping[int, int], max_cost: int
     ) -> Solved:
-        """Return the solution of a node of the state equation, rounded rows and violated landmarks added."""
+        """Add rounded rows and violated landmarks to the state equation; return its solution."""
         while True:
             self._stop_if_expired()
             solved = equation.strengthen(costs, max_cost)
@@ -322,7 +333,10 @@ class CountBound:
                 return solved
 
     def _solve_node(self, model: CountModel, objective: Mapping[int, int], cutoff: float) -> Solved:
-        """Return the relaxed solution of a node with violated landmarks added; pruned nodes have no ``x``."""
+        """Add violated landmarks at a node; return its relaxed solution, with ``x`` ``None`` if pruned.
+
+        Raises :class:`Stopped` if the node is infeasible in floats, but not provably so.
+        """
         while True:
             self._stop_if_expired()
             model.tighten()
@@ -335,7 +349,7 @@ class CountBound:
                 return solved
 
     def _new_model(self, measures: Sequence[Measure], assumed_cap: int | None = None) -> CountModel:
-        """Return a new relaxation with all known conditions."""
+        """Return a new relaxation with all known conditions; ``assumed_cap`` is as in :class:`CountModel`."""
         every = (*measures, *(level.measure for level in self._levels))
         different = {id(measure): measure for measure in every}
         model = CountModel(
@@ -354,7 +368,10 @@ class CountBound:
         return model
 
     def _probe_actions(self, model: CountModel, objective: Mapping[int, int], cutoff: int) -> None:
-        """Probe which actions cannot be executed twice, which tightens the rows of their indicators."""
+        """Find actions that cannot be executed twice below the cutoff, and bound their counts by 1.
+
+        This tightens the rows of their indicators. Violated landmarks are added first.
+        """
         program, probed = model.program, set[int]()
         while len(probed) < PLANS.probes:
             self._stop_if_expired()
@@ -387,7 +404,11 @@ class CountBound:
         levels: Sequence[Level],
         is_better: Callable[[Counts], bool | None],
     ) -> Iterator[Bounds]:
-        """Yield the bounds of the child nodes; if the node has whole counts, call ``is_better`` first."""
+        """Yield the bounds of the child nodes of a node with the relaxed solution ``x``.
+
+        If it has whole counts that violate nothing, ``is_better`` is called with them first. The children
+        then exclude only these counts. Raises :class:`BetterError` if ``is_better`` returns true.
+        """
         program = model.program
         column = most_fractional(x)
         if column is not None:
@@ -423,7 +444,7 @@ class CountBound:
         yield from _bounds_around(program, x, range(self._size))
 
     def _add_landmark(self, x: Sequence[float], model: CountModel) -> bool:
-        """Add a landmark that a solution violates; return whether there is one."""
+        """Add a landmark that a solution of the model violates; return whether there is one."""
         used = {a for a in range(self._size) if x[self._size + a] > INTEGRALITY}
         reached = {o for o, column in model.stock.items() if x[column] > INTEGRALITY}
         landmark = self._violated_landmark(used, reached, model.stock)
@@ -438,9 +459,9 @@ class CountBound:
         """Return a landmark that the executed actions ``used`` violate; ``None`` if there is none.
 
         The executed actions are applied to the initial objects in the delete relaxation. If a target or an
-        executed action is not reached, the landmark consists of the achievers at the border of what is
-        reached. If initial copies have a price, ``stock`` has their columns, and ``initial`` the objects of
-        which copies are taken.
+        executed action is not reached, the landmark has actions that would lead to it, none of them executed.
+        If initial copies have a cost, ``stock`` has their columns, and ``initial`` the objects of which
+        copies are taken. Otherwise, both are empty.
         """
         flows = self._flows
         asks, targets = flows.lacking(bool(stock))
@@ -460,7 +481,7 @@ class CountBound:
 
     @cached_property
     def _cutter(self) -> Cutter:
-        """The cutter of the targets in the delete relaxation, in which initial copies cost nothing."""
+        """The cutter of the targets in the delete relaxation, where initial copies cost nothing."""
         flows = self._flows
         asks, targets = flows.lacking(priced=False)
         objects = {o for numbers in (*asks, *flows.adds, targets) for o in numbers}
@@ -470,7 +491,10 @@ class CountBound:
 
     @cached_property
     def _cutter_of_stock(self) -> Cutter:
-        """The cutter where copies of the stock have a price: its cuts hold no initial object."""
+        """The cutter of the targets in the delete relaxation, where initial copies have a cost.
+
+        Its cuts have no initial object.
+        """
         flows = self._flows
         asks, targets = flows.lacking(priced=True)
         start = [o for o, count in flows.start.items() if count]
@@ -481,9 +505,9 @@ class CountBound:
     def _separate(self, x: Sequence[float], model: CountModel, at_root: bool) -> bool:
         """Add landmarks of the targets that an LP solution violates; return whether there are any.
 
-        Actions with large LP values are kept out of the landmarks first. At the root, further landmarks keep
-        out all actions of the derivation but one, for each such action in turn. Without a derivation, no
-        landmarks are sought.
+        Actions with large LP values are kept out of the landmarks first. At the root, for each action of the
+        derivation in turn, landmarks without all others of the derivation are tried, too. Without a
+        derivation, no landmarks are sought.
         """
         derivation, size = self.derivation, self._size
         if not derivation:
@@ -514,7 +538,12 @@ class CountBound:
         used: set[int],
         stock: Mapping[int, int],
     ) -> Landmark:
-        """Return the landmark of a small cut, which is grown backwards from an object that is not reached."""
+        """Return a landmark for an object that is not reached, with a small cut that is grown from it.
+
+        The cut grows by a missing precondition of each executed action (``used``) that would satisfy the
+        landmark. ``asks`` has the preconditions of actions, ``reached`` the objects reached, and ``stock``
+        the columns of initial copies.
+        """
         zone, stack, edge = {o}, [o], dict[int, None]()
         while stack:
             for achiever in self._achievers.get(stack.pop(), ()):
@@ -527,17 +556,19 @@ class CountBound:
         return Landmark(members, tuple(sorted(zone & stock.keys())), objects=tuple(sorted(zone)))
 
     def _stop_if_expired(self) -> None:
+        """Raise :class:`Stopped` if time is up."""
         if self._expired():
             raise Stopped
 
 
 def _exact_cost(level: Level, counts: Mapping[int, int]) -> Fraction:
+    """Return the exact cost of counts by a level whose costs are rounded."""
     assert level.measure.exact is not None
     return level.measure.exact(counts)
 
 
 def _bounds_around(program: WholeProgram, x: Sequence[float], columns: Sequence[int]) -> Iterator[Bounds]:
-    """Yield the bounds of child nodes which together exclude only the current whole values of the columns."""
+    """Yield bounds of child nodes, which together exclude only the values of some columns in a solution."""
     lower, upper = list(program.lower), list(program.upper)
     for column in sorted(columns, key=lambda column: -x[column]):
         value = round(x[column])

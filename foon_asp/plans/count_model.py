@@ -1,4 +1,8 @@
-"""The linear relaxation of counts of executions: conditions as rows, counts and indicators as columns."""
+"""The linear relaxation of counts of executions, with indicators.
+
+Rows are conditions. Columns are the counts of actions, and the indicators of actions: 1 if the action is
+executed at all. Further columns are auxiliary.
+"""
 
 from collections.abc import Callable, Sequence
 
@@ -17,10 +21,22 @@ from foon_asp.plans.whole_program import WholeProgram
 
 
 class CountModel:
-    """The conditions as rows over columns: the count of each action, its indicator, auxiliary columns.
+    """The relaxation of counts: a linear program, and the conditions of its rows.
 
-    ``assumed_cap`` is an upper bound that is assumed for the counts of unbounded actions. If it is ``None``,
-    nothing is assumed, and each measure with exact costs has a column for each of its classes.
+    ``program``: the program. Column ``a`` is the count of action ``a``. Its indicator is that many columns
+    later as there are actions.
+    ``conditions``: the condition of each row that states one, by row.
+    ``stock``, ``items``: the columns of initial copies and of endless items by object, if they have costs.
+
+    Parameters:
+        flows: The preconditions and effects of actions.
+        measures: The measures of objectives.
+        landmarks: The landmarks known so far.
+        limits: Limits on weighted sums.
+        excluded_counts: No plan of the model executes each action as often as one of these counts say.
+        assumed_cap: An upper bound that is assumed for counts that have none. If ``None``, nothing is
+            assumed, and each class of a measure with exact costs has a column.
+        expired: Returns whether time is up.
     """
 
     def __init__(
@@ -84,7 +100,10 @@ class CountModel:
         self.tighten()
 
     def _count_indicator(self, action: int, count: int) -> int:
-        """Return the column that indicates whether an action is executed at least ``count`` times."""
+        """Return the column that indicates whether an action is executed at least ``count`` times.
+
+        The column and its rows are added at the first call.
+        """
         if count == 1:
             return self._size + action
         if (action, count) not in self._count_indicators:
@@ -97,9 +116,9 @@ class CountModel:
         return self._count_indicators[action, count][0]
 
     def unforced_count(self, counts: Counts, x: Sequence[float]) -> tuple[int, int, int] | None:
-        """Find an indicator of a count that is 0, although its action is executed as often.
+        """Return the action, the count and the column of an indicator of a count that is wrong in a solution.
 
-        Returns the action, the count and the column of the indicator; ``None`` if every indicator is right.
+        It is 0 in ``x`` although the action is executed as often. ``None`` if every such indicator is right.
         """
         for (action, count), (column, _) in self._count_indicators.items():
             if action in counts and counts[action] >= count and not round(x[column]):
@@ -107,12 +126,16 @@ class CountModel:
         return None
 
     def _with_stock(self, o: int, row: dict[int, int], least: int) -> tuple[dict[int, int], int]:
+        """Return a row and its least sum, with the initial copies of an object.
+
+        If initial copies have a cost, they are a column of the row. Otherwise they lower the least sum.
+        """
         if o in self.stock:
             return {**row, self.stock[o]: 1}, least
         return row, least - self._flows.start.get(o, 0)
 
     def _add_classes(self, measure: Measure) -> None:
-        """Add a column for each class of actions, equal to the sum of their counts."""
+        """Add a column for each class of actions of a measure, equal to the sum of their counts."""
         columns = []
         for number in sorted(set(measure.classes) - {-1}):
             members = [a for a, class_number in enumerate(measure.classes) if class_number == number]
@@ -123,11 +146,11 @@ class CountModel:
         self._classes[id(measure)] = columns
 
     def class_columns(self, measure: Measure) -> list[int]:
-        """Return the columns that count the executions of each class of actions."""
+        """Return the columns of the classes of a measure, which were added if nothing is assumed."""
         return self._classes[id(measure)]
 
     def add_landmark(self, landmark: Landmark) -> None:
-        """Add the row of a landmark, unless an initial copy without column may satisfy it."""
+        """Add the row of a landmark; add nothing if an initial copy without cost may satisfy it."""
         members, stock, action, _ = landmark
         if not self.stock.keys() >= set(stock):
             return
@@ -139,7 +162,7 @@ class CountModel:
         self.conditions[number] = landmark
 
     def tighten(self) -> None:
-        """Update the rows of indicators to the greatest count that each action can have."""
+        """Update the rows that tie indicators to counts, by the upper bounds of counts."""
         program = self.program
         for action, row in enumerate(self._loose):
             max_count = self._max_count(action)
@@ -149,32 +172,36 @@ class CountModel:
             program.change_row(row, {} if max_count is None else {column: max_count - count + 1, action: -1})
 
     def _max_count(self, action: int) -> int | None:
+        """Return the upper bound of an action's count, perhaps the assumed one; ``None`` if unbounded."""
         upper = self.program.upper[action]
         return self._assumed_cap if upper is None else upper
 
     def cap_counts(self, measure: Measure, max_cost: int) -> None:
-        """Bound the count of each action: its executions alone cost at most ``max_cost``."""
+        """Bound the count of each action so that its executions alone cost at most ``max_cost``."""
         for action, cost in enumerate(measure.costs):
             if cost:
                 self.program.cap(action, max(max_cost, 0) // cost)
         self.tighten()
 
     def objective(self, measure: Measure) -> dict[int, int]:
-        """Return the costs of columns that are not 0, by column."""
+        """Return the costs of columns by a measure; columns without cost are omitted."""
         costs = {a: cost for a, cost in enumerate(measure.costs) if cost}
         if measure.item:
             costs |= dict.fromkeys((*self.items.values(), *self.stock.values()), measure.item)
         return costs
 
     def add_level(self, level: Level) -> None:
-        """Add the row of a level: counts as good as the incumbent cost at most ``max_cost``."""
+        """Add the row of a level: counts as good as the incumbent cost at most ``max_cost``.
+
+        The counts of single actions are capped, too.
+        """
         costs = self.objective(level.measure)
         row = self.program.add_row({column: -cost for column, cost in costs.items()}, -level.max_cost)
         self.conditions[row] = level
         self.cap_counts(level.measure, level.max_cost)
 
     def limit_cost(self, measure: Measure, solution: Sequence[float]) -> None:
-        """Add the row that counts cost, by a measure, at most as much as a solution."""
+        """Add a row: by a measure, counts cost at most as much as a solution."""
         costs = self.objective(measure)
         max_cost = sum(cost * round(solution[column]) for column, cost in costs.items())
         self.program.add_row({column: -cost for column, cost in costs.items()}, -max_cost)

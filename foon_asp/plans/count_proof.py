@@ -1,9 +1,10 @@
 """Proofs that no plan costs less: Farkas combinations of conditions on counts, and branching over counts.
 
-The relaxation of whole counts (:mod:`foon_asp.plans.count_bound`) has dual values of its rows in floats. Any
-such values, rounded or solved for exactly, prove the bound of a Lagrangian relaxation. This bound is the sum
-of the weighted right-hand sides and, for each action, the least reduced cost of a count that it
-may have.
+The relaxation of counts (:mod:`foon_asp.plans.count_bound`) has dual values of its rows in floats. Any such
+values, rounded or solved for exactly, prove a bound (Lagrangian relaxation). It is the sum of the weighted
+right-hand sides and, for each action, of the least reduced cost of a count that it may have.
+
+Costs are vectors in an exact lexicographic order (:class:`Lexicographic`).
 """
 
 import math
@@ -23,13 +24,13 @@ from foon_asp.plans.whole_program import INTEGRALITY, PARTS, Relaxation
 
 
 class Weighted(NamedTuple):
-    """A leaf: weights of conditions, each above 0, that prove the bound for its counts."""
+    """A leaf of a proof: weights above 0 of conditions, which prove the bound for the counts of the leaf."""
 
     weights: Sequence[tuple[Condition, Vector]]
 
 
 class Split(NamedTuple):
-    """A branching: proofs for values of a column up to ``max_count``, and above it."""
+    """A branching of a proof: one proof for values of a column up to ``max_count``, one for values above."""
 
     column: int
     max_count: int
@@ -43,10 +44,12 @@ CountProof = Weighted | Split
 class Claim(NamedTuple):
     """The claim that all plans cost at least ``least``.
 
-    ``costs``: the cost of each action. ``item``: the cost of each item, and of each initial copy consumed.
-    ``least``: ``None`` for the claim that there is no plan at all; then all costs are 0.
+    ``order``: the order on costs.
+    ``costs``: the cost of each action.
+    ``item``: the cost of each endless item, and of each initial copy that is taken.
+    ``least``: the claimed least cost; ``None`` for the claim that there is no plan. All costs are then 0.
     ``parts``: if not ``None``, the costs of plans are multiples of ``1 / parts``.
-    ``caps``: upper bounds on the count of each action in plans that cost less.
+    ``caps``: upper bounds on the count of each action in plans that cost less; ``None`` is no bound.
     """
 
     order: Lexicographic
@@ -58,16 +61,19 @@ class Claim(NamedTuple):
 
 
 class PlanProver(CountBound):
-    """Searches for a proof of a claim about all plans that are as good as the incumbent by some levels."""
+    """Searches for a proof of a claim about all plans that are as good as the incumbent by some levels.
+
+    If the search fails at a node, it lowers the claim to the bound that the node proves.
+    """
 
     def prove_claim(
         self, claim: Claim, measure: Measure, kept: Sequence[Level]
     ) -> tuple[CountProof, Vector | None, Mapping[int, int]] | None:
-        """Return a proof of a claim or of a weaker claim, the bound proved, and the items by column.
+        """Return a proof of a claim or of a weaker claim, the bound that is proved, and objects by column.
 
-        The bound is ``claim.least`` unless the claim proved is weaker. Returns ``None`` if nothing is proved.
-        ``measure`` is the objective of the claim. Plans that are worse than the incumbent by a level in
-        ``kept`` are excluded from the claim.
+        The last has the object of each column for endless items or initial copies, if these have costs.
+        Returns ``None`` if nothing is proved. ``measure`` is the objective of the claim. Plans that are worse
+        than the incumbent by a level in ``kept`` are excluded from the claim.
         """
         self._claim, self._least, self._leaves = claim, claim.least, 0
         floats = [claim.order.approximate(cost)[0] for cost in claim.costs]
@@ -91,11 +97,11 @@ class PlanProver(CountBound):
         return proof, self._least, self._columns
 
     def require(self, landmarks: Sequence[Landmark]) -> None:
-        """Add known landmarks."""
+        """Add landmarks that all plans are known to satisfy."""
         self._landmarks += landmarks
 
     def _prove_node(self, model: CountModel, depth: int) -> CountProof:
-        """Return the proof of a node of the branching.
+        """Return the proof of a node of the branching, whose bounds of columns ``model`` has.
 
         If the node proves less than the claim, the claim is lowered to the bound of the node.
         """
@@ -123,7 +129,10 @@ class PlanProver(CountBound):
         return self._prove_split(model, *column, depth)
 
     def _prove_split(self, model: CountModel, column: int, max_count: int, depth: int) -> Split:
-        """Return a proof by branching: for values of a column above ``max_count``, and up to it."""
+        """Return a proof by branching on a column: for values above ``max_count``, and up to it.
+
+        The bounds of the model are restored at the end.
+        """
         program, size = model.program, self._size
         lower, upper = list(program.lower), list(program.upper)
         action = column < size
@@ -140,7 +149,10 @@ class PlanProver(CountBound):
         return Split(column, max_count, up_to, above)
 
     def _branching_column(self, model: CountModel, x: Sequence[float]) -> tuple[int, int] | None:
-        """Return a column to branch on, and its maximum in the lower branch; ``None`` if all are whole."""
+        """Return a column to branch on, and its maximum in the lower branch; ``None`` if all are whole.
+
+        Counts come first whose indicators are smaller than they should be.
+        """
         program, size = model.program, self._size
         for a in range(size):
             upper = program.upper[a]
@@ -156,28 +168,37 @@ class PlanProver(CountBound):
         return None if half is None else (half[1], math.floor(x[half[1]]))
 
     def _give_up(self, best: tuple[Vector, object] | None) -> None:
-        """Lower the claim to the bound that is proved at a node."""
+        """Lower the claim to the bound of the ``best`` weights at a node, or note that nothing is proved.
+
+        Nothing is proved if there are no such weights, or if the claim is that there is no plan.
+        """
         if self._least is None or best is None:
             self._failed = True
             return
         self._least = min(self._least, self._round_up(best[0]), key=cmp_to_key(self._claim.order.compare))
 
     def _round_up(self, bound: Vector) -> Vector:
+        """Return a bound rounded up to the next cost that a plan can have."""
         parts = self._claim.parts
         return bound if parts is None else tuple(Fraction(math.ceil(b * parts), parts) for b in bound)
 
     def _is_enough(self, bound: Vector) -> bool:
+        """Return whether a bound, rounded up, proves the claim."""
         order = self._claim.order
         if self._least is None:
             return order.sign(bound) > 0
         return order.compare(self._round_up(bound), self._least) >= 0
 
     def _make_leaf(self, model: CountModel, weights: Mapping[int, Vector]) -> Weighted:
+        """Return the leaf with the given weights by row, and count it."""
         self._leaves += 1
         return Weighted([(model.conditions[row], weight) for row, weight in sorted(weights.items())])
 
     def _candidate_weights(self, model: CountModel, relaxed: Relaxation) -> "list[dict[int, Vector]]":
-        """Return candidate weights of rows: the rounded duals, perhaps the exact duals of the basis."""
+        """Return candidate weights of rows, each by row: rounded duals, and perhaps exact duals of the basis.
+
+        If the relaxation is infeasible, they are a Farkas combination, scaled to reach the claim.
+        """
         claim = self._claim
         first = claim.order.levels[0]
         one = (Fraction(1), *claim.order.zero[1:])
@@ -216,7 +237,10 @@ class PlanProver(CountBound):
         return {row: times(one, Fraction(n, parts)) for row, n in rounded.items() if n > 0}
 
     def _exact_weights(self, model: CountModel, relaxed: Relaxation) -> "list[dict[int, Vector]]":
-        """Return the exact duals of a basis, which make its reduced costs 0; no duals if it is singular."""
+        """Return the exact duals of a basis, which make its reduced costs 0, as a list of one candidate.
+
+        Empty if the basis is singular. Weights below 0 are omitted.
+        """
         columns, tight = set(relaxed.columns), relaxed.rows
         matrix: dict[int, dict[int, Fraction]] = {column: {} for column in sorted(columns)}
         for row in tight:
@@ -233,6 +257,7 @@ class PlanProver(CountBound):
         return [{row: w for row, w in solved.items() if row in model.conditions and sign(w) > 0}]
 
     def _column_cost(self, column: int) -> Vector:
+        """Return the cost of a column; columns other than counts, items and initial copies cost 0."""
         claim = self._claim
         if column < self._size:
             return claim.costs[column]
@@ -254,6 +279,7 @@ class PlanProver(CountBound):
         zero = order.zero
 
         def reduced_cost(column: int) -> Vector:
+            """Return the cost of a column less the weighted coefficients of its rows."""
             cost = zero if free else self._column_cost(column)
             return minus(cost, order.total(loads[column])) if column in loads else cost
 

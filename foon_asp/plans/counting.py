@@ -1,4 +1,4 @@
-"""Counts of executions of the units of a question: bounds, proofs, and orders that run."""
+"""The units of a question as counted actions: bounds on their counts, proofs, and orders that run."""
 
 import math
 from collections import Counter
@@ -26,11 +26,15 @@ from foon_asp.problem.costs import Costs
 
 
 class _ManyError(Exception):
-    """Too many counts have no order: clingo has to search all of them at once."""
+    """Raised if too many counts have no order, so that clingo has to search all of them at once."""
 
 
 class Counting:
-    """Counts of executions of the units of a question, by index, and the search for their order."""
+    """The counts of executions of the units of a question, and the search for their order.
+
+    Counts are by action: action ``a`` is the unit ``units[a]``. ``bound`` is the branch and bound over
+    counts.
+    """
 
     def __init__(self, question: PlanQuestion, units: list[int]) -> None:
         """Build the flows of units, given by id, and the bound on their counts under the question's rules."""
@@ -65,18 +69,23 @@ class Counting:
         )
 
     def measure(self, objective: Objective) -> Measure:
-        """Return the measure of an objective over the units, cached."""
+        """Return the measure of an objective over the units; cached."""
         if objective not in self._measures:
             self._measures[objective] = self._compute_measure(objective)
         return self._measures[objective]
 
     def _compute_measure(self, objective: Objective) -> Measure:
-        """Return the measure of an objective, computed from the costs of units."""
+        """Return the measure of an objective over the units.
+
+        Costs that are no small whole numbers are scaled and rounded down; the measure then has exact costs,
+        too.
+        """
         row, figures = objective.row, self._unit_costs(objective)
         if multiplies(objective):
             classes = _cost_classes(figures, Fraction(1))
 
             def product(counts: Mapping[int, int]) -> Fraction:
+                """Return the negative product of the rates of executions."""
                 return -math.prod((figures[a] ** n for a, n in counts.items()), start=Fraction(1))
 
             return Measure([self._rate_scale.weights[rate] for rate in figures], 0, product, classes)
@@ -86,11 +95,13 @@ class Counting:
             return Measure(costs, row.item)
 
         def total(counts: Mapping[int, int]) -> Fraction:
+            """Return the sum of the exact costs of executions."""
             return sum((figures[a] * n for a, n in counts.items()), start=Fraction(0))
 
         return Measure(costs, 0, total, _cost_classes(figures, Fraction(0)))
 
     def _unit_costs(self, objective: Objective) -> list[Fraction]:
+        """Return the exact cost, or rate, of each action by an objective; cached."""
         if objective not in self._known_unit_costs:
             self._known_unit_costs[objective] = [
                 Fraction(self._problem.figure(objective, unit)) for unit in self.units
@@ -99,7 +110,10 @@ class Counting:
 
     @cached_property
     def _rate_scale(self) -> RateScale:
-        """Return the scale of the rates of units."""
+        """The scale by which logarithms of the rates of units become whole numbers.
+
+        Raises :class:`UserError` if a rate is 0.
+        """
         try:
             return rate_scale(self._problem.different_rates(self.units))
         except ValueError:
@@ -108,25 +122,28 @@ class Counting:
             ) from None
 
     def _cost_scale(self, objective: Objective) -> Fraction:
-        """Return the factor by which costs are scaled: exact where costs stay small, else rounding."""
+        """Return the factor by which costs are multiplied before they are rounded down.
+
+        It makes all costs whole if they stay small.
+        """
         figures = self._unit_costs(objective)
         common = math.lcm(*(figure.denominator for figure in figures))
         greatest = max(figures, default=Fraction(0))
         return Fraction(common) if common * greatest <= PLANS.exact_cost else PLANS.cost_steps / greatest
 
     def level(self, objective: Objective, costs: Costs) -> Level:
-        """Return the level of an objective with the cost of a plan."""
+        """Return the level of an objective for a plan with these costs."""
         return self._level_at(objective, Fraction(costs.measure(objective)))
 
     def _level_below(self, objective: Objective, cost: int | Fraction) -> Level:
-        """Return the level that a plan satisfies if it costs less than ``cost``."""
+        """Return the level of plans that cost less than ``cost`` by an objective."""
         level = self._level_at(objective, Fraction(cost))
         if level.measure.exact is not None:
             return level._replace(strict=True)
         return level._replace(max_cost=math.ceil(level.cost) - 1)
 
     def _level_at(self, objective: Objective, cost: Fraction) -> Level:
-        """Return a level for a cost by an objective."""
+        """Return the level of plans that cost at most ``cost`` by an objective."""
         measure = self.measure(objective)
         if multiplies(objective):
             return Level(measure, -cost, self._rate_scale.weigh(cost))
@@ -136,7 +153,11 @@ class Counting:
         return Level(measure, scale * cost, int(scale * cost))
 
     def prove(self) -> None:
-        """Prove that no plan is better than the incumbent; raises :class:`BetterError` if one is."""
+        """Prove that no plan is better than the incumbent.
+
+        Raises :class:`BetterError` if a plan is better; it is the incumbent then. Raises :class:`Stopped` if
+        time is up.
+        """
         assert self._question.best is not None
         plan, costs = self._question.best
         levels: list[Level] = []
@@ -158,11 +179,11 @@ class Counting:
                 self.bound.prove(levels, self._is_better)
 
     def _split_costs(self, objective: Objective, plan: Plan) -> tuple[Fraction, list[Level]] | None:
-        """Split costs that are too large for exact counting into two levels: the large ones, and all others.
+        """Split costs that are too large for exact counting into two levels: the large costs and all others.
 
-        Large costs are multiples of a step, their greatest common divisor. The small costs of the incumbent
-        sum up to less than a step, so that a plan with greater large costs is never better.
-        Returns the step and the levels; ``None`` where costs need no such levels, or cannot be split.
+        The first level has the large costs, as multiples of their greatest common divisor, the step. The
+        small costs of the incumbent sum up to less than a step. So a plan with greater large costs is never
+        better. Returns the step and the levels; ``None`` if costs need no such levels, or cannot be split.
         """
         if multiplies(objective) or objective.row.item or self.measure(objective).exact is None:
             return None
@@ -196,9 +217,10 @@ class Counting:
         return True
 
     def proved_bounds(self) -> dict[Objective, int | Fraction]:
-        """Return the proved lower bound of the first objective; empty where none is proved or rates multiply.
+        """Return the proved lower bound of the first objective, as a dictionary with this objective only.
 
-        Costs are rounded down, so a bound on rounded costs is valid.
+        Empty if nothing is proved, or if the objective multiplies rates. Costs are rounded down, so a bound
+        on rounded costs is valid.
         """
         objective = self._question.levels[0]
         if self.bound.proved <= 0 or multiplies(objective):
@@ -207,9 +229,10 @@ class Counting:
         return {objective: int(least) if objective.row.whole else least}
 
     def _prove_with_clingo(self, level: Level) -> bool:
-        """Try to prove with clingo that no plan is better, if the counts of all better plans are bounded.
+        """Try to prove with clingo that no plan is better, if the counts of better plans have small bounds.
 
-        Returns whether it is proved. Raises :class:`BetterError` if a plan is better.
+        Returns whether it is proved. Raises :class:`BetterError` if a plan is better; it is the incumbent
+        then.
         """
         caps = [cap for cap in self.bound.max_counts(level) if cap is not None]
         if len(caps) < len(self.units) or sum(caps) > PLANS.clingo_executions:
@@ -222,7 +245,10 @@ class Counting:
         return ended.exhausted and ended.units is not None
 
     def _is_better(self, counts: Counts) -> bool:
-        """Return whether some order of the counts is a plan; it becomes the incumbent then."""
+        """Make some order of the counts the incumbent if it is a better plan; return whether it is.
+
+        Raises :class:`_ManyError` if too many orders were sought since the proof began.
+        """
         self._orders_sought += 1
         if self._orders_sought > PLANS.unordered_counts and not self._problem.counts_amounts:
             raise _ManyError
@@ -230,7 +256,10 @@ class Counting:
         return plan is not None and self._question.try_incumbent(plan)
 
     def find_order(self, counts: Counts) -> Plan | None:
-        """Return an executable order of counts; ``None`` if no order runs."""
+        """Return a plan that executes each action as often as counted; ``None`` if no order runs.
+
+        Raises :class:`Stopped` if neither is decided.
+        """
         if self._problem.counts_amounts:
             return self._bulk_plan(counts)
         if Objective.KITCHEN not in self._question.levels:
@@ -242,9 +271,9 @@ class Counting:
         return self._find_plan({a: (n, n) for a, n in counts.items()})
 
     def find_plan_beyond(self, counts: Counts) -> Plan | None:
-        """Return a good plan with few executions beyond counts, found by clingo; ``None`` without one.
+        """Return a good plan with at most a few more executions of each action than counted, found by clingo.
 
-        clingo does not count copies one by one, so where amounts count, ``None`` is returned.
+        ``None`` if there is none. ``None``, too, if amounts count, since clingo does not count copies.
         """
         if self._problem.counts_amounts:
             return None
@@ -257,7 +286,11 @@ class Counting:
         return None
 
     def _bulk_plan(self, counts: Counts) -> Plan | None:
-        """Return an order of counts in runs, with as few copies of the stock as an objective asks for."""
+        """Return a plan with these counts, built from runs of one action each; ``None`` if there is none.
+
+        With the objective ``kitchen``, it takes as few initial copies as possible. Raises :class:`Stopped` if
+        neither is decided.
+        """
         flows, question = self._flows, self._question
         if not self._keeps_to_rules(counts):
             return None
@@ -283,7 +316,10 @@ class Counting:
         raise Stopped
 
     def _keeps_to_rules(self, counts: Counts) -> bool:
-        """Whether executions keep to the user's rules, which read how often units are executed."""
+        """Return whether counts satisfy the user's rules, by asking clingo; ``True`` without such rules.
+
+        Raises :class:`Stopped` if clingo does not decide it.
+        """
         program, problem = self._question.program, self._problem
         if program.own:
             return True
@@ -308,8 +344,8 @@ class Counting:
     def _find_plan(self, times: Mapping[int, tuple[int, int]], best: bool = False) -> Plan | None:
         """Return a plan with counts within ``times``, found by clingo; ``None`` if there is none.
 
-        ``times`` has the least and greatest count of each action. With ``best``, the plan is the best such
-        plan.
+        ``times`` has the least and greatest count of each action. With ``best``, the plan is the best one.
+        Raises :class:`Stopped` if clingo does not decide it.
         """
         ended = self._run_clingo(times, best)
         if ended.units is None:
@@ -319,10 +355,14 @@ class Counting:
         return self._plan_of_run(ended)
 
     def _plan_of_run(self, ended: Run) -> Plan:
+        """Return the plan that a run of clingo found."""
         return order_executions(self._problem, ended.rows["times"], ended.rows["_after"])
 
     def _run_clingo(self, times: Mapping[int, tuple[int, int]], best: bool) -> Run:
-        """Return the run of clingo for a plan with the least and greatest ``times`` of each action."""
+        """Run clingo for a plan with the least and greatest ``times`` of each action; return the run.
+
+        With ``best``, it searches for the best plan. The run's time and statistics are added to the question.
+        """
         from foon_asp.encoding import clingo_run, fact_writer  # noqa: PLC0415 (takes clingo along)
         from foon_asp.encoding.scales import Scales  # noqa: PLC0415
 
@@ -362,7 +402,7 @@ class Counting:
 
 
 def _cost_classes(figures: Sequence[Fraction], idle: Fraction) -> list[int]:
-    """Return the rank of each figure among the distinct figures; -1 for the figure ``idle``."""
+    """Return the rank of each cost among the different costs; -1 for the cost ``idle``."""
     numbers = {figure: number for number, figure in enumerate(sorted(set(figures)))}
     return [-1 if figure == idle else numbers[figure] for figure in figures]
 

@@ -24,16 +24,19 @@ def solve_used_up(
     settings: Settings | None = None,
     reporter: Reporter | None = None,
 ) -> Outcome:
-    """Find the best plan under a lexicographic list of objectives, and prove it.
+    """Find the best plan under a lexicographic list of objectives, and prove it; return the outcome.
 
-    Raises :class:`UserError` naming a feature that is not built for items that are used up.
+    Raises :class:`UserError` naming a feature that plans do not support.
     """
     question = PlanQuestion(problem, objectives, settings or Settings(), reporter or Reporter())
     return solve_question(question)
 
 
 def solve_question(question: PlanQuestion) -> Outcome:
-    """Return the outcome of a question: its best plan, as far as it is found and proved."""
+    """Return the outcome of a question: its best plan, as far as it is found and proved.
+
+    An interrupt from the keyboard ends the search like the end of time.
+    """
     try:
         with question.deadline.watched("cutting the network", late=True):
             outcome = _solve(question)
@@ -48,7 +51,7 @@ def solve_question(question: PlanQuestion) -> Outcome:
 
 
 def _solve(question: PlanQuestion) -> Outcome:
-    """Apply the rules, cut the network down to the units that can matter, and search."""
+    """Apply the rules, restrict the network to units that can matter, and search; return the outcome."""
     began = time.perf_counter()
     if not question.apply_rules():
         return question.outcome(Status.INFEASIBLE, Proof.SOLVER)
@@ -59,7 +62,7 @@ def _solve(question: PlanQuestion) -> Outcome:
 
 
 def _search(question: PlanQuestion, units: list[int]) -> Outcome:
-    """Search for the best plan of some units, and prove it."""
+    """Search for the best plan of ``units``, and prove it; return the outcome."""
     counting = Counting(question, units)
     if not units:  # every goal is available: only the empty plan is irredundant
         needs_check = not question.program.own or question.problem.counts_amounts
@@ -101,13 +104,16 @@ def _search(question: PlanQuestion, units: list[int]) -> Outcome:
 
 
 def _positions(units: Sequence[int], plan: Plan) -> list[int]:
-    """Return the indices of the units that a plan executes."""
+    """Return the indices in ``units`` of the units that a plan executes."""
     executed = set(plan)
     return [a for a, unit in enumerate(units) if unit in executed]
 
 
 def _plain_plan(question: PlanQuestion, counting: Counting, measures: Sequence[Measure]) -> Plan | None:
-    """Return a plan with the best counts under the state equation alone; ``None`` if these have no order."""
+    """Return a plan with the cheapest counts of the state equation; ``None`` if they have no allowed order.
+
+    The counts may also be unknown, or no order be found in time; both are ``None``, too.
+    """
     counts = counting.bound.cheapest_counts_by_equation(measures)
     try:
         plan = None if counts is None else counting.find_order(counts)
@@ -117,7 +123,10 @@ def _plain_plan(question: PlanQuestion, counting: Counting, measures: Sequence[M
 
 
 def _below_cutoff(question: PlanQuestion, counting: Counting, plan: Plan) -> Counting:
-    """Return a counting without units that alone cost more than a plan; if costs are exact, the same."""
+    """Return a counting without the units that alone cost more than a plan.
+
+    The given counting is returned if costs are exact, or if no unit costs so much.
+    """
     objective = question.levels[0]
     if multiplies(objective) or counting.measure(objective).exact is None:
         return counting

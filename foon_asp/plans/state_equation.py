@@ -2,9 +2,11 @@
 
 The rows are about counts only, without indicators. A row of the inverse basis of the relaxation has weights
 for the rows. The weighted sum of the rows, rounded, is a row that a fractional solution violates (Gomory
-1958; Nemhauser & Wolsey 1990): if ``sum a[j] x[j] >= b`` holds for counts from 0, and ``f`` is the fractional
-part of ``b``, then ``sum (floor(a[j]) + min(1, fraction(a[j]) / f)) x[j] >= ceil(b)`` holds, too. The
-rounding is valid for any weights from 0, so it is enough to find weights in floats.
+1958; Nemhauser & Wolsey 1990).
+
+If ``sum a[j] x[j] >= b`` holds for counts from 0, and ``f`` is the fractional part of ``b``, then ``sum
+(floor(a[j]) + min(1, fraction(a[j]) / f)) x[j] >= ceil(b)`` holds, too. This is valid for any weights from 0,
+so it is enough to find weights in floats.
 """
 
 import math
@@ -31,20 +33,23 @@ _Row = tuple[dict[int, int], int]
 
 
 class RoundedProgram:
-    """A program over counts whose rows are sums of conditions, to which rounded rows are added."""
+    """A program over counts whose rows are sums of conditions, to which rounded rows are added.
+
+    ``expired`` returns whether time is up; solving then raises :class:`Stopped`.
+    """
 
     def __init__(self, columns: int, expired: Callable[[], bool]) -> None:
         self.program = WholeProgram(columns, expired)
         self._conditions: list[Sequence[Condition]] = []  # of each row, if it is about counts alone
 
     def add(self, conditions: Sequence[Condition], row: dict[int, int], least: int) -> None:
-        """Add a row, the sum of conditions; without conditions, it does not take part in rounding."""
+        """Add a row, the sum of ``conditions``; a row without conditions takes no part in rounding."""
         self.program.add_row(row, least)
         self._conditions.append(conditions)
 
     @property
     def rounded_rows(self) -> Iterator[tuple[Rounded, dict[int, int], int]]:
-        """The rounded rows, with the conditions that they follow from."""
+        """The rounded rows, each with its condition, its coefficients by column, and its least sum."""
         for number, conditions in enumerate(self._conditions):
             for condition in conditions:
                 if isinstance(condition, Rounded):
@@ -89,7 +94,10 @@ class RoundedProgram:
         return bool(violated)
 
     def _round_sum(self, weights: Mapping[int, Fraction]) -> tuple[Rounded, _Row] | None:
-        """Return the rounded sum of weighted rows, in whole numbers; ``None`` if rounding is of no use."""
+        """Return the rounded sum of weighted rows: its condition, and its row in whole numbers.
+
+        ``None`` if rounding changes nothing, or if the coefficients become too large.
+        """
         parts = math.lcm(*(weight.denominator for weight in weights.values()))
         coefficients: dict[int, int] = {}
         least = 0
@@ -122,15 +130,21 @@ class RoundedProgram:
 
 
 def _fraction_of_weight(weight: float) -> Fraction:
-    """Return the fractional part of a weight, since whole multiples of a row are not rounded."""
+    """Return the fractional part of a weight of a row, as a fraction with a small denominator.
+
+    Whole multiples of a row need no rounding.
+    """
     share = Fraction(weight).limit_denominator(PLANS.rounding_denominator)
     return share - math.floor(share)
 
 
 class StateEquation(RoundedProgram):
-    """The conditions on counts alone as rows: balances, sums of executions, levels, and rounded rows.
+    """The conditions on counts alone as rows: balances, limits on sums, levels, and rounded rows.
 
-    Landmarks, supplies and remainders may be added, for which a few actions get an indicator.
+    Landmarks, supplies and remainders may be added. Actions that they mention get an indicator: a column that
+    is 1 if the action is executed at all.
+
+    ``caps``: upper bounds on the counts of actions; empty if there are none.
     """
 
     def __init__(
@@ -140,7 +154,7 @@ class StateEquation(RoundedProgram):
         caps: Sequence[int | None],
         expired: Callable[[], bool],
     ) -> None:
-        """Build the program; ``caps`` are upper bounds on the counts of actions, none if empty."""
+        """Build the program with the balances and the limits that count executions."""
         super().__init__(len(flows.asks), expired)
         self._flows, self._expired = flows, expired
         for action, cap in enumerate(caps):
@@ -156,15 +170,18 @@ class StateEquation(RoundedProgram):
                 self.add((Sum(number),), {a: sign * weight for a, weight in weights.items()}, sign * limit)
 
     def add_level(self, level: Level) -> None:
-        """Add the row of a level: counts as good as the incumbent cost at most ``max_cost``."""
+        """Add the row of a level: counts as good as the incumbent cost at most ``max_cost``.
+
+        Costs of items are left out.
+        """
         # without the costs of items, which have no columns, the row is weaker
         costs = level.measure.costs
         self.add((level,), {a: -cost for a, cost in enumerate(costs) if cost}, -level.max_cost)
 
     def add_landmark(self, landmark: Landmark) -> None:
-        """Add the row of a landmark: some member is executed, or its action, if it has one, is not.
+        """Add the row of a landmark: a member is executed, or the landmark's action is not.
 
-        Nothing is added if initial copies satisfy the landmark too, or if its action has no indicator.
+        Nothing is added if initial copies may satisfy the landmark, or if its action has no indicator.
         """
         row, least = dict.fromkeys(landmark.members, 1), 1
         indicator = None if landmark.action is None else self._indicator_column(landmark.action)
@@ -174,14 +191,17 @@ class StateEquation(RoundedProgram):
             self.add((), row, least)
 
     def add_copies(self, condition: Supply | Remainder) -> None:
-        """Add the row of copies that an action requires or leaves, if the action has an indicator."""
+        """Add the row of copies that an action requires or leaves; nothing if the action has no indicator."""
         indicator = self._indicator_column(condition.action)
         if indicator is not None:
             row = {**self._flows.copy_changes(condition), indicator: -condition.copies}
             self.add((), row, -self._flows.start.get(condition.object, 0))
 
     def _indicator_column(self, action: int) -> int | None:
-        """Return the column that is 1 if an action is executed; ``None`` if its count is unbounded."""
+        """Return the column that is 1 if an action is executed; ``None`` if its count is unbounded.
+
+        The column and its row are added at the first call.
+        """
         max_count = self._caps[action]
         if action not in self._indicators and max_count is not None:
             self._indicators[action] = self.program.add_column(0, 1)
@@ -189,11 +209,18 @@ class StateEquation(RoundedProgram):
         return self._indicators.get(action)
 
     def strengthen(self, costs: Mapping[int, int], cutoff: float | None = None) -> Solved:
-        """Add rounded rows as :class:`RoundedProgram` does, first of all those about alternatives."""
+        """Add rounded rows and return the last solution, as :meth:`RoundedProgram.strengthen`.
+
+        Rows that merge objects of one role come first (:meth:`_round_alternatives`).
+        """
         self._costs: Mapping[int, int] | None = costs
         return super().strengthen(costs, cutoff)
 
     def _add_rounded_rows(self, x: Sequence[float]) -> bool:
+        """Add rounded rows that a solution violates; return whether there are any.
+
+        In the first call of a :meth:`strengthen`, rows that merge objects of one role are tried first.
+        """
         if all(abs(value - round(value)) < INTEGRALITY for value in x):
             return False  # no row that holds of whole counts is violated
         costs, self._costs = self._costs, None
@@ -234,7 +261,7 @@ class StateEquation(RoundedProgram):
         return len(list(merged.rounded_rows)) > earlier
 
     def optimum(self, costs: Sequence[int]) -> list[float] | None:
-        """Return whole values of least cost in floats; ``None`` if HiGHS finds none, or when time is up."""
+        """Return whole counts of least cost in floats; ``None`` if HiGHS finds none, or when time is up."""
         objective = {a: cost for a, cost in enumerate(costs) if cost}
         x = self.strengthen(objective).x
         if x is None or all(abs(value - round(value)) < INTEGRALITY for value in x):

@@ -21,11 +21,12 @@ def with_stand_ins(problem: Problem, table: StandInTable, everything: bool = Fal
     """Return a problem whose network also has stand-ins, each a unit with one input and one output.
 
     A stand-in uses one node in place of another that cannot be made from the kitchen. With ``everything``,
-    each such pair of nodes with a price in the table has a stand-in. Otherwise, only the stand-ins that a
-    tree of least dissimilarity can have are added (proof in docs/stand-ins.md).
+    each such pair of nodes with a price in the table has a stand-in. Otherwise, only those are added that a
+    tree of least dissimilarity can have (proof in docs/stand-ins.md). Stand-ins have the rate 1 and, as
+    units, the price 0.
 
     Raises:
-        UserError: below level 3, where items are used up, or if a unit has the motion of stand-ins.
+        UserError: below level 3, if items are used up, or if a unit has the motion of stand-ins.
     """
     network = problem.network
     if network.level < 3:
@@ -53,7 +54,7 @@ def with_stand_ins(problem: Problem, table: StandInTable, everything: bool = Fal
 
 
 def _append_stand_ins(network: Network, pairs: Sequence[Pair]) -> Network:
-    """Append a stand-in unit per pair (served, serving); it makes the served node of the serving one."""
+    """Return a network with a new unit for each pair, which makes the served node of the serving one."""
     keys = {
         (STAND_IN, frozenset((serving,)), frozenset((served,))): unit
         for unit, (served, serving) in enumerate(pairs, len(network))
@@ -71,7 +72,9 @@ def _append_stand_ins(network: Network, pairs: Sequence[Pair]) -> Network:
 class _NearestStandIns:
     """Search for the stand-ins that a tree of least dissimilarity can have.
 
-    ``available`` has an entry for each node, by id: 1 if the node can be made without stand-ins, else 0.
+    In a stand-in, the *serving* node is used in place of the *served* one. Prices are whole numbers
+    (:class:`NodePrices`). ``available`` has an entry for each node, by id: 1 if it can be made without
+    stand-ins, else 0.
     """
 
     def __init__(self, problem: Problem, prices: NodePrices, available: bytearray) -> None:
@@ -79,7 +82,10 @@ class _NearestStandIns:
         self._servers: dict[int, dict[int, int]] = {}
 
     def pairs(self) -> list[Pair]:
-        """Return pairs of a served and a serving node; where no tree exists, enough pairs to prove that."""
+        """Return the pairs of a served and a serving node of these stand-ins.
+
+        If no tree exists, the pairs are enough to prove that.
+        """
         goals = [goal for goal in self._problem.goals if not self._available[goal]]
         needed = self._needed_nodes(goals)
         steps = self._cheapest_steps(needed, sum)
@@ -95,7 +101,10 @@ class _NearestStandIns:
         return [(served, serving) for served in needed for serving in self._servers[served]]
 
     def _servers_of(self, served: int) -> dict[int, int]:
-        """Return the nodes that may serve for a node, with prices up to the cheapest available node's."""
+        """Return the nodes that may serve for a node, by id with their prices; cached.
+
+        Nodes that cost more than the cheapest available one are omitted.
+        """
         servers = self._servers.get(served)
         if servers is None:
             priced = self._prices.servers_of(served)
@@ -111,7 +120,7 @@ class _NearestStandIns:
             yield tuple([o for o in problem.needs[unit] if not available[o]])
 
     def _needed_nodes(self, goals: Iterable[int]) -> set[int]:
-        """Return the nodes that a tree can need although they cannot be made without stand-ins."""
+        """Return the unavailable nodes that a tree can need, goals included."""
         needed = set(goals)
         stack = list(needed)
         while stack:
@@ -126,11 +135,12 @@ class _NearestStandIns:
     def _cheapest_steps(
         self, needed: Iterable[int], combined: Callable[[Iterable[int]], int]
     ) -> "dict[int, _Step]":
-        """Return the cheapest last step to each node; a unit costs the ``combined`` costs of its inputs.
+        """Return the cheapest last step to each node that can be made; the others are omitted.
 
-        With ``max``, the cost of a node is a lower bound on the dissimilarity of making it (h_max; Bonet and
-        Geffner 2001). With ``sum``, the steps lead to a good tree (h_add). Computed by Knuth's generalization
-        of Dijkstra's algorithm (Information Processing Letters 6, 1977).
+        A unit costs the ``combined`` costs of its inputs. With ``max``, the cost of a node is a lower bound
+        on the dissimilarity of making it (h_max; Bonet and Geffner 2001). With ``sum``, the steps lead to a
+        good tree (h_add). Computed by Knuth's generalization of Dijkstra's algorithm (Information Processing
+        Letters 6, 1977).
         """
         served_by: defaultdict[int, list[tuple[int, int]]] = defaultdict(list)
         consumers: defaultdict[int, list[int]] = defaultdict(list)
@@ -163,7 +173,10 @@ class _NearestStandIns:
         return steps
 
     def _dissimilarity(self, goals: Iterable[int], steps: "Mapping[int, _Step]") -> int:
-        """Return the dissimilarity of the tree of the best last ``steps``; each stand-in counts once."""
+        """Return the dissimilarity of the tree that follows ``steps`` back from the goals.
+
+        Each stand-in counts once.
+        """
         total, met = 0, set(goals)
         stack = list(met)
         while stack:
@@ -175,10 +188,11 @@ class _NearestStandIns:
 
 
 class _Step(NamedTuple):
-    """The last step to a node: a unit, or a stand-in with its ``price``.
+    """The last step to a node: a unit or a stand-in.
 
-    ``cost`` is the cost of this step and of all steps before it. ``made_of`` are the nodes that the step
-    needs and that are not available.
+    ``cost``: the cost of this step and of all steps before it.
+    ``made_of``: the unavailable nodes that the step needs.
+    ``price``: the price of a stand-in; 0 for a unit.
     """
 
     cost: int

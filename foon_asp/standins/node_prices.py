@@ -8,9 +8,9 @@ from foon_asp.network import Edit, Network, ObjectNode, Relation, StandInTable, 
 
 
 class NodePrices:
-    """The nodes of a network that may stand in for others by a table, with their prices.
+    """The prices of nodes of a network that may stand in for others by a table.
 
-    Prices are whole numbers: the exact prices times ``scale``.
+    Prices are whole numbers: the exact prices times ``scale``, their common denominator.
     """
 
     def __init__(self, network: Network, table: StandInTable) -> None:
@@ -38,17 +38,18 @@ class NodePrices:
         self._servers: dict[int, dict[int, int]] = {}
 
     def _scaled(self, price: Fraction | None) -> int | None:
+        """Return a price times ``scale``; ``None`` if it is ``None``."""
         return None if price is None else int(price * self.scale)
 
     def servers_of(self, served: int) -> dict[int, int]:
-        """Return the nodes that may stand in for a served node, by id, with their prices."""
+        """Return the price of each node that may stand in for a node of the network, by id; cached."""
         servers = self._servers.get(served)
         if servers is None:
             servers = self._servers[served] = self.servers_of_node(self._objects[served])
         return servers
 
     def servers_of_node(self, node: ObjectNode) -> dict[int, int]:
-        """Return the nodes that may stand in for any node, by id, with prices."""
+        """Return the price of each node, by id, that may stand in for a node of any network."""
         objects, by_label = self._objects, self._by_label
         labels = (
             *self._labels_by_spelling.get(spelling_key(node.label), ()),
@@ -60,7 +61,10 @@ class NodePrices:
         return {o: price for o, price in prices if price is not None}
 
     def price(self, serving: ObjectNode, served: ObjectNode) -> int | None:
-        """Return the price of using one node in place of another, ``None`` where it never stands in."""
+        """Return the price of using ``serving`` in place of ``served``; ``None`` if the table forbids it.
+
+        A price of the pair of nodes takes precedence. Otherwise the prices of all differences are added up.
+        """
         if self._pairs and (serving, served) in self._pairs:
             return self._pairs[serving, served]
         total = 0
@@ -95,13 +99,18 @@ class NodePrices:
         return total
 
     def _name_price(self, edit: Edit, name: str) -> int | None:
+        """Return the price of an edit that adds or removes a name; ``None`` if the table forbids it.
+
+        The name is a state or an ingredient. Its own price takes precedence over that of the edit.
+        """
         price = self._words.get((edit, name), -1)
         return self._edits[edit] if price == -1 else price
 
     def _contents_price(self, ours: tuple[str, ...], theirs: tuple[str, ...]) -> int | None:
-        """Return the price of the differences between two contents; ``None`` where the table forbids one.
+        """Return the price of the differences between two contents, given by their ingredients.
 
-        The differences are in ingredients, or else in the word that relates the contents.
+        If the ingredients are equal, the contents differ in a word such as *in*. Contents with little in
+        common also cost the price of :attr:`Edit.CONTENTS`. ``None`` if the table forbids a difference.
         """
         if ours == theirs:
             return self._edits[Edit.WORD]
@@ -133,7 +142,7 @@ class NodePrices:
     def _relations_price(self, ours: frozenset[Relation], theirs: frozenset[Relation]) -> int | None:
         """Return the price of the differences between two sets of relations.
 
-        ``None`` where the table forbids one of them.
+        ``None`` if the table forbids a difference.
         """
         surplus = Counter(relation.object for relation in ours - theirs)
         lacking = Counter(relation.object for relation in theirs - ours)

@@ -20,9 +20,10 @@ from foon_asp.standins.extension import with_stand_ins
 class Repair:
     """The problem whose best tree is the cheapest repair of a tree.
 
-    ``posed`` is the problem to solve: in it, each step of the tree has one additional output, a node that
-    only this step makes and that is a goal. ``shown`` is the same problem without these nodes, with the same
-    ids of units. ``steps`` are the units of the tree, by id, in the order listed, each once.
+    ``posed``: the problem to solve. Each step of the tree has one additional output in it: a node that is a
+    goal and that only this step makes. So every solution has all steps.
+    ``shown``: the same problem without these nodes, with the same ids of units.
+    ``steps``: the units of the tree, by id, in the order listed, each once.
     """
 
     posed: Problem
@@ -38,10 +39,10 @@ class Repair:
         table: StandInTable,
         is_available: Callable[[ObjectNode], bool],
     ) -> "Repair":
-        """Make the problem of a repair, over the network of a problem and the units of a tree.
+        """Make the problem of a repair, over the units of a problem's network and of a tree.
 
-        Stand-ins in the network are left out. ``is_available`` returns whether the kitchen has a node that is
-        not in the network.
+        ``sources`` has the source of each unit of the tree. Stand-ins in the network are omitted.
+        ``is_available`` says of a node that is not in the network whether the kitchen has it.
         """
         whole = problem.network
         builder = NetworkBuilder()
@@ -74,7 +75,10 @@ class Repair:
 
     @classmethod
     def over(cls, problem: Problem, steps: tuple[int, ...], table: StandInTable) -> "Repair":
-        """Make the problem of a repair, for ``steps`` of a network that has no stand-ins."""
+        """Make the problem of a repair for a tree whose units, ``steps``, are in the problem's network.
+
+        The network must have no stand-ins.
+        """
         network = problem.network
         first = len(network.objects)
         marked = replace(
@@ -92,7 +96,10 @@ class Repair:
         return [unit for unit in units if unit not in steps and motions[unit] != STAND_IN]
 
     def unmakeable_nodes(self) -> list[int]:
-        """Return the nodes that steps or goals need and that cannot be made, even with stand-ins."""
+        """Return the nodes that steps or goals need and that cannot be made, even with stand-ins, ascending.
+
+        Nodes that steps would make are omitted, unless there are no others.
+        """
         available = reach(self.posed).available
         made = {o for unit in self.steps for o in self.shown.gives[unit]}
         needed = {o for unit in self.steps for o in self.shown.needs[unit]}.union(self.shown.goals)
@@ -124,7 +131,10 @@ def _with_markers(network: Network, steps: Sequence[int]) -> Network:
 
 
 def _without_markers(extended: Network, plain: Network) -> Network:
-    """Return an extended network without the nodes that mark steps; its stand-ins stay."""
+    """Return an extended network without the nodes that :func:`_with_markers` added; stand-ins stay.
+
+    ``plain`` is the network before that.
+    """
     stand_ins = {key: unit for key, unit in extended._unit_ids.items() if unit >= len(plain)}
     return replace(
         extended,

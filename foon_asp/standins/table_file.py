@@ -22,10 +22,11 @@ Entry = tuple[str | ObjectNode, str | ObjectNode] | Edit | tuple[Edit, str]
 def read_stand_ins(
     files: Iterable[Path], similar: Iterable[Path] = (), utensils: Collection[str] = ()
 ) -> StandInTable:
-    """Return the usual table with the changes of files; a later file takes precedence.
+    """Return the default table of prices, changed by files; a later file takes precedence.
 
-    The lexicons ``similar`` are read before all ``files``. Pairs with a label of ``utensils`` in lexicons are
-    ignored: a tool or vessel stands in only where one of the ``files`` lists it. Raises :class:`InputError`.
+    The lexicons ``similar`` are read before all ``files``. Of lexicons, only pairs are read, and those with a
+    label of ``utensils`` are ignored. So a tool or vessel stands in only if one of the ``files`` lists it.
+    Raises :class:`InputError`.
     """
     table = StandInTable.usual()
     for file in similar:
@@ -37,12 +38,13 @@ def read_stand_ins(
 
 
 def _names_utensil(entry: Entry, utensils: Collection[str]) -> bool:
+    """Return whether one of the names of a pair is, or has as label, a label of ``utensils``."""
     labels = {name.label if isinstance(name, ObjectNode) else name for name in entry}
     return not labels.isdisjoint(utensils)
 
 
 def _update_table(table: StandInTable, rows: Sequence[Row[Entry, Fraction | None]]) -> StandInTable:
-    """Return a table with the prices of rows."""
+    """Return a copy of a table with the prices of rows; later rows take precedence."""
     edits, words, pairs = dict(table.edits), dict(table.words), dict(table.pairs)
     for name, price, _ in rows:
         if isinstance(name, Edit):
@@ -55,7 +57,11 @@ def _update_table(table: StandInTable, rows: Sequence[Row[Entry, Fraction | None
 
 
 def _read_row(name: str, value: str, column: int) -> tuple[Entry, Fraction | None]:
-    """Return the edit or pair of a row, and its price; ``None`` for the word ``never``."""
+    """Return the edit or pair of a row and its price; ``None`` for the word ``never``.
+
+    A pair has three columns: ``value`` then has the served name, a tab and the price. Raises
+    :class:`LineError` if the row is malformed.
+    """
     served, tab, written = value.rpartition("\t")
     price = _read_price(written.strip(), column + len(value) - len(written))
     if not tab:
@@ -69,7 +75,10 @@ def _read_row(name: str, value: str, column: int) -> tuple[Entry, Fraction | Non
 
 
 def _read_edit(name: str) -> Edit | tuple[Edit, str]:
-    """Return the edit that the name of a row means, with its state or ingredient if the name has one."""
+    """Return the edit that a name means, with its state or ingredient if the name has one after a colon.
+
+    Raises :class:`LineError` for other names.
+    """
     kind, colon, word = (text.strip() for text in name.partition(":"))
     if kind not in (_NAMED if colon else _KINDS) or (colon and not word):
         kinds = ", ".join(_KINDS)
@@ -78,7 +87,7 @@ def _read_edit(name: str) -> Edit | tuple[Edit, str]:
 
 
 def _read_price(written: str, column: int) -> Fraction | None:
-    """Return a price, ``None`` for ``never``; raises :class:`LineError` for other texts."""
+    """Return a price above 0, ``None`` for ``never``; raises :class:`LineError` for other texts."""
     if written == _NEVER:
         return None
     price = Fraction(written) if _NUMBER.fullmatch(written) else Fraction(0)
