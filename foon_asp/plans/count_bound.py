@@ -160,10 +160,10 @@ class CountBound:
             x: list[float] = []
             for measure in measures:
                 relaxed = self._solve_relaxed(model, model.objective(measure))
-                whole = relaxed or model.program.whole_optimum(model.objective(measure))
-                if whole is None:
+                solution = relaxed or model.program.whole_optimum(model.objective(measure))
+                if solution is None:
                     return None
-                x = whole
+                x = solution
                 for a in range(self._size):  # the larger a count, the less of an indicator satisfies floats
                     x[self._size + a] = float(x[a] > 0.5)
                 model.limit_cost(measure, x)
@@ -350,8 +350,8 @@ class CountBound:
 
     def _new_model(self, measures: Sequence[Measure], assumed_cap: int | None = None) -> CountModel:
         """Return a new relaxation with all known conditions; ``assumed_cap`` is as in :class:`CountModel`."""
-        every = (*measures, *(level.measure for level in self._levels))
-        different = {id(measure): measure for measure in every}
+        all_measures = (*measures, *(level.measure for level in self._levels))
+        different = {id(measure): measure for measure in all_measures}
         model = CountModel(
             self._flows,
             list(different.values()),

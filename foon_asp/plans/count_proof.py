@@ -67,13 +67,13 @@ class PlanProver(CountBound):
     """
 
     def prove_claim(
-        self, claim: Claim, measure: Measure, kept: Sequence[Level]
+        self, claim: Claim, measure: Measure, kept_levels: Sequence[Level]
     ) -> tuple[CountProof, Vector | None, Mapping[int, int]] | None:
         """Return a proof of a claim or of a weaker claim, the bound that is proved, and objects by column.
 
         The last has the object of each column for endless items or initial copies, if these have costs.
         Returns ``None`` if nothing is proved. ``measure`` is the objective of the claim. Plans that are worse
-        than the incumbent by a level in ``kept`` are excluded from the claim.
+        than the incumbent by a level in ``kept_levels`` are excluded from the claim.
         """
         self._claim, self._least, self._leaves = claim, claim.least, 0
         floats = [claim.order.approximate(cost)[0] for cost in claim.costs]
@@ -82,8 +82,8 @@ class PlanProver(CountBound):
         # in whole numbers, which only tell where to round
         equation.strengthen({action: round(cost / INTEGRALITY) for action, cost in self._objective.items()})
         self._rounded_rows = list(equation.rounded_rows)
-        model = self._new_model([measure, *(level.measure for level in kept)])
-        for level in kept:
+        model = self._new_model([measure, *(level.measure for level in kept_levels)])
+        for level in kept_levels:
             model.add_level(level)
         for action, cap in enumerate(claim.caps):
             if cap is not None:

@@ -239,10 +239,10 @@ class Counting:
             return False
         if not all(objective.row.whole for objective in self._question.levels):
             return False
-        ended = self._run_clingo({a: (0, cap) for a, cap in enumerate(caps)}, True)
-        if ended.units is not None and self._question.try_incumbent(self._plan_of_run(ended)):
+        run = self._run_clingo({a: (0, cap) for a, cap in enumerate(caps)}, True)
+        if run.units is not None and self._question.try_incumbent(self._plan_of_run(run)):
             raise BetterError({})
-        return ended.exhausted and ended.units is not None
+        return run.exhausted and run.units is not None
 
     def _is_better(self, counts: Counts) -> bool:
         """Make some order of the counts the incumbent if it is a better plan; return whether it is.
@@ -334,12 +334,12 @@ class Counting:
             if (number := problem.network.unit_number(self.units[a])) is not None
         )
         added = program.files[len(ENCODING_FILES) :]
-        ended = clingo_run.run(
+        run = clingo_run.run(
             added, text, program.arguments, self._question.deadline, "ignore", endless=program.endless
         )
-        if not ended.exhausted and ended.units is None:
+        if not run.exhausted and run.units is None:
             raise Stopped
-        return ended.units is not None
+        return run.units is not None
 
     def _find_plan(self, times: Mapping[int, tuple[int, int]], best: bool = False) -> Plan | None:
         """Return a plan with counts within ``times``, found by clingo; ``None`` if there is none.
@@ -347,16 +347,16 @@ class Counting:
         ``times`` has the least and greatest count of each action. With ``best``, the plan is the best one.
         Raises :class:`Stopped` if clingo does not decide it.
         """
-        ended = self._run_clingo(times, best)
-        if ended.units is None:
-            if not ended.exhausted:
+        run = self._run_clingo(times, best)
+        if run.units is None:
+            if not run.exhausted:
                 raise Stopped
             return None
-        return self._plan_of_run(ended)
+        return self._plan_of_run(run)
 
-    def _plan_of_run(self, ended: Run) -> Plan:
+    def _plan_of_run(self, run: Run) -> Plan:
         """Return the plan that a run of clingo found."""
-        return order_executions(self._problem, ended.rows["times"], ended.rows["_after"])
+        return order_executions(self._problem, run.rows["times"], run.rows["_after"])
 
     def _run_clingo(self, times: Mapping[int, tuple[int, int]], best: bool) -> Run:
         """Run clingo for a plan with the least and greatest ``times`` of each action; return the run.
@@ -384,7 +384,7 @@ class Counting:
                 [{number(u): n for u, n in plan.items()} for plan in question.incomparable]
             )
             files = (*files, question_encoding("bounded_plans.lp"))
-        ended = clingo_run.run(
+        run = clingo_run.run(
             files,
             text,
             question.program.arguments,
@@ -393,12 +393,12 @@ class Counting:
             predicates=[("times", 2), ("_after", 4)],
             endless=question.program.endless,
         )
-        if ended.statistics:
+        if run.statistics:
             question.searched = True
-            question.reporter.statistics(ended.statistics)
-        question.seconds["ground"] = question.seconds.get("ground", 0.0) + ended.ground_seconds
-        question.seconds["solve"] = question.seconds.get("solve", 0.0) + ended.solve_seconds
-        return ended
+            question.reporter.statistics(run.statistics)
+        question.seconds["ground"] = question.seconds.get("ground", 0.0) + run.ground_seconds
+        question.seconds["solve"] = question.seconds.get("solve", 0.0) + run.solve_seconds
+        return run
 
 
 def _cost_classes(figures: Sequence[Fraction], idle: Fraction) -> list[int]:

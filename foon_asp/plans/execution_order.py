@@ -15,13 +15,13 @@ def order_executions(
     ``after`` has rows of two executions (four numbers), of which the second has to come first. Of executions
     that are ready together, smaller ones come first.
     """
-    before: dict[tuple[int, int], set[tuple[int, int]]] = {
+    predecessors: dict[tuple[int, int], set[tuple[int, int]]] = {
         (unit, turn): set() for unit, count in times for turn in range(1, count + 1)
     }
-    for unit, turn, other, earlier in after:
-        before[unit, turn].add((other, earlier))
+    for unit, turn, earlier_unit, earlier_turn in after:
+        predecessors[unit, turn].add((earlier_unit, earlier_turn))
     plan: list[int] = []
-    sorter = TopologicalSorter(before)
+    sorter = TopologicalSorter(predecessors)
     sorter.prepare()
     while sorter.is_active():
         ready = sorted(sorter.get_ready())

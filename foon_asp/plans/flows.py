@@ -71,12 +71,12 @@ class Flows:
 
         An object has them if every action that asks for it leaves more copies than its target.
         """
-        kept_by_object: dict[int, dict[int, int]] = {}
+        remaining_by_object: dict[int, dict[int, int]] = {}
         for action, preconditions in enumerate(self.asks):
             for o, n in preconditions.items():
-                kept = n - self.uses[action].get(o, 0) + self.adds[action].get(o, 0)
-                kept_by_object.setdefault(o, {})[action] = kept
-        for o, by_action in kept_by_object.items():
+                remaining = n - self.uses[action].get(o, 0) + self.adds[action].get(o, 0)
+                remaining_by_object.setdefault(o, {})[action] = remaining
+        for o, by_action in remaining_by_object.items():
             copies = min(by_action.values())
             if copies > self.targets.get(o, 0):
                 yield from (Remainder(o, action, copies) for action in by_action)

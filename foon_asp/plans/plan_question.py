@@ -157,7 +157,7 @@ class PlanQuestion:
         if not all(row.holds(plan) for row in self.limits):
             return False
         better = all(costs.key([o]) < (-cost if multiplies(o) else cost,) for o, cost in self.below)
-        return better and not any(counts >= Counter(other) for other in self.incomparable)
+        return better and not any(counts >= Counter(excluded) for excluded in self.incomparable)
 
     def outcome(self, status: Status, proof: Proof | None) -> Outcome:
         """Replay the incumbent, and return the outcome with a status.

@@ -98,22 +98,23 @@ class RoundedProgram:
 
         ``None`` if rounding changes nothing, or if the coefficients become too large.
         """
-        parts = math.lcm(*(weight.denominator for weight in weights.values()))
+        denominator = math.lcm(*(weight.denominator for weight in weights.values()))
         coefficients: dict[int, int] = {}
         least = 0
         for number, weight in weights.items():
-            times = int(weight * parts)
+            times = int(weight * denominator)
             row, wanted = self.program.row_of(number)
             least += times * wanted
             for column, coefficient in row.items():
                 coefficients[column] = coefficients.get(column, 0) + times * coefficient
-        fraction = least % parts
+        fraction = least % denominator
         if not fraction:
             return None
         sums = {
-            column: n // parts * fraction + min(fraction, n % parts) for column, n in coefficients.items()
+            column: n // denominator * fraction + min(fraction, n % denominator)
+            for column, n in coefficients.items()
         }
-        least = -(-least // parts) * fraction
+        least = -(-least // denominator) * fraction
         common = math.gcd(least, *sums.values())
         if not common:
             return None
@@ -238,11 +239,11 @@ class StateEquation(RoundedProgram):
         for number, conditions in enumerate(self._conditions):
             for condition in conditions:
                 role = roles[condition.object] if isinstance(condition, Balance) else -1 - number
-                parts, total, least = sums.get(role, ([], {}, 0))
+                summed, total, least = sums.get(role, ([], {}, 0))
                 row, wanted = self.program.row_of(number)
                 for column, coefficient in row.items():
                     total[column] = total.get(column, 0) + coefficient
-                sums[role] = [*parts, condition], total, least + wanted
+                sums[role] = [*summed, condition], total, least + wanted
         columns: dict[tuple[int, ...], list[int]] = {}
         for action in range(len(self._flows.asks)):
             alike = (costs.get(action, 0), *(total.get(action, 0) for _, total, _ in sums.values()))
@@ -251,9 +252,9 @@ class StateEquation(RoundedProgram):
             return False
         merged = RoundedProgram(len(columns), self._expired)
         members = list(columns.values())
-        for parts, total, least in sums.values():
+        for summed, total, least in sums.values():
             row = {column: total.get(actions[0], 0) for column, actions in enumerate(members)}
-            merged.add(parts, {column: n for column, n in row.items() if n}, least)
+            merged.add(summed, {column: n for column, n in row.items() if n}, least)
         earlier = len(list(merged.rounded_rows))
         merged.strengthen({column: alike[0] for column, alike in enumerate(columns) if alike[0]})
         for condition, row, least in list(merged.rounded_rows)[earlier:]:
@@ -269,6 +270,10 @@ class StateEquation(RoundedProgram):
         least = sum(cost * x[a] for a, cost in objective.items())
         # HiGHS has cuts of its own, and is slower with rows of great coefficients
         program = self.program.without_rows(
-            {row for row, parts in enumerate(self._conditions) if parts and isinstance(parts[0], Rounded)}
+            {
+                row
+                for row, conditions in enumerate(self._conditions)
+                if conditions and isinstance(conditions[0], Rounded)
+            }
         )
         return program.whole_optimum(objective, math.ceil(least - INTEGRALITY * max(1.0, abs(least))))

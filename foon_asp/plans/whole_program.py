@@ -92,22 +92,22 @@ class WholeProgram:
         self._highs = None
         return len(self.lower) - 1
 
-    def add_row(self, parts: dict[int, int], least: int) -> int:
-        """Add a row with coefficients by column (``parts``) and a least sum; return its number."""
-        self._rows.append((parts, least))
+    def add_row(self, coefficients: dict[int, int], least: int) -> int:
+        """Add a row: coefficients by column, and the least sum; return its number."""
+        self._rows.append((coefficients, least))
         return len(self._rows) - 1
 
     def add_open_row(self, columns: Iterable[int], least: int) -> int:
         """Add a row whose coefficients :meth:`change_row` sets later; return its number."""
         return self.add_row(dict.fromkeys(columns, 0), least)
 
-    def change_row(self, row: int, parts: dict[int, int]) -> None:
-        """Replace the coefficients of a row; columns of the row that are not in ``parts`` get 0.
+    def change_row(self, row: int, coefficients: dict[int, int]) -> None:
+        """Replace the coefficients of a row; columns of the row that are not in ``coefficients`` get 0.
 
         Columns that are not in the row are ignored.
         """
         current = self._rows[row][0]
-        new = {column: parts.get(column, 0) for column in current}
+        new = {column: coefficients.get(column, 0) for column in current}
         if new != current:
             self._rows[row] = new, self._rows[row][1]
             self._changed.add(row)
@@ -214,10 +214,10 @@ class WholeProgram:
 
     def without_rows(self, rows: Container[int]) -> "WholeProgram":
         """Return a program with the same columns, and without these rows; the others are numbered anew."""
-        other = WholeProgram(0, self._expired)
-        other.lower, other.upper = list(self.lower), list(self.upper)
-        other._rows = [row for number, row in enumerate(self._rows) if number not in rows]
-        return other
+        program = WholeProgram(0, self._expired)
+        program.lower, program.upper = list(self.lower), list(self.upper)
+        program._rows = [row for number, row in enumerate(self._rows) if number not in rows]
+        return program
 
     def whole_optimum(
         self, objective: Mapping[int, int], sufficient_cost: float = -math.inf
@@ -235,9 +235,9 @@ class WholeProgram:
         highs.setOptionValue("presolve", "on")
         highs.setOptionValue("mip_rel_gap", 0.0)
         highs.setOptionValue("objective_target", sufficient_cost)
-        ended = not self._expired() and run(highs, self._expired, whole=True)
+        is_solved = not self._expired() and run(highs, self._expired, whole=True)
         status = self._library.HighsModelStatus
-        optimal = ended and highs.getModelStatus() in {status.kOptimal, status.kObjectiveTarget}
+        optimal = is_solved and highs.getModelStatus() in {status.kOptimal, status.kObjectiveTarget}
         values = list(highs.getSolution().col_value) if optimal else None
         self._highs = None
         return values
@@ -272,9 +272,10 @@ class WholeProgram:
             self._highs.addVars(count, np.zeros(count), np.full(count, inf))
             self._sent = 0
         highs = self._highs
-        for parts, least in self._rows[self._sent :]:
-            columns = np.array(list(parts), dtype="int32")
-            highs.addRow(float(least), inf, len(parts), columns, np.array(list(parts.values()), dtype=float))
+        for coefficients, least in self._rows[self._sent :]:
+            columns = np.array(list(coefficients), dtype="int32")
+            factors = np.array(list(coefficients.values()), dtype=float)
+            highs.addRow(float(least), inf, len(coefficients), columns, factors)
         for row in self._changed:
             for column, coefficient in self._rows[row][0].items():
                 highs.changeCoeff(row, column, float(coefficient))
@@ -300,12 +301,12 @@ class WholeProgram:
         are rounded finely only if a coarse rounding proves no bound above ``cutoff``.
         """
         best: float | Fraction = -math.inf
-        for parts in PARTS:
-            scaled = [max(0, round(weight * parts)) if abs(weight) < 1e15 else 0 for weight in weights]
+        for denominator in PARTS:
+            scaled = [max(0, round(weight * denominator)) if abs(weight) < 1e15 else 0 for weight in weights]
             total = 0
             reduced_costs = dict.fromkeys(range(self.columns), 0)
             for column, cost in objective.items():
-                reduced_costs[column] = cost * parts
+                reduced_costs[column] = cost * denominator
             for (row, least), weight in zip(self._rows, scaled, strict=True):
                 if weight:
                     total += weight * least
@@ -317,7 +318,7 @@ class WholeProgram:
                     break
                 total += reduced_cost * cheapest
             else:
-                best = max(best, Fraction(total, parts))
+                best = max(best, Fraction(total, denominator))
                 if best > cutoff:
                     break
         return best

@@ -32,7 +32,7 @@ def find_checker() -> Path | None:
     return None if installed is None else Path(installed)
 
 
-def run_checker(checker: Path, data: str, certificate: str) -> tuple[str, str]:
+def run_checker(checker: Path, subject_data: str, certificate: str) -> tuple[str, str]:
     """Run the proved checker; return its verdict and the reason.
 
     The verdict is ``accepted``, ``refused`` or ``not checked``. It is ``not checked``, too, if the program
@@ -43,14 +43,17 @@ def run_checker(checker: Path, data: str, certificate: str) -> tuple[str, str]:
         data: The data as :meth:`Subject.canonical_data` returns them.
         certificate: The certificate as JSON text.
     """
-    ended = subprocess.run(
-        [checker], input=f"{data}\n{certificate}".encode(errors="replace"), capture_output=True, check=False
+    process = subprocess.run(
+        [checker],
+        input=f"{subject_data}\n{certificate}".encode(errors="replace"),
+        capture_output=True,
+        check=False,
     )
-    verdict, _, reason = ended.stdout.decode(errors="replace").strip().partition(": ")
+    verdict, _, reason = process.stdout.decode(errors="replace").strip().partition(": ")
     expected = {0: ACCEPTED, 1: "refused", 3: "not checked"}
-    if expected.get(ended.returncode) == verdict:
+    if expected.get(process.returncode) == verdict:
         return verdict, reason
-    return "not checked", f"it ended with the exit code {ended.returncode}"
+    return "not checked", f"it ended with the exit code {process.returncode}"
 
 
 def check_certificate(certificate: Mapping[str, Any], subject: Subject) -> str:
@@ -66,10 +69,10 @@ def check_certificate(certificate: Mapping[str, Any], subject: Subject) -> str:
     if checker is None:
         return NOT_BUILT
     rules = read_rules(certificate["rules"], len(subject.network))
-    data = subject.canonical_data(rules, [goal["id"] for goal in certificate["goals"]])
+    subject_data = subject.canonical_data(rules, [goal["id"] for goal in certificate["goals"]])
     # no longer than the file that was read
     text = json.dumps(certificate, separators=(",", ":"), ensure_ascii=False)
-    verdict, reason = run_checker(checker, data, text)
+    verdict, reason = run_checker(checker, subject_data, text)
     if verdict == "refused":
         raise RefusedError(f"by the proved checker: {reason}")
     return verdict if verdict == ACCEPTED else f"{verdict}: {reason}"

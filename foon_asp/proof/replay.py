@@ -175,8 +175,8 @@ class _Kitchen:
             used = consumes.get(node, 0)
             gone += self._take_copies(node, used, position)
             endless = self._endless_copy(node)
-            kept = amount - used
-            stayed += [endless] * kept if endless else islice(self._copies[node], kept)
+            unconsumed = amount - used
+            stayed += [endless] * unconsumed if endless else islice(self._copies[node], unconsumed)
         for node, amount in adds.items():
             copies = [Copy(node, position)] * amount
             came += copies

@@ -278,8 +278,8 @@ def _at_most_price(question: Question, max_price: int) -> Meaning:
     """Limit the sum of prices to ``max_price`` hundredths; remove the units without a price."""
     prices = {unit: question.price(unit) for unit in range(len(question.network))}
     unknown = frozenset(unit for unit, price in prices.items() if price is None)
-    things = [(frozenset({unit}), price * 100) for unit, price in prices.items() if price is not None]
-    return Meaning(unknown, counted_sets=things, max_sum=Fraction(max_price))
+    priced_units = [(frozenset({unit}), price * 100) for unit, price in prices.items() if price is not None]
+    return Meaning(unknown, counted_sets=priced_units, max_sum=Fraction(max_price))
 
 
 def _not_both_motions(question: Question, one_motion: str, other_motion: str) -> Meaning:
@@ -346,8 +346,8 @@ def meaning_of_user_rules(rule: Rule) -> Meaning:
         first set that is not used, or all of the first set are used, and then all are barred.
         """
         unused = [together - used for together, excluded in others if excluded <= without]
-        whole = [together for together, excluded in others if excluded <= without and together <= used]
-        return frozenset().union(*(one for one in unused if len(one) == 1), *whole)
+        broken = [together for together, excluded in others if excluded <= without and together <= used]
+        return frozenset().union(*(remaining for remaining in unused if len(remaining) == 1), *broken)
 
     limits = [
         ({unit: Fraction(amount) for amount, units in amounts.items() for unit in units}, Fraction(max_sum))

@@ -101,13 +101,13 @@ def stand_in_fault(
     that every tree makes or takes from the kitchen.
     """
     objects = network.objects
-    listed: set[tuple[int, int]] = set()
+    stand_ins: set[tuple[int, int]] = set()
     for unit, motion in enumerate(network.motions):
         if motion == STAND_IN:
             (serving,), (served,) = network.inputs[unit], network.outputs[unit]
-            listed.add((serving, served))
+            stand_ins.add((serving, served))
     free = _nodes_made(network, actions)
-    for serving, served in listed:
+    for serving, served in stand_ins:
         price = price_of(table, objects[serving], objects[served])
         if price is None or price <= 0:
             return f"{objects[serving]} does not stand in for {objects[served]} by the table"
@@ -121,7 +121,7 @@ def stand_in_fault(
         lacking, least = set(range(len(objects))) - free, {}
     for served in lacking:
         for serving, price in servers.prices_of(served).items():
-            if (serving, served) in listed:
+            if (serving, served) in stand_ins:
                 continue
             before = Fraction(0) if serving in free or claim.bound is None else least.get(serving)
             if before is not None and (claim.bound is None or price + before <= claim.bound):

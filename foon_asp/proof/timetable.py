@@ -129,19 +129,19 @@ def tools_needed(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[s
     needed, _, made = Executions(problem).of(unit)
     needs: dict[str, ToolNeed] = {}
     nodes = (*dict.fromkeys(unit.inputs), *unit.outputs)
-    around = (relation.object for node in nodes for relation in node.relations)
-    for label in dict.fromkeys([*(node.label for node in nodes), *around]):
+    places = (relation.object for node in nodes for relation in node.relations)
+    for label in dict.fromkeys([*(node.label for node in nodes), *places]):
         if not means.is_limited(problem, label):
             continue
-        own = [node for node in dict.fromkeys(unit.inputs) if node.label == label]
-        kept = tuple(node for node in own if node in needed and node in unit.outputs)
-        changed = tuple(node for node in own if node in needed and node not in unit.outputs)
-        out = tuple(node for node in made if node.label == label)
-        others: list[ObjectNode | None] = [node for node in own if node not in needed]
-        if not own and not out:
-            inside = sorted((node for node in needed if node.is_in(label)), key=problem.at_hand)
-            others.append(next(iter(inside), None))  # preferably one that was made: it is known where
-        needs[label] = ToolNeed(kept, changed, out, tuple(others))
+        own_inputs = [node for node in dict.fromkeys(unit.inputs) if node.label == label]
+        kept = tuple(node for node in own_inputs if node in needed and node in unit.outputs)
+        changed = tuple(node for node in own_inputs if node in needed and node not in unit.outputs)
+        outputs = tuple(node for node in made if node.label == label)
+        others: list[ObjectNode | None] = [node for node in own_inputs if node not in needed]
+        if not own_inputs and not outputs:
+            inputs_inside = sorted((node for node in needed if node.is_in(label)), key=problem.at_hand)
+            others.append(next(iter(inputs_inside), None))  # preferably one that was made: it is known where
+        needs[label] = ToolNeed(kept, changed, outputs, tuple(others))
     return needs
 
 

@@ -61,15 +61,15 @@ def used_up_run(problem: Problem, tree: Iterable[FunctionalUnit]) -> UsedUpRun:
 
     steps = [Execution(*map(without_endless, step)) for step in executed]
     stock, goals = executions.initial_copies(), without_endless(wanted)
-    listed = _shortage_as_listed(steps, stock, goals)
-    if listed is None:
+    first_shortage = _shortage_as_listed(steps, stock, goals)
+    if first_shortage is None:
         return UsedUpRun(tuple(range(len(steps))))
     overdrawn = _overdrawn_node(steps, stock, goals)
     if overdrawn is not None:
         return UsedUpRun(None, overdrawn)
     search = _OrderSearch(steps, stock, goals)
     order = search.find_order()
-    shortage = None if order else search.dead_end or listed
+    shortage = None if order else search.dead_end or first_shortage
     return UsedUpRun(order, shortage, order is not None or search.looks_left > 0)
 
 

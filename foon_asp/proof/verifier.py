@@ -496,17 +496,19 @@ class Check:
         network = self.network
         if unit_prices is None:
             return [None] * len(network)
-        whole = network.detailed or network
-        own = {whole.unit_id(unit): price for unit, price in unit_prices.units.items()}
-        prices = [own.get(unit, unit_prices.motions.get(motion)) for unit, motion in enumerate(whole.motions)]
+        detailed = network.detailed or network
+        own = {detailed.unit_id(unit): price for unit, price in unit_prices.units.items()}
+        prices = [
+            own.get(unit, unit_prices.motions.get(motion)) for unit, motion in enumerate(detailed.motions)
+        ]
         if network.detailed is not None:
             details_prices = [[prices[detail] for detail in details] for details in network.stands_for]
             known_prices = [
                 [price for price in detail_prices if price is not None] for detail_prices in details_prices
             ]
             prices = [
-                min(k) if len(k) == len(e) else None
-                for k, e in zip(known_prices, details_prices, strict=True)
+                min(known) if len(known) == len(all_prices) else None
+                for known, all_prices in zip(known_prices, details_prices, strict=True)
             ]
         return prices
 
@@ -869,22 +871,22 @@ class Check:
         container rule skips are omitted.
         """
         network = self.network
-        whole = network.detailed or network
+        detailed = network.detailed or network
         for detail in (unit,) if network.detailed is None else network.stands_for[unit]:
-            inputs = set(whole.inputs[detail])
-            skipped = self._skipped_containers(whole, inputs) if self.containers == "implied" else set()
+            inputs = set(detailed.inputs[detail])
+            skipped = self._skipped_containers(detailed, inputs) if self.containers == "implied" else set()
             yield (
                 self._ids_at_level(inputs - skipped),
-                self._ids_at_level(set(whole.outputs[detail]) - skipped),
+                self._ids_at_level(set(detailed.outputs[detail]) - skipped),
             )
 
-    def _skipped_containers(self, whole: Network, inputs: set[int]) -> set[int]:
+    def _skipped_containers(self, detailed: Network, inputs: set[int]) -> set[int]:
         """Return the inputs of a unit that the container rule ``implied`` takes as given.
 
         Such an input is a utensil with exactly one ingredient. This ingredient, located in the utensil, is
         another input.
         """
-        nodes = [(o, whole.objects[o]) for o in inputs]
+        nodes = [(o, detailed.objects[o]) for o in inputs]
         return {
             o
             for o, vessel in nodes
@@ -1026,17 +1028,17 @@ class Check:
         An entry is a fraction or, for ``success``, an object from rate to exponent.
         """
         amount: Amount = {}
-        parts = read_list(stated)
+        entries = read_list(stated)
         objectives = self.objectives or (_UNMEASURED,)
-        require(len(parts) == len(objectives), "expected one part of a weight for each objective")
+        require(len(entries) == len(objectives), "expected one part of a weight for each objective")
         for level, objective in enumerate(objectives):
             if objective == "success":
-                for name, exponent in read_object(parts[level]).items():
+                for name, exponent in read_object(entries[level]).items():
                     rate = read_rational(name)
                     require(rate in self.costly, "expected rates of motions in a weight, and none of 0 or 1")
                     amount[level, rate] = read_rational(exponent)
             else:
-                amount[level, None] = read_rational(parts[level])
+                amount[level, None] = read_rational(entries[level])
         return amount
 
     def _minus_log_sign(self, exponents: Mapping[Fraction, Fraction]) -> Fraction | int:
@@ -1279,8 +1281,8 @@ def _check_user_rules(rule: Rule, units: int) -> None:
         counted: list[int] = []
         for amount, counted_units in read_object(amounts).items():
             number = read_rational(amount)
-            whole = number > 0 and number.denominator == 1
-            require(whole, "a limit counts what is no whole number above zero")
+            is_count = number > 0 and number.denominator == 1
+            require(is_count, "a limit counts what is no whole number above zero")
             counted += read_numbers(counted_units, units)
         require(len(set(counted)) == len(counted), "a limit counts a unit twice")
 

@@ -151,13 +151,13 @@ class PlanCheck(Check):
         asks = {o: input_amounts.get(o, 1) for o in self.needs(unit) if o is not None}
         gives = {o: output_amounts.get(o, 1) for o in self.gives(unit) if o is not None}
         self._spend(len(inputs) * (1 + len(network.outputs[unit])))
-        kept = {
+        remaining = {
             o: self._remaining_copies(unit, o, amount, output_amounts.get(o, 1)) for o, amount in asks.items()
         }
         adds = {o: n - (input_amounts.get(o, 1) if o in inputs else 0) for o, n in gives.items()}
         return Flow(
             asks,
-            {o: amount - kept[o] for o, amount in asks.items() if amount > kept[o]},
+            {o: amount - remaining[o] for o, amount in asks.items() if amount > remaining[o]},
             {o: surplus for o, surplus in adds.items() if surplus > 0},
         )
 
@@ -430,7 +430,7 @@ class PlanCheck(Check):
         per_execution = self.sum(
             [
                 per_execution,
-                *(self.times(w, self.cost_lower_bound(member, at)) for at, w in conditions.levels),
+                *(self.times(w, self.cost_lower_bound(member, earlier)) for earlier, w in conditions.levels),
             ]
         )
         once = conditions.used.get(member, {})
@@ -441,9 +441,9 @@ class PlanCheck(Check):
                 require(high is not None, f"member {member} brings more than it costs, without end")
                 ends.append(self.sum([self.times(per_execution, Fraction(high or 0)), once]))
         cheapest = ends[0]
-        for other in ends[1:]:
-            if self.sign(self.sum([other, negate(cheapest)])) < 0:
-                cheapest = other
+        for cost in ends[1:]:
+            if self.sign(self.sum([cost, negate(cheapest)])) < 0:
+                cheapest = cost
         return cheapest
 
     def _max_count(self, member: int, level: int, node: Node) -> int | None:
@@ -461,8 +461,8 @@ class PlanCheck(Check):
         if self.least is not None:
             bounds += (
                 cap
-                for at in range(level + 1)
-                if (cap := self.max_count_by_cost(member, at, at == level)) is not None
+                for index in range(level + 1)
+                if (cap := self.max_count_by_cost(member, index, index == level)) is not None
             )
         return min(bounds, default=None)
 
@@ -509,7 +509,7 @@ class PlanCheck(Check):
         By ``success``, it is ``-log`` of the product, rounded up.
         """
         assert self.least is not None
-        stated = {rate: value for (at, rate), value in self.least.items() if at == level}
+        stated = {rate: value for (index, rate), value in self.least.items() if index == level}
         if self.objectives[level] != "success":
             return stated.get(None, Fraction(0))
         bounds = ([e * bound for bound in self.minus_log(rate)] for rate, e in stated.items() if rate)
@@ -544,10 +544,10 @@ class PlanCheck(Check):
         if self.least is None:
             enough = self.sign(bound) > 0
         else:
-            parts = self.cost_denominator(level)
-            if parts is not None:
-                (at,) = bound or [(level, None)]
-                bound = {at: Fraction(math.ceil(bound.get(at, Fraction(0)) * parts), parts)}
+            denominator = self.cost_denominator(level)
+            if denominator is not None:
+                (part,) = bound or [(level, None)]
+                bound = {part: Fraction(math.ceil(bound.get(part, Fraction(0)) * denominator), denominator)}
             claimed = {key: value for key, value in self.least.items() if key[0] == level}
             enough = self.sign(self.sum([bound, negate(claimed)])) >= 0
         require(enough, "the weights do not add up to enough")
@@ -557,11 +557,13 @@ class PlanCheck(Check):
         objective = self.objectives[level]
         if objective == "success" or objective in self.measures:
             return None
-        every = self.prices if objective == "price" else []
-        every = (
-            [1 / self.rate(unit) for unit in range(len(self.network))] if objective == "attempts" else every
-        )
-        return math.lcm(*(cost.denominator for cost in every))
+        if objective == "price":
+            unit_costs = self.prices
+        elif objective == "attempts":
+            unit_costs = [1 / self.rate(unit) for unit in range(len(self.network))]
+        else:
+            unit_costs = []
+        return math.lcm(*(cost.denominator for cost in unit_costs))
 
 
 class _FarkasCombination:
@@ -673,10 +675,10 @@ class _FarkasCombination:
         self.constant = self._plus_multiple(self.constant, weight, factor)
 
     def _add_coefficient(
-        self, to: dict[int, Amount], member: int, weight: Amount, factor: int | Fraction
+        self, coefficients: dict[int, Amount], member: int, weight: Amount, factor: int | Fraction
     ) -> None:
-        """Add ``factor`` times a weight to the coefficient of a member in ``to``, in place."""
-        to[member] = self._plus_multiple(to.get(member, {}), weight, factor)
+        """Add ``factor`` times a weight to the coefficient of a member in ``coefficients``, in place."""
+        coefficients[member] = self._plus_multiple(coefficients.get(member, {}), weight, factor)
 
     def _plus_multiple(self, amount: Amount, weight: Amount, factor: int | Fraction) -> Amount:
         """Return an amount plus ``factor`` times a weight."""

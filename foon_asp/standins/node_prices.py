@@ -71,8 +71,8 @@ class NodePrices:
         label, states, relations, contents = serving
         served_label, served_states, served_relations, served_contents = served
         if label != served_label:
-            listed = (label, served_label) in self._pairs or not spelled_alike(label, served_label)
-            price = self._pairs.get((label, served_label)) if listed else self._edits[Edit.SPELLING]
+            is_listed = (label, served_label) in self._pairs or not spelled_alike(label, served_label)
+            price = self._pairs.get((label, served_label)) if is_listed else self._edits[Edit.SPELLING]
             if price is None:
                 return None
             total += price

@@ -44,22 +44,22 @@ class Repair:
         ``sources`` has the source of each unit of the tree. Stand-ins in the network are omitted.
         ``is_available`` says of a node that is not in the network whether the kitchen has it.
         """
-        whole = problem.network
+        original = problem.network
         builder = NetworkBuilder()
-        for unit, places in zip(whole, whole.sources, strict=True):
+        for unit, places in zip(original, original.sources, strict=True):
             if unit.motion == STAND_IN:
                 continue
             builder.add(unit.motion, unit.inputs, unit.outputs, *places)
-        listed = [
+        unit_ids = [
             builder.add(unit.motion, unit.inputs, unit.outputs, source)
             for unit, source in zip(tree, sources, strict=True)
         ]
-        steps, network = tuple(dict.fromkeys(listed)), builder.build()
+        steps, network = tuple(dict.fromkeys(unit_ids)), builder.build()
         nodes = enumerate(network.objects)
         kitchen = frozenset(
             o
             for o, node in nodes
-            if (problem.at_hand(node) if whole.object_id(node) is not None else is_available(node))
+            if (problem.at_hand(node) if original.object_id(node) is not None else is_available(node))
         )
         goals = [network.object_id(node) for node in problem.goal_nodes]
         merged = replace(

@@ -561,8 +561,8 @@ PARTS = {
     ),
     # where nothing is dug, mixing is right
     "a claim bars the last of its units where the others are used": Part(
-        "if len(one) == 1",
-        "if one",
+        "if len(remaining) == 1",
+        "if remaining",
         plain(**NO_TREE, rules=[own([[[1, 3], []]]), *forbid(["pour"])], cuts=[BOTH], proof=HOPELESS),
         rule_meaning,
     ),

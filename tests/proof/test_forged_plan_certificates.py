@@ -391,13 +391,13 @@ PARTS = {
         at_least("2", floured("2"), **FLOURED),
     ),
     "a bound is rounded up to what executions cost": Part(
-        'if objective == "attempts" else every',
-        "if objective == 0 else every",
+        'elif objective == "attempts":',
+        "elif objective == 0:",
         at_least("3", {"balance": [[DOUGH, "4/3"], [BREAD, "17/6"]]}, objective=["attempts"]),
     ),
     "a bound is rounded up to what units are priced at": Part(
-        'every = self.prices if objective == "price" else []',
-        'every = self.prices if objective != "price" else []',
+        'if objective == "price":',
+        'if objective != "price":',
         at_least("1", BY_PRICE, objective=["price"], at=PRICED),
     ),
     "each copy that is taken crosses a cut": Part(
@@ -471,8 +471,8 @@ PARTS = {
         at_least("9", branch(0, BREAD_OFTEN, {})),
     ),
     "a bound is rounded up and no further": Part(
-        "math.ceil(bound.get(at, Fraction(0)) * parts)",
-        "math.ceil(bound.get(at, Fraction(0)) * parts) + 1",
+        "math.ceil(bound.get(part, Fraction(0)) * denominator)",
+        "math.ceil(bound.get(part, Fraction(0)) * denominator) + 1",
         at_least("3", PROOF),
     ),
     "where there is nothing to be bounded, a bound is above nothing": Part(
