@@ -139,26 +139,27 @@ def _values_of_rule(rule: Rule) -> dict[str, Any]:
 
 
 def _forbid_motion(question: Question, forbidden_motion: str) -> Meaning:
-    """Remove the units with the motion."""
+    """Return a meaning that removes the units with the motion."""
     return Meaning(question.with_motion(forbidden_motion))
 
 
 def _forbid_object(question: Question, forbidden_object: str) -> Meaning:
-    """Remove the units with an object of this label among inputs or outputs."""
+    """Return a meaning that removes the units with an object of this label among inputs or outputs."""
     return Meaning(question.touching(question.labelled(forbidden_object)))
 
 
 def _forbid_ingredient(question: Question, allergen: list[str]) -> Meaning:
-    """Remove the units that touch an object labelled as, or made with, one of the names in ``allergen``.
+    """Return a meaning that removes the units that touch an object with an allergen.
 
-    If a goal is such an object, no tree satisfies the constraint.
+    The object is labelled as one of the names in ``allergen``, or has it as an ingredient. If a goal is such
+    an object, no tree satisfies the constraint.
     """
     tainted = question.made_with(allergen)
     return Meaning(question.touching(tainted), never=not set(tainted).isdisjoint(question.goals))
 
 
 def _least_rate(question: Question, least_rate: int) -> Meaning:
-    """Remove the units whose success rate is unknown or below ``least_rate``.
+    """Return a meaning that removes the units whose success rate is unknown or below ``least_rate``.
 
     Rates are compared in millionths, rounded down.
     """
@@ -178,7 +179,7 @@ def _matching_source_names(network: Network, unit: int, allowed: list[str]) -> s
 
 
 def _only_sources(question: Question, allowed: list[str]) -> Meaning:
-    """Remove the units without a source in ``allowed``."""
+    """Return a meaning that removes the units without a source in ``allowed``."""
     network = question.network
     return Meaning(
         frozenset(u for u in range(len(network)) if not _matching_source_names(network, u, allowed))
@@ -191,19 +192,22 @@ def _videos(network: Network, unit: int, least_videos: int) -> set[str]:
 
 
 def _at_least_videos(question: Question, least_videos: int) -> Meaning:
-    """Remove the units that are in fewer videos than ``least_videos``."""
+    """Return a meaning that removes the units that are in fewer videos than ``least_videos``."""
     network = question.network
     seen = [len(_videos(network, unit, least_videos)) for unit in range(len(network))]
     return Meaning(frozenset(unit for unit, videos in enumerate(seen) if videos < least_videos))
 
 
 def _motion_only_with(question: Question, tied_motion: str, tied_utensil: str) -> Meaning:
-    """Remove the units with the motion that have no object of the utensil's label."""
+    """Return a meaning that removes the units with the motion that have no object of the utensil's label."""
     return Meaning(question.with_motion(tied_motion) - question.touching(question.labelled(tied_utensil)))
 
 
 def _never_heated(question: Question, unheated_ingredient: str, heats: list[str]) -> Meaning:
-    """Remove the units with a motion of ``heats`` that have the ingredient in one of their inputs."""
+    """Return a meaning that removes units with a motion of ``heats`` and the ingredient in an input.
+
+    An input labelled as the ingredient counts, too.
+    """
     network, hot = question.network, frozenset(heats)
     tainted = frozenset(question.made_with([unheated_ingredient]))
     heating = (unit for unit, motion in enumerate(network.motions) if motion in hot)
@@ -211,24 +215,28 @@ def _never_heated(question: Question, unheated_ingredient: str, heats: list[str]
 
 
 def _require_motion(question: Question, required_motion: str) -> Meaning:
-    """Require a unit with the motion."""
+    """Return a meaning that requires a unit with the motion."""
     return Meaning(requirements=[[[question.with_motion(required_motion)]]])
 
 
 def _require_object(question: Question, required_object: str) -> Meaning:
-    """Require a unit with an object of this label among inputs or outputs."""
+    """Return a meaning that requires a unit with an object of this label among inputs or outputs."""
     return Meaning(requirements=[[[question.touching(question.labelled(required_object))]]])
 
 
 def _require_ingredient(question: Question, required_ingredient: str) -> Meaning:
-    """Require a unit that touches an object labelled as, or made with, the ingredient."""
+    """Return a meaning that requires a unit with the ingredient in an input or output.
+
+    An input or output labelled as the ingredient counts, too.
+    """
     return Meaning(requirements=[[[question.touching(question.made_with([required_ingredient]))]]])
 
 
 def _require_intermediate(question: Question, required_intermediate: str) -> Meaning:
-    """Require that the tree makes and uses an object of this label that the kitchen does not have.
+    """Return a meaning that requires that an object of this label is made and used.
 
-    For one such node, the tree has a unit that needs it, and a unit that makes it without needing it.
+    For one node of the label that the kitchen does not have, the tree has a unit that needs it, and another
+    that makes it without needing it.
     """
     network = question.network
     wanted = []
@@ -246,17 +254,20 @@ def _singletons(units: Iterable[int]) -> list[tuple[Units, Fraction]]:
 
 
 def _at_most_units(question: Question, max_units: int) -> Meaning:
-    """Limit the number of units."""
+    """Return a meaning that limits the number of units."""
     return Meaning(counted_sets=_singletons(range(len(question.network))), max_sum=Fraction(max_units))
 
 
 def _at_most_motion(question: Question, limited_motion: str, max_uses: int) -> Meaning:
-    """Limit the number of units with the motion."""
+    """Return a meaning that limits the number of units with the motion."""
     return Meaning(counted_sets=_singletons(question.with_motion(limited_motion)), max_sum=Fraction(max_uses))
 
 
 def _at_most_utensils(question: Question, max_utensils: int) -> Meaning:
-    """Limit the number of different utensil labels among the inputs and outputs of the tree's units."""
+    """Return a meaning that limits the number of different utensils, by label.
+
+    It counts the utensils among the inputs and outputs of the tree's units.
+    """
     network, utensils = question.network, question.utensils
     labels = {o: node.label for o, node in enumerate(network.objects) if node.label in utensils}
     touching: dict[str, list[int]] = {label: [] for label in sorted(utensils)}
@@ -269,13 +280,16 @@ def _at_most_utensils(question: Question, max_utensils: int) -> Meaning:
 
 
 def _at_most_utensil_uses(question: Question, limited_utensil: str, max_utensil_uses: int) -> Meaning:
-    """Limit the number of units with an object of the utensil's label."""
+    """Return a meaning that limits the number of units with an object of the utensil's label."""
     units = question.touching(question.labelled(limited_utensil))
     return Meaning(counted_sets=_singletons(units), max_sum=Fraction(max_utensil_uses))
 
 
 def _at_most_price(question: Question, max_price: int) -> Meaning:
-    """Limit the sum of prices to ``max_price`` hundredths; remove the units without a price."""
+    """Return a meaning that limits the sum of prices to ``max_price`` hundredths.
+
+    It removes the units without a price.
+    """
     prices = {unit: question.price(unit) for unit in range(len(question.network))}
     unknown = frozenset(unit for unit, price in prices.items() if price is None)
     priced_units = [(frozenset({unit}), price * 100) for unit, price in prices.items() if price is not None]
@@ -283,13 +297,13 @@ def _at_most_price(question: Question, max_price: int) -> Meaning:
 
 
 def _not_both_motions(question: Question, one_motion: str, other_motion: str) -> Meaning:
-    """Allow units with one of the two motions, but not with both."""
+    """Return a meaning that allows units with one of the two motions, but not with both."""
     motions = [question.with_motion(motion) for motion in (one_motion, other_motion)]
     return Meaning(counted_sets=[(units, Fraction(1)) for units in motions], max_sum=Fraction(1))
 
 
 def _before(question: Question, earlier_motion: str, later_motion: str) -> Meaning:
-    """Bar units with the later motion that cannot come after the earlier motion.
+    """Return a meaning that bars units with the later motion that cannot come after the earlier motion.
 
     The certificate is at a branch, on which some units are used and others excluded. Nodes that the used
     units can make without the earlier motion are *early*. Other nodes are *late* if a unit that is not

@@ -27,9 +27,8 @@ class Obstacle(NamedTuple):
 
     ``unit``: the position of the unit in the tree, from 0. ``None`` if every unit runs and a goal is missing.
     ``missing``: the input or goal that is not available.
-    ``cycle``: positions of units in a cycle that ``unit`` waits for. Each needs an output of the next, the
-    last one of the first. Without a cycle it is empty: some input that ``unit`` depends on is made by no
-    unit.
+    ``cycle``: positions of units in a cycle that ``unit`` waits for. Each needs an output of the next, and
+    the last one of the first. If it is empty, ``unit`` depends on an input that no unit makes.
     ``used_up_by``: in a plan, the positions of the steps that used up copies of ``missing``.
     ``amount``: in a plan, the number of copies needed.
     """
@@ -64,7 +63,7 @@ class Simulation(NamedTuple):
 def simulate_for(problem: Problem, tree: TaskTree) -> Simulation:
     """Simulate a tree from the kitchen of a problem, for its goals and under its container rule.
 
-    Items last, whatever the problem says. Equal to :func:`simulate` with the data of the problem.
+    Items last, whatever the problem says about them.
     """
     network = problem.network
     goals = tuple(network.objects[goal] for goal in problem.goals)
@@ -138,9 +137,10 @@ def _waiting_cycle(
     waiting: Sequence[int],
     available: set[ObjectNode],
 ) -> tuple[int, ...]:
-    """Return the positions of a cycle of units that the first ``waiting`` unit waits for, directly or not.
+    """Return a cycle of waiting units, by position, that keeps the first waiting unit from running.
 
-    Empty if there is none. ``needs`` and ``gives`` have the inputs and outputs of each unit, by position.
+    A unit waits for the units that make one of its unavailable inputs. Empty if there is no cycle. ``needs``
+    and ``gives`` have the inputs and outputs of each unit, by position.
     """
     makers: dict[ObjectNode, list[int]] = {}
     for position in waiting:

@@ -31,8 +31,8 @@ class StandInClaim(NamedTuple):
     """The part of a certificate's claim that concerns stand-ins.
 
     ``by_dissimilarity``: whether dissimilarity is the first objective.
-    ``bound``: the claimed lower bound on the dissimilarity of trees. ``None`` if the claim has none, or is
-    that there is no tree.
+    ``bound``: the claimed lower bound on the dissimilarity of trees. ``None`` if nothing is claimed of it, or
+    if the claim is that there is no tree.
     """
 
     by_dissimilarity: bool
@@ -92,13 +92,15 @@ def stand_in_fault(
 ) -> str | None:
     """Return in words the first fault of the stand-ins of a network; ``None`` without one.
 
-    A stand-in of the network needs a price above 0, and has to serve a node that is not free. A node is
-    *free* if it can be made without stand-ins. Other pairs with a price are missing stand-ins, which are
-    faults, too.
+    A node is *free* if it can be made without stand-ins. Each stand-in of the network needs a price above 0,
+    and has to serve a node that is not free. Other pairs of this kind are missing stand-ins, which is a
+    fault, too.
 
-    If the claim is by dissimilarity, fewer are missing. A serving node need not cost more than the cheapest
-    free node in its place. A tree with the stand-in need not exceed ``claim.bound``. ``goals`` are the nodes
-    that every tree makes or takes from the kitchen.
+    If the claim is by dissimilarity, two kinds may be missing. In one, the serving node costs more than the
+    cheapest free node that could serve. In the other, every tree with the stand-in has a dissimilarity above
+    ``claim.bound``.
+
+    ``goals`` are the nodes that every tree makes or takes from the kitchen.
     """
     objects = network.objects
     stand_ins: set[tuple[int, int]] = set()
@@ -268,7 +270,10 @@ def _nodes_made(network: Network, actions: Actions) -> set[int]:
 def _nodes_needed(
     network: Network, goals: Sequence[int], free: Collection[int], actions: Actions
 ) -> set[int]:
-    """Return the goals that are not free and, recursively, the inputs of their achievers that are not."""
+    """Return the nodes that are not free and that a tree may need.
+
+    They are goals and, recursively, inputs of their achievers.
+    """
     needed = {goal for goal in goals if goal not in free}
     stack = list(needed)
     while stack:

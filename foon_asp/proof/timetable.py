@@ -106,8 +106,8 @@ class ToolNeed(NamedTuple):
     ``kept``: preconditions that stay as they are.
     ``changed``: preconditions that are no outputs.
     ``made``: outputs that the unit makes.
-    ``others``: tools that are no preconditions. They are skipped inputs. If the label is no input or output,
-    it is one object that the unit uses in, on or at the tool, or ``None`` if there is no such input.
+    ``others``: inputs of the label that the container rule skips. If the label is neither an input nor an
+    output, it is one input that is in, on or at such a tool, or ``None``.
     """
 
     kept: tuple[ObjectNode, ...]
@@ -117,7 +117,10 @@ class ToolNeed(NamedTuple):
 
     @property
     def number(self) -> int:
-        """The number of tools of the label that the unit occupies."""
+        """The number of tools of the label that the unit occupies.
+
+        A tool that changes can be one that is made, so the larger of these numbers counts.
+        """
         return len(self.kept) + max(len(self.changed) + len(self.others), len(self.made))
 
 
@@ -199,9 +202,10 @@ class _Run:
         return None
 
     def _start_step(self, number: int) -> Iterator[str]:
-        """Start the step of this number, from 0, and yield each reason in words why it cannot start.
+        """Start a step, and yield in words each reason why it cannot start.
 
-        It takes its copies, agent and tools from the kitchen, up to the reason at which the caller stops.
+        If there is none, its copies, agent and tools are taken from the kitchen. ``number`` is the position
+        of the step, from 0.
         """
         unit, step = self._plan[number], self._steps[number]
         resources = _resources_of(step)

@@ -64,7 +64,7 @@ def used_up_run(problem: Problem, tree: Iterable[FunctionalUnit]) -> UsedUpRun:
     first_shortage = _shortage_as_listed(steps, stock, goals)
     if first_shortage is None:
         return UsedUpRun(tuple(range(len(steps))))
-    overdrawn = _overdrawn_node(steps, stock, goals)
+    overdrawn = _total_shortage(steps, stock, goals)
     if overdrawn is not None:
         return UsedUpRun(None, overdrawn)
     search = _OrderSearch(steps, stock, goals)
@@ -101,12 +101,12 @@ def _shortage_as_listed(
     return missing(None, goals)
 
 
-def _overdrawn_node(
+def _total_shortage(
     steps: Sequence[Execution], stock: Mapping[ObjectNode, int], goals: Mapping[ObjectNode, int]
 ) -> Shortage | None:
-    """Return a shortage in every order: more copies of a node are used up than exist in total.
+    """Return a shortage that every order has: more copies of a node are used up than exist in total.
 
-    ``None`` if there is no such node. Copies in total are those of the stock and those that all steps add.
+    The total is the stock and the copies that all steps add. ``None`` if there is no such node.
     """
     copies = dict(stock)
     for step in steps:
@@ -180,10 +180,11 @@ class _OrderSearch:
         return None
 
     def _next_steps(self, dead: set[int]) -> Iterator[int]:
-        """Yield the waiting steps that can be next, or nothing if the done steps are in ``dead``.
+        """Yield the waiting steps that can be next.
 
-        A step is the last one if it leaves enough copies for all waiting steps: if no order continues with
-        this step, none continues with another. Sets of steps are bit masks.
+        The search may end at a step that leaves enough copies for all waiting steps. If no order continues
+        with it, none continues with another. ``dead`` has sets of done steps, as bit masks, from which no
+        order continues: then nothing is yielded.
         """
         end = len(self._steps)
         step = end if self._done in dead else self._next[end]

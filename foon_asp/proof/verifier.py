@@ -76,7 +76,7 @@ class CertificateLimits(NamedTuple):
         steps: Steps of the check. To look at a unit is one step; arithmetic takes more.
         steps_each: Additional steps for each unit and object node of the network.
         rules: Rules of a claim.
-        rule_steps: Steps that a rule counts for, for each unit and object node.
+        rule_steps: Steps that are counted for a rule, for each unit and object node of the network.
         digits: Digits of a fraction in the file.
         sum_bits: Bits of a sum of fractions.
         product_bits: Bits of a product of rates.
@@ -298,9 +298,9 @@ def seal(certificate: Mapping[str, Any]) -> str:
 
 
 def trusted_claims(certificate: Mapping[str, Any]) -> Rule | None:
-    """Return the rule of a certificate that has claims about user rules, which are taken on trust.
+    """Return the claims about user rules that a certificate takes on trust, as one of its rules.
 
-    ``None`` if it has none.
+    ``None`` if there are none.
     """
     return next((rule for rule in certificate.get("rules", ()) if rule["rule"] == OWN), None)
 
@@ -351,10 +351,11 @@ def check_header(certificate: Any, form: Form, subject: Subject) -> tuple[Rule, 
 class Check:
     """One certificate, checked against its network.
 
-    A *member* of a cut is a unit, a kitchen item, or a step of a constraint (:class:`CompiledRules`). All
-    members are numbered together. A unit has its id as number. Kitchen item ``k`` has the number of units
-    plus ``k``. Steps are numbered from the number of units and nodes on. Items are members only if the
-    objective ``kitchen`` counts them.
+    To *refuse* is to raise :class:`RefusedError`. A *member* of a cut is a unit, a kitchen item, or a step of
+    a constraint (:class:`CompiledRules`). Items are members only if the objective ``kitchen`` counts them.
+
+    All members are numbered together. A unit has its id as number. Kitchen item ``k`` has the number of units
+    plus ``k``. Steps are numbered from the number of units and nodes on.
     """
 
     def __init__(self, certificate: dict[str, Any], rules: tuple[Rule, ...], subject: Subject) -> None:
@@ -515,7 +516,10 @@ class Check:
     def _require_complete(
         self, values: Sequence[Fraction | None] | None, count: int, what: str
     ) -> list[Fraction]:
-        """Return ``count`` values; refuse missing ones and values below 0; ``what`` names them in errors."""
+        """Return values from which none is missing; ``what`` names them in errors.
+
+        Refuse ``None`` in place of values, fewer than ``count`` that are not ``None``, and values below 0.
+        """
         require(values is not None, f"a claim needs {what}, but none are given")
         present = [value for value in values or () if value is not None]
         require(len(present) == count, f"a unit has none of the {what} that a claim needs")
@@ -523,7 +527,10 @@ class Check:
         return present
 
     def verify_claim(self) -> Verified:
-        """Check the tree, its costs and the proof; return what is proved."""
+        """Check the tree, its costs and the proof; return what is proved.
+
+        Refuse the certificate at the first fault.
+        """
         claim, listed, proof = (self.certificate[key] for key in ("claim", "tree", "proof"))
         costs: list[int | Fraction] | None = None
         amount: Amount = {}
@@ -698,12 +705,13 @@ class Check:
     ) -> tuple[Amount, Callable[[int], Amount]]:
         """Check a cost partition on a branch; return its sum, and a function that returns reduced costs.
 
-        The sum bounds the cost of the members that a tree has in addition to ``used``. A tree with a member
-        costs at least its reduced cost more. Members in ``without`` are excluded.
+        The sum is a lower bound on the cost of all members that a tree of the branch has in addition to
+        ``used``. With a certain member, the cost is higher by at least the reduced cost of the member.
+        Members in ``without`` are excluded.
 
-        ``weights`` and ``limits`` are rows of a proof: the weights of cuts and of limits. Each unit that a
-        member consumes of a limit raises the cost that its cuts may share by the limit's weight. In return,
-        the weight of the remaining limit is subtracted from the sum.
+        ``weights`` and ``limits`` are rows of a proof: the weights of cuts and of limits. A member may carry
+        more than its cost: the weight of a limit for each unit that it consumes of the limit. In return, this
+        weight is subtracted from the sum for each unit of the limit that ``used`` leaves.
         """
         total: Amount = {}
         carried: list[tuple[Amount, Mapping[int, Fraction]]] = []
@@ -771,9 +779,9 @@ class Check:
     def _round_up(self, amount: Amount, stated: Any) -> Amount:
         """Return a bound, rounded up to a stated common divisor of all costs by an objective.
 
-        It is rounded at the first objective whose part is no multiple of the stated divisor. The parts after
-        this objective become 0, since no cost is below 0. A stated divisor that does not divide all costs is
-        refused.
+        ``stated`` is an object with divisors by objective. The bound is rounded at the first objective whose
+        part is no multiple of its divisor. The parts after this objective become 0, since no cost is below 0.
+        A divisor that does not divide all costs is refused.
         """
         multiples = {name: read_rational(multiple) for name, multiple in read_object(stated).items()}
         require(multiples.keys() <= set(self.objectives), "a multiple is stated for another objective")
@@ -907,7 +915,7 @@ class Check:
         return frozenset(map(network.object_id, nodes_at_level))
 
     def _rule_meaning(self, rule: Rule, question: Question) -> Meaning:
-        """Return the meaning of a rule for the network, and count the steps that this takes."""
+        """Return the meaning of a rule for the network; the work counts as steps of the check."""
         self._spend(ALLOWED.rule_steps * (len(self.network) + len(self.network.objects)))
         self.claimed += sum(1 + len(used) + len(without) for used, without in rule.get("claims", ()))
         return meaning_of_rule(rule, question)
@@ -1004,7 +1012,7 @@ class Check:
     def read_rows(self, key: str, stated: Any, numbers: int = 1) -> Iterator[tuple[list[int], Any]]:
         """Yield rows under a key: their first ``numbers`` entries as a list, and the last entry.
 
-        The first entries have to be whole numbers; rows have to be in order, and to differ in them.
+        The first entries have to be whole numbers, and to ascend from row to row.
         """
         rows = [read_list(row) for row in read_list(stated)]
         names = [row[:numbers] for row in rows]
@@ -1089,17 +1097,17 @@ class Check:
         return low, high
 
     def _add_to(self, total: Amount, amount: Amount) -> None:
-        """Add ``amount`` to ``total`` in place, and count the steps."""
+        """Add ``amount`` to ``total`` in place, and count the additions as steps of the check."""
         for key, value in amount.items():
             total[key] = total[key] + value if key in total else value
             self._spend_on_fractions(bit_length(total[key]))
 
     def times(self, amount: Amount, factor: Fraction) -> Amount:
-        """Return an amount times a factor, and count the steps."""
+        """Return an amount times a factor; the work counts as steps of the check."""
         return self.sum([{key: value * factor for key, value in amount.items()}])
 
     def sum(self, amounts: Iterable[Amount]) -> Amount:
-        """Return the sum of amounts, and count the steps."""
+        """Return the sum of amounts; the work counts as steps of the check."""
         total: Amount = {}
         for amount in amounts:
             self._add_to(total, amount)

@@ -241,8 +241,8 @@ class PlanCheck(Check):
         """Yield the members of a cut.
 
         They are the units that add one of its nodes and need none, except units that no plan executes. The
-        cut may have nodes that rules add. If the objective ``kitchen`` counts items, its initial nodes are
-        members, too.
+        cut may have nodes that rules add. If the objective ``kitchen`` counts items, initial nodes of the cut
+        are members, too. Otherwise, a cut with an endless node is refused.
         """
         network, own = self.network, self.ruled.makers
         self._spend(sum(1 + len(own[o] if o in own else network.producers[o]) for o in cut))
