@@ -93,7 +93,7 @@ class _Search:
         self._flows, self._expired, self._single = flows, expired, single
         self._copies, self._waiting = Counter(start), dict(counts)
         self._steps_left = PLANS.order_steps
-        # what all executions that wait consume, and the most that one of them has to find beyond that
+        # the copies that all waiting executions consume
         self._consumed = Counter[int]()
         for action, times in counts.items():
             for o, n in flows.uses[action].items():
@@ -107,7 +107,7 @@ class _Search:
     def find_runs(self) -> list[Run] | None:
         """Return the runs of an order; ``None`` if none is found."""
         done: list[Run] = []
-        dead: set[tuple[tuple[int, int], ...]] = set()  # what waited where no order was found
+        dead: set[tuple[tuple[int, int], ...]] = set()  # waiting executions without an order
         choices = [self._choices(dead)]
         while choices:
             if not self._waiting:

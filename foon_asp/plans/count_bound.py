@@ -35,6 +35,7 @@ class BetterError(Exception):
 class CountBound:
     """Branch and bound over the counts of executions in plans for one question.
 
+    ``flows``: the preconditions and effects of actions.
     ``required``: disjunctive action landmarks.
     ``limits``: limits on weighted sums, with weights from 0.
     ``derivation``: actions that reach the targets in the delete relaxation; landmarks are grown around them.
@@ -164,7 +165,7 @@ class CountBound:
                 if solution is None:
                     return None
                 x = solution
-                for a in range(self._size):  # the larger a count, the less of an indicator satisfies floats
+                for a in range(self._size):  # floats may leave indicators of large counts near 0
                     x[self._size + a] = float(x[a] > 0.5)
                 model.limit_cost(measure, x)
                 self._stop_if_expired()
@@ -234,13 +235,13 @@ class CountBound:
                 level.measure, max_cost, is_better, before, [*before, level._replace(strict=True)]
             )
 
-    def visit_counts(self, levels: Sequence[Level], ask: Callable[[Counts], None]) -> None:
-        """Call ``ask`` with all counts that a plan as good as the incumbent by each level can have.
+    def visit_counts(self, levels: Sequence[Level], visit: Callable[[Counts], None]) -> None:
+        """Call ``visit`` with all counts that a plan as good as the incumbent by each level can have.
 
         Costs of the last level have to be whole. Raises :class:`Stopped` if time is up.
         """
         *before, last = levels
-        self._search_counts(last.measure, last.max_cost, ask, before, before)
+        self._search_counts(last.measure, last.max_cost, visit, before, before)
 
     def prove_infeasible(self, measure: Measure, is_better: Callable[[Counts], bool]) -> None:
         """Prove that there is no plan at all; counts of low cost by ``measure`` are tried first.
@@ -252,7 +253,7 @@ class CountBound:
         try:
             self._search_counts(measure, self.max_executions(), is_better)
         finally:
-            self.proved = proved  # by another measure, maybe
+            self.proved = proved  # costs by ``measure`` are no bound on the first level
 
     def _search_counts(
         self,
@@ -472,10 +473,10 @@ class CountBound:
             grown = bool(ready)
             waiting.difference_update(ready)
             reached.update(o for a in ready for o in flows.adds[a])
-        missed: list[tuple[int, int | None]]
-        missed = [(target, None) for target in targets if target not in reached]
-        missed += [(next(o for o in asks[a] if o not in reached), a) for a in sorted(waiting)]
-        for o, action in missed[:1]:
+        unreached: list[tuple[int, int | None]]
+        unreached = [(target, None) for target in targets if target not in reached]
+        unreached += [(next(o for o in asks[a] if o not in reached), a) for a in sorted(waiting)]
+        for o, action in unreached[:1]:
             return self._grow_landmark(o, asks, reached, used, stock)._replace(action=action)
         return None
 
@@ -505,9 +506,9 @@ class CountBound:
     def _separate(self, x: Sequence[float], model: CountModel, at_root: bool) -> bool:
         """Add landmarks of the targets that an LP solution violates; return whether there are any.
 
-        Actions with large LP values are kept out of the landmarks first. At the root, for each action of the
-        derivation in turn, landmarks without all others of the derivation are tried, too. Without a
-        derivation, no landmarks are sought.
+        Landmarks avoid actions with large LP values. At the root, further ones are tried: for each action of
+        the derivation, a landmark with none of its other actions. Without a derivation, no landmarks are
+        sought.
         """
         derivation, size = self.derivation, self._size
         if not derivation:
@@ -544,16 +545,16 @@ class CountBound:
         landmark. ``asks`` has the preconditions of actions, ``reached`` the objects reached, and ``stock``
         the columns of initial copies.
         """
-        zone, stack, edge = {o}, [o], dict[int, None]()
+        cut, stack, crossing = {o}, [o], dict[int, None]()
         while stack:
             for achiever in self._achievers.get(stack.pop(), ()):
-                edge[achiever] = None
-                if achiever in used and zone.isdisjoint(asks[achiever]):
+                crossing[achiever] = None
+                if achiever in used and cut.isdisjoint(asks[achiever]):
                     lacking = next(needed for needed in asks[achiever] if needed not in reached)
-                    zone.add(lacking)
+                    cut.add(lacking)
                     stack.append(lacking)
-        members = tuple(achiever for achiever in edge if zone.isdisjoint(asks[achiever]))
-        return Landmark(members, tuple(sorted(zone & stock.keys())), objects=tuple(sorted(zone)))
+        members = tuple(achiever for achiever in crossing if cut.isdisjoint(asks[achiever]))
+        return Landmark(members, tuple(sorted(cut & stock.keys())), objects=tuple(sorted(cut)))
 
     def _stop_if_expired(self) -> None:
         """Raise :class:`Stopped` if time is up."""
@@ -568,7 +569,10 @@ def _exact_cost(level: Level, counts: Mapping[int, int]) -> Fraction:
 
 
 def _bounds_around(program: WholeProgram, x: Sequence[float], columns: Sequence[int]) -> Iterator[Bounds]:
-    """Yield bounds of child nodes, which together exclude only the values of some columns in a solution."""
+    """Yield the bounds of child nodes that exclude the solution ``x``.
+
+    Together they allow all whole values of the ``columns`` except those in the solution.
+    """
     lower, upper = list(program.lower), list(program.upper)
     for column in sorted(columns, key=lambda column: -x[column]):
         value = round(x[column])

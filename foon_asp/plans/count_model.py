@@ -76,7 +76,7 @@ class CountModel:
             for o in (needed for needed in flows.asks[action] if needed not in flows.uses[action]):
                 achievers = {size + achiever: 1 for achiever in achievers_of.get(o, ())}
                 read = program.add_row(*self._with_stock(o, {**achievers, y: -1}, 0))
-                if o in self.stock or not flows.start.get(o):  # else it says nothing
+                if o in self.stock or not flows.start.get(o):  # otherwise an initial copy satisfies it
                     self.conditions[read] = Landmark((), (), action, (o,))
             for o in flows.items[action] if priced else ():
                 if o not in items:
@@ -146,7 +146,10 @@ class CountModel:
         self._classes[id(measure)] = columns
 
     def class_columns(self, measure: Measure) -> list[int]:
-        """Return the columns of the classes of a measure, which were added if nothing is assumed."""
+        """Return the columns of the classes of a measure, ascending by class.
+
+        They exist only if no cap is assumed.
+        """
         return self._classes[id(measure)]
 
     def add_landmark(self, landmark: Landmark) -> None:

@@ -79,7 +79,7 @@ class PlanProver(CountBound):
         floats = [claim.order.approximate(cost)[0] for cost in claim.costs]
         self._objective = {action: cost for action, cost in enumerate(floats) if cost}
         equation = StateEquation(self._flows, self._limits, claim.caps, self._expired)
-        # in whole numbers, which only tell where to round
+        # costs in whole numbers: they only steer the rounding
         equation.strengthen({action: round(cost / INTEGRALITY) for action, cost in self._objective.items()})
         self._rounded_rows = list(equation.rounded_rows)
         model = self._new_model([measure, *(level.measure for level in kept_levels)])
@@ -206,7 +206,7 @@ class PlanProver(CountBound):
         floats = relaxed.weights
         if relaxed.x is None:
             largest = max(floats, default=0.0)
-            if largest == 0.0:  # a row without columns that asks for something
+            if largest == 0.0:  # a row without columns whose least sum is above 0
                 rows = ((row, *model.program.row_of(row)) for row in model.conditions)
                 return [{row: one} for row, coefficients, least in rows if least > 0 and not coefficients]
             for parts in PARTS:

@@ -124,7 +124,7 @@ class Counting:
     def _cost_scale(self, objective: Objective) -> Fraction:
         """Return the factor by which costs are multiplied before they are rounded down.
 
-        It makes all costs whole if they stay small.
+        It makes all costs whole if the greatest one then stays small.
         """
         figures = self._unit_costs(objective)
         common = math.lcm(*(figure.denominator for figure in figures))
@@ -155,6 +155,7 @@ class Counting:
     def prove(self) -> None:
         """Prove that no plan is better than the incumbent.
 
+        After many counts without an order, clingo searches all counts at once, if these have small bounds.
         Raises :class:`BetterError` if a plan is better; it is the incumbent then. Raises :class:`Stopped` if
         time is up.
         """
@@ -369,7 +370,7 @@ class Counting:
         question, problem = self._question, self._problem
         units = [self.units[a] for a in times]
         number = problem.network.unit_number
-        # with fixed counts only the copies taken of a stock are free
+        # if counts are fixed, only the number of initial copies can be minimized
         wanted = question.levels if best else [o for o in question.levels if o is Objective.KITCHEN]
         looked_at = None if question.program.own else question.program.looked_at
         scales = Scales(problem, units, wanted) if best or looked_at is not None else None

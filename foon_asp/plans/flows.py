@@ -31,8 +31,8 @@ class Flows:
     def lacking(self, priced: bool) -> tuple[list[list[int]], list[int]]:
         """Return the preconditions of each action, and the targets, that initial copies do not satisfy.
 
-        If ``priced``, initial copies have a cost, and satisfy no precondition or target. Numbers of copies
-        are ignored beyond that: in the delete relaxation, an action can add an object again.
+        If ``priced``, initial copies have a cost, and satisfy no precondition or target. How many copies
+        other actions add is ignored: in the delete relaxation, an action can be executed again.
         """
 
         def lacks(copies: Mapping[int, int]) -> list[int]:

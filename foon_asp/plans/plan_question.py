@@ -73,7 +73,7 @@ class PlanQuestion:
         self.incomparable = bounded.incomparable
         if not {objective for objective, _ in self.below} <= set(by_levels):
             raise BugError("a bound is on an objective that is not asked for")
-        self.tree: frozenset[int] = frozenset()  # some tree that makes the goals if nothing is used up
+        self.tree: frozenset[int] = frozenset()  # some tree that makes the goals if items last
         self.seconds: dict[str, float] = {}
         self.best: tuple[Plan, Costs] | None = None
         self.searched = False  # whether clingo ran, so that there are statistics
@@ -152,7 +152,7 @@ class PlanQuestion:
         return True
 
     def allows(self, plan: Plan) -> bool:
-        """Return whether a plan keeps to limits and bounds, exactly; ``incomparable`` may exclude it, too."""
+        """Return whether a plan keeps to ``limits`` and ``below`` and is not excluded by ``incomparable``."""
         counts, costs = Counter(plan), self.problem.costs(plan)
         if not all(row.holds(plan) for row in self.limits):
             return False
@@ -162,7 +162,8 @@ class PlanQuestion:
     def outcome(self, status: Status, proof: Proof | None) -> Outcome:
         """Replay the incumbent, and return the outcome with a status.
 
-        ``proof`` is ``None`` if the search was stopped. Raises :class:`BugError` if the replay fails.
+        If the status is optimal, the costs of the incumbent become the bounds. ``proof`` is ``None`` if the
+        search was stopped. Raises :class:`BugError` if the replay fails.
         """
         plan, costs = self.best or (None, None)
         if plan is not None and costs is not None:

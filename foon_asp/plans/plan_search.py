@@ -74,7 +74,7 @@ def _search(question: PlanQuestion, units: list[int]) -> Outcome:
     began = time.perf_counter()
     measures = [counting.measure(objective) for objective in question.levels]
     with question.deadline.watched("counting executions"):
-        plan = _plain_plan(question, counting, measures)
+        plan = _plan_by_equation(question, counting, measures)
         counts = counting.bound.cheapest_counts(measures) if plan is None else None
     question.add_seconds("bound", began)
     if plan is None and counts is None and counting.bound.is_infeasible():
@@ -109,10 +109,10 @@ def _positions(units: Sequence[int], plan: Plan) -> list[int]:
     return [a for a, unit in enumerate(units) if unit in executed]
 
 
-def _plain_plan(question: PlanQuestion, counting: Counting, measures: Sequence[Measure]) -> Plan | None:
-    """Return a plan with the cheapest counts of the state equation; ``None`` if they have no allowed order.
+def _plan_by_equation(question: PlanQuestion, counting: Counting, measures: Sequence[Measure]) -> Plan | None:
+    """Return a plan with the cheapest counts of the state equation, if they have an order.
 
-    The counts may also be unknown, or no order be found in time; both are ``None``, too.
+    ``None`` if there are no such counts, if they have no order that is allowed, or if the time is up.
     """
     counts = counting.bound.cheapest_counts_by_equation(measures)
     try:
@@ -123,9 +123,9 @@ def _plain_plan(question: PlanQuestion, counting: Counting, measures: Sequence[M
 
 
 def _below_cutoff(question: PlanQuestion, counting: Counting, plan: Plan) -> Counting:
-    """Return a counting without the units that alone cost more than a plan.
+    """Return a :class:`Counting` without the units that alone cost more than a plan.
 
-    The given counting is returned if costs are exact, or if no unit costs so much.
+    The given one is returned if costs are exact, or if no unit costs so much.
     """
     objective = question.levels[0]
     if multiplies(objective) or counting.measure(objective).exact is None:

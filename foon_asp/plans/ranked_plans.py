@@ -20,7 +20,8 @@ class RankedPlans:
     Plans with at least the executions of an earlier one are excluded.
 
     ``complete``: whether the iteration ended because there are no more plans.
-    ``pending``: the best plan that was found and not proved when it ended, if any.
+    ``pending``: if the iteration ended otherwise, the best plan found and not proved, with its costs; empty
+    if none.
     """
 
     def __init__(
@@ -75,7 +76,7 @@ def best_plans(
     counting.bound.derivation = [a for a, unit in enumerate(units) if unit in outcome.units]
     plans_by_counts = {frozenset(Counter(outcome.units).items()): outcome.units}
 
-    def ask(counts: Counts) -> None:
+    def add_plan(counts: Counts) -> None:
         """Add a plan with these counts to the result if some order of them is as good as the best plan.
 
         Raises :class:`Stopped` after more than ``max_plans`` plans.
@@ -90,7 +91,7 @@ def best_plans(
     try:
         if units:
             counting.bound.visit_counts(
-                [counting.level(objective, best) for objective in question.levels], ask
+                [counting.level(objective, best) for objective in question.levels], add_plan
             )
     except (Stopped, KeyboardInterrupt) as stop:
         complete = False

@@ -40,7 +40,9 @@ class RoundedProgram:
 
     def __init__(self, columns: int, expired: Callable[[], bool]) -> None:
         self.program = WholeProgram(columns, expired)
-        self._conditions: list[Sequence[Condition]] = []  # of each row, if it is about counts alone
+        self._conditions: list[
+            Sequence[Condition]
+        ] = []  # of each row; empty if the row is about more than counts
 
     def add(self, conditions: Sequence[Condition], row: dict[int, int], least: int) -> None:
         """Add a row, the sum of ``conditions``; a row without conditions takes no part in rounding."""
@@ -162,7 +164,7 @@ class StateEquation(RoundedProgram):
             if cap is not None:
                 self.program.cap(action, cap)
         self._caps = list(self.program.upper)
-        self._indicators: dict[int, int] = {}  # columns, of a few actions
+        self._indicators: dict[int, int] = {}  # column by action
         for o, change, least in flows.balances():
             self.add((Balance(o),), change, least - flows.start.get(o, 0))
         for number, (weights, limit, at_least, used) in enumerate(limits):
@@ -223,7 +225,7 @@ class StateEquation(RoundedProgram):
         In the first call of a :meth:`strengthen`, rows that merge objects of one role are tried first.
         """
         if all(abs(value - round(value)) < INTEGRALITY for value in x):
-            return False  # no row that holds of whole counts is violated
+            return False  # whole counts violate no rounded row
         costs, self._costs = self._costs, None
         return (costs is not None and self._round_alternatives(costs)) or super()._add_rounded_rows(x)
 

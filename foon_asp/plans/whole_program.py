@@ -72,7 +72,7 @@ class WholeProgram:
         self.lower: list[int] = [0] * columns
         self.upper: list[int | None] = [None] * columns
         self._rows: list[tuple[dict[int, int], int]] = []
-        self._sent: int  # rows that HiGHS has
+        self._sent: int  # number of rows that HiGHS has
         self._changed: set[int] = set()
 
     @property
@@ -166,9 +166,8 @@ class WholeProgram:
         """
         halves = {column: abs(value - math.floor(value) - 0.5) for column, value in enumerate(x)}
         fractional = {column: half for column, half in halves.items() if half < 0.5 - INTEGRALITY}
-        if (
-            self._highs is None or not fractional
-        ):  # HiGHS does not survive the question where it used no basis
+        # HiGHS crashes if it is asked for basic variables and has no basis
+        if self._highs is None or not fractional:
             return
         basic = [(index, int(column)) for index, column in enumerate(self._highs.getBasicVariables()[1])]
         basic = [(index, column) for index, column in basic if column in fractional]

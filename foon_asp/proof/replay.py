@@ -92,7 +92,7 @@ def predecessors(replay: Replay) -> Iterator[set[int]]:
     cause no order, since another copy always exists.
     """
     readers: dict[tuple[Copy, int], set[int]] = {}
-    spent: Counter[Copy] = Counter()  # how often a copy like this was used up: those of a stock are alike
+    spent: Counter[Copy] = Counter()  # how often an equal copy was used up
     for number, step in enumerate(replay.steps):
         after = {copy.made for copy in (*step.gone, *step.stayed) if copy.made is not None}
         for read in _numbered_reads(step, spent):

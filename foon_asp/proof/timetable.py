@@ -143,7 +143,9 @@ def tools_needed(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[s
         others: list[ObjectNode | None] = [node for node in own_inputs if node not in needed]
         if not own_inputs and not outputs:
             inputs_inside = sorted((node for node in needed if node.is_in(label)), key=problem.at_hand)
-            others.append(next(iter(inputs_inside), None))  # preferably one that was made: it is known where
+            others.append(
+                next(iter(inputs_inside), None)
+            )  # preferably one that a step made: its tool is known
         needs[label] = ToolNeed(kept, changed, outputs, tuple(others))
     return needs
 
@@ -184,7 +186,7 @@ class _Run:
         self._plan, self._steps = plan, steps
         self._copies = self._executions.initial_copies()
         self._copies_read: Counter[ObjectNode] = Counter()
-        self._step_using: dict[int | Tool, int] = {}  # who and what is at a step
+        self._step_using: dict[int | Tool, int] = {}  # by agent or tool, while occupied
         self._states: dict[Tool, frozenset[ObjectNode]] = {}
 
     def fault(self) -> str | None:
@@ -232,12 +234,11 @@ class _Run:
         unit, step = self._plan[number], self._steps[number]
         needed, consumes, made = self._executions.of(unit)
         for node, amount in needed.items():
-            self._copies_read[node] -= amount - consumes.get(
-                node, 0
-            )  # of what is endless, nobody asks for this
+            # endless nodes get negative numbers, which nothing reads
+            self._copies_read[node] -= amount - consumes.get(node, 0)
         self._copies.update(made)
         for tool in step.tools:
-            # what of it is at other tools, nobody asks this one for
+            # some of these nodes are at other tools: nothing looks for them here
             self._states[tool] = self._states.get(tool, frozenset()).difference(consumes).union(made)
         for resource in _resources_of(step):
             self._step_using.pop(resource, None)
@@ -267,7 +268,7 @@ class _Run:
                 }
                 if not fetched and node in needed:
                     yield f"has no {label} for {node}"
-            for tool in brought_tools:  # what is fetched is as the kitchen has it, whatever it was before
+            for tool in brought_tools:  # a tool fetched from the kitchen loses its earlier state
                 if wanted_nodes and wanted_nodes.isdisjoint(self._states.get(tool, ())):
                     self._states[tool] = frozenset()
 

@@ -139,13 +139,13 @@ class _OrderSearch:
         self._steps, self._copies, self._goals = steps, copies, goals
         self.looks_left = 100_000  # some 50 ms; no tree of the corpus takes 1,000
         self.dead_end: Shortage | None = None
-        # the steps that wait, as a ring in the order listed, which ends in a step that there is not
+        # the waiting steps in the order listed, as a ring; its sentinel is the number after the last step
         self._next = [*range(1, len(steps) + 1), 0]
         self._previous = [len(steps), *range(len(steps))]
-        self._done = 0  # a bit for each step that was done
-        self._consumers: Counter[ObjectNode] = Counter()  # copies that the steps that wait use up
-        self._readers: Counter[ObjectNode] = Counter()  # of the steps that wait
-        self._most_read: Counter[ObjectNode] = Counter()  # copies that one of its readers leaves there
+        self._done = 0  # a bit for each done step
+        self._consumers: Counter[ObjectNode] = Counter()  # copies that waiting steps use up
+        self._readers: Counter[ObjectNode] = Counter()  # waiting steps that read a node
+        self._most_read: Counter[ObjectNode] = Counter()  # most copies that one step reads
         for waiting in steps:
             self._consumers.update(waiting.consumes)
             for node, read in _copies_read(waiting):
@@ -158,7 +158,7 @@ class _OrderSearch:
         The caller has made sure that no node is overdrawn. The copies of goals then suffice at the end.
         """
         done: list[int] = []
-        dead: set[int] = set()  # what was done where no order of the others was found
+        dead: set[int] = set()  # sets of done steps that no order continues
         choices, longest = [self._next_steps(dead)], -1
         while choices:
             step = next(choices[-1], None)
@@ -193,9 +193,7 @@ class _OrderSearch:
             execution = self._steps[step]
             if all(self._copies[node] >= n for node, n in execution.preconditions.items()):
                 yield step
-                if all(
-                    map(self._is_plentiful, execution.consumes)
-                ):  # if no order goes on with this step, none does
+                if all(map(self._is_plentiful, execution.consumes)):
                     return
             step = self._next[step]
 

@@ -44,7 +44,7 @@ from foon_asp.proof.rule_meaning import (
 )
 from foon_asp.proof.stand_ins import Actions, StandInClaim, price_of, stand_in_fault, stand_in_price_data
 
-_UNMEASURED = "nothing"  # what a tree that is not there is measured by
+_UNMEASURED = "nothing"  # in place of objectives, if the claim is that there is no tree
 OBJECTIVES = (
     "units",
     "inputs",
@@ -97,7 +97,7 @@ class CertificateLimits(NamedTuple):
 
 ALLOWED = CertificateLimits()
 
-# A cost or weight: by objective (its place in the list) and rate (``None`` but for success), an exact number.
+# A cost or weight: exact numbers by objective (its index) and rate (``None`` except by success).
 Amount: TypeAlias = dict[tuple[int, Fraction | None], Fraction]
 
 
@@ -362,7 +362,7 @@ class Check:
         """Read objectives, costs, goals, rules and cuts of a certificate; tree and proof are read later."""
         network, kitchen, rates, utensils, prices = subject[:5]
         self.allowed = ALLOWED.steps + ALLOWED.steps_each * (len(network) + len(network.objects))
-        self.steps = self.allowed  # that are left
+        self.steps = self.allowed  # steps that remain
         self.minus_log = cache(self._minus_log)  # of a rate
         self.are_multiples = cache(self._are_multiples)  # of a number, by an objective
         self.trusted_costs: dict[str, dict[int, Fraction]] = {}  # costs by measures that the proof uses
@@ -405,7 +405,7 @@ class Check:
             len(network) + len(network.objects),
         )
         self.not_covered = _read_names(certificate["not_covered"])
-        # these are nobody's labels, and could say anything in lines of their own
+        # other names could print misleading lines of their own
         require(all(name.isprintable() for name in self.not_covered), "a constraint has no printable name")
         nodes = len(network.objects) + len(self.ruled.makers)
         self.cuts = [frozenset(read_numbers(cut, nodes)) for cut in read_list(certificate["cuts"])]
@@ -425,7 +425,7 @@ class Check:
         claim = StandInClaim(by_dissimilarity, least if by_dissimilarity else None)
         actions = Actions(self.kitchen, self.needs, self.gives)
         inputs = (o for unit in steps for o in self.needs(unit) if o is not None)
-        wanted = [*dict.fromkeys((*self.goals, *inputs))]  # what every tree makes or takes
+        wanted = [*dict.fromkeys((*self.goals, *inputs))]  # made or taken by every tree
         wrong = stand_in_fault(self.network, self.stand_ins, actions, wanted, claim)
         require(wrong is None, f"{wrong}")
 
@@ -508,8 +508,8 @@ class Check:
                 [price for price in detail_prices if price is not None] for detail_prices in details_prices
             ]
             prices = [
-                min(known) if len(known) == len(all_prices) else None
-                for known, all_prices in zip(known_prices, details_prices, strict=True)
+                min(stated) if len(stated) == len(detail_prices) else None
+                for stated, detail_prices in zip(known_prices, details_prices, strict=True)
             ]
         return prices
 
@@ -746,7 +746,7 @@ class Check:
 
             It is 0 for a used member, whose cost was paid before.
             """
-            # a member that is used anyway was paid for, and can carry nothing more
+            # the cost of a used member was paid before
             capacity = {} if member in used else self.cost(member)
             if carried and member not in used:
                 extra = (self.times(w, amounts[member]) for w, amounts in carried if member in amounts)
@@ -964,7 +964,7 @@ class Check:
         if self.stand_ins is None or network.motions[unit] != STAND_IN:
             return Fraction(0)
         (serving,), (served,) = network.inputs[unit], network.outputs[unit]
-        # each has a price: they were held against the table
+        # each has a price, since they agree with the table
         return price_of(self.stand_ins, network.objects[serving], network.objects[served]) or Fraction(0)
 
     def sign(self, amount: Amount) -> Fraction | int:

@@ -53,7 +53,7 @@ COUNTING = ("at_most_units", "at_most_motion", "at_most_utensil_uses", "at_most_
 WANTING = ("forbid_ingredient", "require_motion", "require_object", "require_ingredient")
 PLAN_RULES = frozenset({*COUNTING, *WANTING, *(name for name, rule in LIBRARY.items() if rule.removes)})
 
-LOGARITHM_SCALE = 10**9  # scale of logarithms, where plans have to be as good by success as the incumbent
+LOGARITHM_SCALE = 10**9  # of logarithms in conditions on earlier objectives
 _MAX_COUNT = 10**9  # of copies in stock, and of executions in a branch
 _LEAF = {"weights", "before", "supply", "balance", "limits", "levels", "rounded"}
 
@@ -322,7 +322,7 @@ class PlanCheck(Check):
         """
         network = self.network
         copies, items_taken = Counter(self.stock), set[int]()
-        least: Counter[int] = Counter()  # copies of the stock that the plan cannot do without
+        least: Counter[int] = Counter()  # initial copies that the plan needs
         for step, stated in enumerate(units):
             unit = read_number(stated, range(len(network)), "ids of units in a plan")
             asks, uses, adds = self.flow(unit)
@@ -546,8 +546,8 @@ class PlanCheck(Check):
         else:
             denominator = self.cost_denominator(level)
             if denominator is not None:
-                (part,) = bound or [(level, None)]
-                bound = {part: Fraction(math.ceil(bound.get(part, Fraction(0)) * denominator), denominator)}
+                (key,) = bound or [(level, None)]
+                bound = {key: Fraction(math.ceil(bound.get(key, Fraction(0)) * denominator), denominator)}
             claimed = {key: value for key, value in self.least.items() if key[0] == level}
             enough = self.sign(self.sum([bound, negate(claimed)])) >= 0
         require(enough, "the weights do not add up to enough")

@@ -144,7 +144,7 @@ class _NearestStandIns:
         """
         served_by: defaultdict[int, list[tuple[int, int]]] = defaultdict(list)
         consumers: defaultdict[int, list[int]] = defaultdict(list)
-        ways: list[tuple[int, tuple[int, ...]]] = []  # what is made, and out of what
+        ways: list[tuple[int, tuple[int, ...]]] = []  # a made node and its unavailable inputs
         heap: list[tuple[int, int, tuple[int, ...], int]] = []
         for served in needed:
             for serving, price in self._servers_of(served).items():

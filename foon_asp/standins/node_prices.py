@@ -30,9 +30,7 @@ class NodePrices:
                 number = network.object_id(serving)
                 if number is not None:
                     self._nodes_serving[served].append(number)
-        self._labels_by_spelling: defaultdict[str, list[str]] = defaultdict(
-            list
-        )  # labels that are spelled alike
+        self._labels_by_spelling: defaultdict[str, list[str]] = defaultdict(list)
         for label in network.by_label:
             self._labels_by_spelling[spelling_key(label)].append(label)
         self._servers: dict[int, dict[int, int]] = {}

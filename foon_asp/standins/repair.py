@@ -111,7 +111,7 @@ def _with_markers(network: Network, steps: Sequence[int]) -> Network:
     """Return a network in which each of the ``steps`` has one more output, which only this step makes."""
     first = len(network.objects)
     markers = {unit: o for o, unit in enumerate(steps, first)}
-    # no file has a label with a line end, so nothing stands in for these
+    # labels in files have no line break, so these nodes have no stand-in
     nodes = [ObjectNode(f"step\n{number}", frozenset({"done"})) for number in range(1, len(steps) + 1)]
     outputs = tuple(
         (*made, markers[unit]) if unit in markers else made for unit, made in enumerate(network.outputs)

@@ -15,7 +15,7 @@ _NUMBER = re.compile(r"\d{1,6}(\.\d{1,3})?", re.ASCII)
 _NAMED = (Edit.MORE_STATE, Edit.FEWER_STATE, Edit.MORE_INGREDIENT, Edit.FEWER_INGREDIENT)
 _KINDS = (Edit.SPELLING, Edit.WORD, Edit.CONTAINER, *_NAMED, Edit.CONTENTS)
 
-# a pair that serves and is served, an edit, or an edit of one state or ingredient
+# a pair of serving and served names, an edit, or an edit of one state or ingredient
 Entry = tuple[str | ObjectNode, str | ObjectNode] | Edit | tuple[Edit, str]
 
 

@@ -471,8 +471,8 @@ PARTS = {
         at_least("9", branch(0, BREAD_OFTEN, {})),
     ),
     "a bound is rounded up and no further": Part(
-        "math.ceil(bound.get(part, Fraction(0)) * denominator)",
-        "math.ceil(bound.get(part, Fraction(0)) * denominator) + 1",
+        "math.ceil(bound.get(key, Fraction(0)) * denominator)",
+        "math.ceil(bound.get(key, Fraction(0)) * denominator) + 1",
         at_least("3", PROOF),
     ),
     "where there is nothing to be bounded, a bound is above nothing": Part(
