@@ -9,7 +9,7 @@ from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, ObjectNode
 from foon_asp.problem import Problem
 from foon_asp.proof.replay import Copy, Replay, predecessors, shared_readers
-from foon_asp.proof.timetable import Means, ToolName, tools_needed
+from foon_asp.proof.timetable import ScheduleResources, ToolName, tools_needed
 
 
 class Use(NamedTuple):
@@ -62,7 +62,7 @@ class ScheduleTask(NamedTuple):
 
 
 def schedule_task(
-    problem: Problem, plan: Sequence[FunctionalUnit], replay: Replay, means: Means
+    problem: Problem, plan: Sequence[FunctionalUnit], replay: Replay, means: ScheduleResources
 ) -> ScheduleTask:
     """Return the scheduling task of an executable plan; each step takes the copies that ``replay`` gave it.
 
@@ -86,7 +86,7 @@ def schedule_task(
     )
 
 
-def _uses(problem: Problem, replay: Replay, means: Means) -> tuple[Use, ...]:
+def _uses(problem: Problem, replay: Replay, means: ScheduleResources) -> tuple[Use, ...]:
     """Return the uses of tools; a step that takes a copy made during a use belongs to the same use."""
     names: list[ToolName] = []
     steps: list[list[int]] = []

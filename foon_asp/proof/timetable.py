@@ -47,7 +47,7 @@ class TimedStep(NamedTuple):
     tools: tuple[Tool, ...]
 
 
-class Means(NamedTuple):
+class ScheduleResources(NamedTuple):
     """The resources of a schedule.
 
     ``durations``: how long each motion takes, and whether somebody has to stand by.
@@ -124,7 +124,7 @@ class ToolNeed(NamedTuple):
         return len(self.kept) + max(len(self.changed) + len(self.others), len(self.made))
 
 
-def tools_needed(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[str, ToolNeed]:
+def tools_needed(problem: Problem, resources: ScheduleResources, unit: FunctionalUnit) -> dict[str, ToolNeed]:
     """Return the tools that a unit needs, by label, if their number is limited.
 
     They are its utensils, and the tools that its inputs or outputs are in, on or at.
@@ -134,7 +134,7 @@ def tools_needed(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[s
     nodes = (*dict.fromkeys(unit.inputs), *unit.outputs)
     places = (relation.object for node in nodes for relation in node.relations)
     for label in dict.fromkeys([*(node.label for node in nodes), *places]):
-        if not means.is_limited(problem, label):
+        if not resources.is_limited(problem, label):
             continue
         own_inputs = [node for node in dict.fromkeys(unit.inputs) if node.label == label]
         kept = tuple(node for node in own_inputs if node in needed and node in unit.outputs)
@@ -151,11 +151,11 @@ def tools_needed(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[s
 
 
 def timetable_fault(
-    problem: Problem, plan: Sequence[FunctionalUnit], steps: Sequence[TimedStep], means: Means
+    problem: Problem, plan: Sequence[FunctionalUnit], steps: Sequence[TimedStep], resources: ScheduleResources
 ) -> str | None:
     """Return in words the first fault of a schedule of a plan; ``None`` without one.
 
-    Steps have to take the durations in ``means``. At each moment, there have to be enough copies for all
+    Steps have to take the durations in ``resources``. At each moment, there have to be enough copies for all
     running steps. Each agent and each tool may be at only one step. A tool has to be in the state in which an
     earlier step left it, or as the kitchen has it.
 
@@ -165,24 +165,28 @@ def timetable_fault(
     if len(steps) != len(plan):
         return f"there are {len(plan)} steps, and times for {len(steps)}"
     for number, (unit, step) in enumerate(zip(plan, steps, strict=True), 1):
-        duration = means.durations[unit.motion]
+        duration = resources.durations[unit.motion]
         if step.start < 0 or step.end - step.start != duration.seconds:
             return f"step {number} does not take the time that {unit.motion} takes"
         if (step.agent is None) != duration.passive:
             return f"step {number} is done by nobody, or by somebody where nobody has to"
-        if step.agent is not None and not 1 <= step.agent <= means.agents:
-            return f"step {number} is done by agent {step.agent}, and there are {means.agents}"
-    return _Run(problem, plan, steps, means).fault()
+        if step.agent is not None and not 1 <= step.agent <= resources.agents:
+            return f"step {number} is done by agent {step.agent}, and there are {resources.agents}"
+    return _Run(problem, plan, steps, resources).fault()
 
 
 class _Run:
     """The state of a kitchen while the steps of a schedule start and end."""
 
     def __init__(
-        self, problem: Problem, plan: Sequence[FunctionalUnit], steps: Sequence[TimedStep], means: Means
+        self,
+        problem: Problem,
+        plan: Sequence[FunctionalUnit],
+        steps: Sequence[TimedStep],
+        resources: ScheduleResources,
     ) -> None:
         assert problem.items is not None
-        self._problem, self._executions, self._means = problem, Executions(problem), means
+        self._problem, self._executions, self._resources = problem, Executions(problem), resources
         self._plan, self._steps = plan, steps
         self._copies = self._executions.initial_copies()
         self._copies_read: Counter[ObjectNode] = Counter()
@@ -210,10 +214,10 @@ class _Run:
         of the step, from 0.
         """
         unit, step = self._plan[number], self._steps[number]
-        resources = _resources_of(step)
-        if len(set(resources)) < len(resources):
+        occupied = _resources_of(step)
+        if len(set(occupied)) < len(occupied):
             yield "has the same tool twice"
-        for resource in resources:
+        for resource in occupied:
             if resource in self._step_using:
                 yield f"waits for {resource}, which is at step {self._step_using[resource] + 1}"
         yield from self._tool_faults(unit, step.tools)
@@ -222,12 +226,12 @@ class _Run:
             if self._executions.is_endless(node):
                 continue
             goes = consumes.get(node, 0)
-            in_use = 0 if self._means.is_unlimited(node.label) and not goes else self._copies_read[node]
+            in_use = 0 if self._resources.is_unlimited(node.label) and not goes else self._copies_read[node]
             if self._copies[node] < in_use + amount:
                 yield f"lacks a copy of {node}"
             self._copies[node] -= goes
             self._copies_read[node] += amount - goes
-        self._step_using.update(dict.fromkeys(resources, number))
+        self._step_using.update(dict.fromkeys(occupied, number))
 
     def _end_step(self, number: int) -> None:
         """End a step: add its outputs, update the states of its tools, and release its tools and agent."""
@@ -248,22 +252,22 @@ class _Run:
 
         A tool that holds no needed object counts as fetched from the kitchen: what it held is forgotten.
         """
-        problem, means = self._problem, self._means
-        needs, needed = tools_needed(problem, means, unit), self._executions.of(unit).preconditions
+        problem, resources = self._problem, self._resources
+        needs, needed = tools_needed(problem, resources, unit), self._executions.of(unit).preconditions
         brought = Counter(tool.label for tool in tools)
         for label in needs.keys() | brought.keys():
             wanted = needs[label].number if label in needs else 0
             if brought[label] != wanted:
                 yield f"has {brought[label]} of {label}, and asks for {wanted}"
         for tool in tools:
-            if not 1 <= tool.number <= means.number_of(problem, tool.name):
-                yield f"has {tool}, and there are {means.number_of(problem, tool.name)}"
+            if not 1 <= tool.number <= resources.number_of(problem, tool.name):
+                yield f"has {tool}, and there are {resources.number_of(problem, tool.name)}"
         for label, need in needs.items():
             brought_tools = [tool for tool in tools if tool.label == label]
             held_nodes = {node for tool in brought_tools for node in self._states.get(tool, ())}
             wanted_nodes = {node for node in (*need.kept, *need.changed, *need.others) if node is not None}
             for node in wanted_nodes - held_nodes:
-                fetched = problem.at_hand(node) and means.counted_name(node, label) in {
+                fetched = problem.at_hand(node) and resources.counted_name(node, label) in {
                     tool.name for tool in brought_tools
                 }
                 if not fetched and node in needed:

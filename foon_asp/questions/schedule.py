@@ -19,7 +19,7 @@ from foon_asp.planning.scheduling import BestSchedule, shortest, timed_steps
 from foon_asp.problem import Number, Problem
 from foon_asp.proof.replay import Shortage, predecessors, replay_for, replayable_problem
 from foon_asp.proof.simulation import Verdict, simulate_for
-from foon_asp.proof.timetable import Means, ToolName, timetable_fault
+from foon_asp.proof.timetable import ScheduleResources, ToolName, timetable_fault
 from foon_asp.proof.timetable import TimedStep as Timed
 from foon_asp.proof.used_up_run import used_up_run
 from foon_asp.questions.answer import of_status
@@ -312,7 +312,9 @@ def schedule(
     replay = replay_for(replayed, tree)
     if replay.shortage is not None:
         raise NoTreeError(_shortage_text(tree, replay.shortage))
-    means = Means(_durations(tree, durations, from_video, default_duration), agents, _tools(tools))
+    means = ScheduleResources(
+        _durations(tree, durations, from_video, default_duration), agents, _tools(tools)
+    )
     task = schedule_task(replayed, tree.units, replay, means)
     solution = shortest(task, deadline)
     timed = () if solution.starts is None else tuple(timed_steps(task, solution.starts))
