@@ -90,6 +90,7 @@ class _Search:
         expired: Callable[[], bool],
         single: bool,
     ) -> None:
+        """Begin with all executions waiting, and count the copies that they consume."""
         self._flows, self._expired, self._single = flows, expired, single
         self._copies, self._waiting = Counter(start), dict(counts)
         self._steps_left = PLANS.order_steps

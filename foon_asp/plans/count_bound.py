@@ -25,9 +25,13 @@ from foon_asp.plans.whole_program import INTEGRALITY, Bounds, Solved, Stopped, W
 
 
 class BetterError(Exception):
-    """Raised when a plan better than the incumbent is found; ``counts`` are those for which it was found."""
+    """Raised when a plan better than the incumbent is found.
+
+    ``counts``: its counts of executions; empty if clingo found it.
+    """
 
     def __init__(self, counts: Counts) -> None:
+        """Keep the counts of the better plan."""
         super().__init__("a better plan was found")
         self.counts = counts
 
@@ -56,6 +60,7 @@ class CountBound:
         excluded_counts: Sequence[Counts] = (),
         expired: Callable[[], bool] = lambda: False,
     ) -> None:
+        """Keep the conditions; nothing is solved yet."""
         self._flows, self._limits, self._expired = flows, limits, expired
         self._size = len(flows.asks)
         self._levels, self._excluded_counts = tuple(levels), tuple(excluded_counts)

@@ -77,8 +77,8 @@ class Counting:
     def _compute_measure(self, objective: Objective) -> Measure:
         """Return the measure of an objective over the units.
 
-        Costs that are no small whole numbers are scaled and rounded down; the measure then has exact costs,
-        too.
+        Costs are multiplied by a common factor. If this does not make them whole, they are rounded down, and
+        the measure also has exact costs. If the objective multiplies rates, costs are rounded logarithms.
         """
         row, figures = objective.row, self._unit_costs(objective)
         if multiplies(objective):

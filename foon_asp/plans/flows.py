@@ -69,7 +69,8 @@ class Flows:
     def remainders(self) -> Iterator[Remainder]:
         """The remainders of objects.
 
-        An object has them if every action that asks for it leaves more copies than its target.
+        An object has them if every action that asks for it leaves more copies than its target. Each says that
+        the smallest of these numbers of copies remains.
         """
         remaining_by_object: dict[int, dict[int, int]] = {}
         for action, preconditions in enumerate(self.asks):

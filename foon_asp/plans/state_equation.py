@@ -39,6 +39,7 @@ class RoundedProgram:
     """
 
     def __init__(self, columns: int, expired: Callable[[], bool]) -> None:
+        """Make a program with this number of columns and without rows."""
         self.program = WholeProgram(columns, expired)
         self._conditions: list[
             Sequence[Condition]

@@ -10,7 +10,7 @@ class PlanTuning(NamedTuple):
     """When the searches for counts, orders and proofs end, and where they begin.
 
     ``rounded_rows``: rows that are added for one solution of the state equation, at most.
-    ``stalled_rounds``: rounds of such rows in a row that may leave the bound as it is.
+    ``stalled_rounds``: successive rounds of such rows that may leave the bound as it is.
     ``role_depth``: rounds of refinement by which the roles of objects are told apart.
     ``rounding_denominator``: greatest denominator of the weights that rounded rows are made of.
     ``equation_nodes``: nodes of branch and bound over the state equation, before actions get indicators.

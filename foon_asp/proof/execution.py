@@ -34,6 +34,7 @@ class Executions:
     """
 
     def __init__(self, problem: Problem) -> None:
+        """Make the function ``of`` for the items, amounts and container rule of the problem."""
         self._problem, self._items = problem, problem.items or UsedUp()
         network = None if problem.network.level == 3 else problem.network
         amounts = {} if problem.items is None else problem.amounts

@@ -136,6 +136,7 @@ class _Kitchen:
     """The kitchen during a replay: endless nodes, and single copies of the others, oldest first."""
 
     def __init__(self, problem: Problem) -> None:
+        """Start with the initial copies of a problem whose items are used up."""
         assert problem.items is not None
         self._executions = Executions(problem)
         self._copies = {

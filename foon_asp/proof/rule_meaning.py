@@ -311,13 +311,13 @@ def _before(question: Question, earlier_motion: str, later_motion: str) -> Meani
     barred if it needs no late node.
     """
     network, needs, gives = question.network, question.needs, question.gives
-    first = question.with_motion(earlier_motion)
-    later = question.with_motion(later_motion) - first
+    with_earlier = question.with_motion(earlier_motion)
+    with_later = question.with_motion(later_motion) - with_earlier
 
     def early(used: Units) -> set[int | None]:
         """Return the early nodes: those that ``used`` units can make without the earlier motion."""
         available: set[int | None] = set(question.kitchen)
-        waiting = used - first
+        waiting = used - with_earlier
         while runs := {unit for unit in waiting if needs(unit) <= available}:
             available.update(o for unit in runs for o in gives(unit))
             waiting -= runs
@@ -327,13 +327,13 @@ def _before(question: Question, earlier_motion: str, later_motion: str) -> Meani
         """Return the units with the later motion that need no late node."""
         available = early(used)
         late: set[int | None] = set()
-        stack = list(first - without)
+        stack = list(with_earlier - without)
         for unit in stack:  # grows while it is walked through
             for o in gives(unit) - available - late:
                 late.add(o)
                 consumers = network.consumers[o] if o is not None else ()
                 stack += (u for u in consumers if u not in without and o in needs(u))
-        return frozenset(unit for unit in later if late.isdisjoint(needs(unit)))
+        return frozenset(unit for unit in with_later if late.isdisjoint(needs(unit)))
 
     return Meaning(barred=barred)
 
@@ -351,23 +351,27 @@ def meaning_of_user_rules(rule: Rule) -> Meaning:
     claims = [(frozenset(used), frozenset(without)) for used, without in rule["claims"]]
     removed = [used for used, without in claims if len(used) == 1 and not without]
     wanted = [[[without]] for used, without in claims if not used]
-    others = [(used, without) for used, without in claims if used and (len(used) > 1 or without)]
+    barring_claims = [(used, without) for used, without in claims if used and (len(used) > 1 or without)]
 
     def barred(used: Units, without: Units) -> Units:
         """Return the units that claims bar (unit propagation).
 
-        In such a claim, all units of the second set are excluded. Either the unit is the only one of the
-        first set that is not used, or all of the first set are used, and then all are barred.
+        A claim bars units if all units of its second set are excluded. If one unit of its first set is not
+        used, it bars this unit. If all of them are used, it bars them all.
         """
-        unused = [together - used for together, excluded in others if excluded <= without]
-        broken = [together for together, excluded in others if excluded <= without and together <= used]
+        unused = [used_together - used for used_together, excluded in barring_claims if excluded <= without]
+        broken = [
+            used_together
+            for used_together, excluded in barring_claims
+            if excluded <= without and used_together <= used
+        ]
         return frozenset().union(*(remaining for remaining in unused if len(remaining) == 1), *broken)
 
     limits = [
         ({unit: Fraction(amount) for amount, units in amounts.items() for unit in units}, Fraction(max_sum))
         for amounts, max_sum in rule["limits"]
     ]
-    bars = barred if others else None
+    bars = barred if barring_claims else None
     return Meaning(frozenset().union(*removed), wanted, barred=bars, limits=limits)
 
 

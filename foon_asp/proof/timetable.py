@@ -185,6 +185,7 @@ class _Run:
         steps: Sequence[TimedStep],
         resources: ScheduleResources,
     ) -> None:
+        """Start with the initial copies of the problem, and with no step running."""
         assert problem.items is not None
         self._problem, self._executions, self._resources = problem, Executions(problem), resources
         self._plan, self._steps = plan, steps

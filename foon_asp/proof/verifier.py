@@ -1154,7 +1154,10 @@ def _network_data(network: Network) -> list[Any]:
 
 
 def _price_data(prices: UnitPrices, network: Network) -> list[list[Any]]:
-    """Return the prices by motion, and the prices of single units by their id in ``network``, sorted."""
+    """Return two sorted lists of pairs: motions and their prices, and unit ids and their prices.
+
+    Ids are those of ``network``; units that it does not have are omitted.
+    """
     ids = ((network.unit_id(unit), price) for unit, price in prices.units.items())
     single = sorted([unit, str(price)] for unit, price in ids if unit is not None)
     return [sorted([motion, str(price)] for motion, price in prices.motions.items()), single]
@@ -1177,7 +1180,10 @@ def require(holds: bool, otherwise: str) -> None:
 
 
 def read_object(value: Any, keys: Sequence[str] | None = None) -> dict[str, Any]:
-    """Return a value that has to be a JSON object; with ``keys``, one with exactly these keys."""
+    """Return a value; refuse it unless it is a JSON object with exactly these keys.
+
+    If ``keys`` is ``None``, the object may have any keys.
+    """
     require(isinstance(value, dict), "expected an object")
     content: dict[str, Any] = value
     require(keys is None or set(content) == set(keys), f"expected the keys {', '.join(keys or ())}")
@@ -1185,21 +1191,21 @@ def read_object(value: Any, keys: Sequence[str] | None = None) -> dict[str, Any]
 
 
 def read_list(value: Any) -> list[Any]:
-    """Return a value that has to be a JSON list."""
+    """Return a value; refuse it unless it is a JSON list."""
     require(isinstance(value, list), "expected a list")
     items: list[Any] = value
     return items
 
 
 def read_pair(value: Any, what: str) -> tuple[Any, Any]:
-    """Return the two entries of a value that has to be a list of two; ``what`` names it in the error."""
+    """Return the two entries of a list; refuse other values; ``what`` names the list in the error."""
     require(isinstance(value, list) and len(value) == 2, f"expected {what}")
     first, second = value
     return first, second
 
 
 def read_number(value: Any, allowed: Container[int], what: str) -> int:
-    """Return a value that has to be one of the allowed whole numbers; ``what`` names it in the error.
+    """Return a whole number; refuse values that are not ``allowed``; ``what`` names it in the error.
 
     JSON's ``true`` is no number.
     """
@@ -1208,7 +1214,10 @@ def read_number(value: Any, allowed: Container[int], what: str) -> int:
 
 
 def _read_names(value: Any) -> tuple[str, ...]:
-    """Return a list of different texts, which has to be sorted and free of surrogates (half letters)."""
+    """Return a list of texts as a tuple; refuse it unless they are sorted and different.
+
+    Texts with surrogates (half letters) are refused, too.
+    """
     names = read_list(value)
     require(all(isinstance(name, str) for name in names), "expected names")
     require(names == sorted(set(names)), "expected names in order, each of them once")
@@ -1217,9 +1226,9 @@ def _read_names(value: Any) -> tuple[str, ...]:
 
 
 def read_numbers(value: Any, below: int, ascending: bool = True) -> list[int]:
-    """Return a list that has to have distinct numbers from 0 to ``below - 1``.
+    """Return a list of numbers; refuse it unless they are distinct and from 0 to ``below - 1``.
 
-    With ``ascending``, it has to be ascending and not empty.
+    With ``ascending``, refuse a list that is empty or not ascending, too.
     """
     numbers = read_list(value)
     require(all(type(n) is int and 0 <= n < below for n in numbers), "expected ids of the network")
@@ -1229,7 +1238,7 @@ def read_numbers(value: Any, below: int, ascending: bool = True) -> list[int]:
 
 
 def _read_goal(value: Any, network: Network) -> int:
-    """Return the id of a goal, from an object with its id and its text, which have to agree."""
+    """Return the id of a goal from an object with its id and text; refuse it unless these agree."""
     goal = read_object(value, ("id", "node"))
     (node,) = read_numbers([goal["id"]], len(network.objects))
     require(str(network.objects[node]) == goal["node"], "a goal is not the node of its id")
@@ -1296,7 +1305,10 @@ def _check_user_rules(rule: Rule, units: int) -> None:
 
 
 def read_rational(value: Any) -> Fraction:
-    """Return a fraction from a text in lowest terms, such as ``3/2`` or ``-7``."""
+    """Return the fraction that a text such as ``3/2`` or ``-7`` stands for; refuse other values.
+
+    The text has to be in lowest terms.
+    """
     require(isinstance(value, str) and bool(_RATIONAL.fullmatch(value)), "expected a number such as 3/2")
     if len(value) > ALLOWED.digits:
         raise LimitError(f"a fraction has more than {ALLOWED.digits:,} digits")

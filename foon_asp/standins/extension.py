@@ -78,6 +78,7 @@ class _NearestStandIns:
     """
 
     def __init__(self, problem: Problem, prices: NodePrices, available: bytearray) -> None:
+        """Keep problem, prices and available nodes; nothing is searched yet."""
         self._problem, self._prices, self._available = problem, prices, available
         self._servers: dict[int, dict[int, int]] = {}
 
