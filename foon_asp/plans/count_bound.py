@@ -233,11 +233,11 @@ class CountBound:
         them is a better plan. Raises :class:`BetterError` if so, and :class:`Stopped` if time is up.
         """
         for i, level in enumerate(levels):
-            before, rounded = levels[:i], level.measure.exact is not None
+            earlier, is_rounded = levels[:i], level.measure.exact is not None
             step = math.gcd(*level.measure.costs, level.measure.item) or 1
-            max_cost = level.max_cost if rounded else (math.ceil(level.cost) - 1) // step * step
+            max_cost = level.max_cost if is_rounded else (math.ceil(level.cost) - 1) // step * step
             self._search_counts(
-                level.measure, max_cost, is_better, before, [*before, level._replace(strict=True)]
+                level.measure, max_cost, is_better, earlier, [*earlier, level._replace(strict=True)]
             )
 
     def visit_counts(self, levels: Sequence[Level], visit: Callable[[Counts], None]) -> None:
@@ -245,8 +245,8 @@ class CountBound:
 
         Costs of the last level have to be whole. Raises :class:`Stopped` if time is up.
         """
-        *before, last = levels
-        self._search_counts(last.measure, last.max_cost, visit, before, before)
+        *earlier, last = levels
+        self._search_counts(last.measure, last.max_cost, visit, earlier, earlier)
 
     def prove_infeasible(self, measure: Measure, is_better: Callable[[Counts], bool]) -> None:
         """Prove that there is no plan at all; counts of low cost by ``measure`` are tried first.
@@ -265,19 +265,19 @@ class CountBound:
         measure: Measure,
         max_cost: int | None,
         is_better: Callable[[Counts], bool | None],
-        before: Sequence[Level] = (),
+        earlier: Sequence[Level] = (),
         levels: Sequence[Level] = (),
     ) -> None:
         """Call ``is_better`` with all counts of cost up to ``max_cost``, by branch and bound.
 
         ``None`` is no limit of cost. Only counts as good as the incumbent are considered: by rounded costs
-        for each level in ``before``, and by exact costs for each of ``levels``. Raises :class:`BetterError`
+        for each level in ``earlier``, and by exact costs for each of ``levels``. Raises :class:`BetterError`
         if ``is_better`` returns true, and :class:`Stopped` after too many nodes.
         """
-        if max_cost is not None and not measure.item and self._equation_exceeds(measure, max_cost, before):
+        if max_cost is not None and not measure.item and self._equation_exceeds(measure, max_cost, earlier):
             return
-        model = self._new_model([measure, *(level.measure for level in before)])
-        for level in before:
+        model = self._new_model([measure, *(level.measure for level in earlier)])
+        for level in earlier:
             model.add_level(level)
         objective = model.objective(measure)
         if max_cost is not None:
@@ -289,7 +289,7 @@ class CountBound:
         waiting: list[tuple[float | Fraction, int, int, Bounds]] = [(0, sum(lower), number, (lower, upper))]
         while waiting:
             bound, _, _, (model.program.lower, model.program.upper) = heappop(waiting)
-            if not before:
+            if not earlier:
                 self.proved = max(self.proved, bound)
             solved = self._solve_node(model, objective, cutoff)
             if solved.x is None:
@@ -301,15 +301,15 @@ class CountBound:
             if number > (PLANS.uncapped_nodes if max_cost is None else PLANS.nodes):
                 raise Stopped
 
-    def _equation_exceeds(self, measure: Measure, max_cost: int, before: Sequence[Level]) -> bool:
+    def _equation_exceeds(self, measure: Measure, max_cost: int, earlier: Sequence[Level]) -> bool:
         """Return whether the state equation proves that plans cost more than ``max_cost`` by a measure.
 
-        Only plans as good as the incumbent by the levels in ``before`` are considered. The search branches
+        Only plans as good as the incumbent by the levels in ``earlier`` are considered. The search branches
         over counts, and adds landmarks that are violated.
         """
         costs = {a: cost for a, cost in enumerate(measure.costs) if cost}
         caps = [max(max_cost, 0) // cost if cost else None for cost in measure.costs]
-        equation = self._state_equation(before, caps)
+        equation = self._state_equation(earlier, caps)
         program = equation.program
         waiting = [(list(program.lower), list(program.upper))]
         for number in range(PLANS.equation_nodes):
@@ -317,7 +317,7 @@ class CountBound:
                 return True
             program.set_bounds(waiting.pop())
             solved = self._solve_equation_node(equation, costs, max_cost)
-            if not before and not number:
+            if not earlier and not number:
                 self._rounded_rows = list(equation.rounded_rows)
                 self.proved = max(self.proved, min(solved.bound, max_cost + 1))
             if solved.bound > max_cost:
@@ -428,10 +428,10 @@ class CountBound:
             lower[self._size + idle] = 1
             yield lower, upper
             return
-        rounded = [level for level in (*self._levels, *levels) if level.measure.exact is not None]
+        rounded_levels = [level for level in (*self._levels, *levels) if level.measure.exact is not None]
         worse = [
             level
-            for level in rounded
+            for level in rounded_levels
             if (cost := _exact_cost(level, counts)) > level.cost or (cost == level.cost and level.strict)
         ]
         unforced = model.unforced_count(counts, x)

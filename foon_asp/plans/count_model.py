@@ -57,7 +57,7 @@ class CountModel:
         self.conditions: dict[int, Condition] = {}  # by row
         for _ in range(size):
             program.add_column(0, 1)  # whether an action is executed at all
-        self._loose = [program.add_open_row((size + a, a), 0) for a in range(size)]
+        self._indicator_rows = [program.add_open_row((size + a, a), 0) for a in range(size)]
         for a in range(size):
             program.add_row({a: 1, size + a: -1}, 0)
         self._classes: dict[int, list[int]] = {}
@@ -72,16 +72,17 @@ class CountModel:
             self.conditions[program.add_row(*self._with_stock(supply.object, row, 0))] = supply
         items = self.items = dict[int, int]()
         for action in range(size):
-            y = size + action
+            indicator = size + action
             for o in (needed for needed in flows.asks[action] if needed not in flows.uses[action]):
                 achievers = {size + achiever: 1 for achiever in achievers_of.get(o, ())}
-                read = program.add_row(*self._with_stock(o, {**achievers, y: -1}, 0))
+                number = program.add_row(*self._with_stock(o, {**achievers, indicator: -1}, 0))
                 if o in self.stock or not flows.start.get(o):  # otherwise an initial copy satisfies it
-                    self.conditions[read] = Landmark((), (), action, (o,))
+                    self.conditions[number] = Landmark((), (), action, (o,))
             for o in flows.items[action] if priced else ():
                 if o not in items:
                     items[o] = program.add_column(0, 1)
-                self.conditions[program.add_row({items[o]: 1, y: -1}, 0)] = Landmark((), (), action, (o,))
+                number = program.add_row({items[o]: 1, indicator: -1}, 0)
+                self.conditions[number] = Landmark((), (), action, (o,))
         for landmark in landmarks:
             self.add_landmark(landmark)
         for i, (weights, limit, at_least, used) in enumerate(limits):
@@ -167,7 +168,7 @@ class CountModel:
     def tighten(self) -> None:
         """Update the rows that tie indicators to counts, by the upper bounds of counts."""
         program = self.program
-        for action, row in enumerate(self._loose):
+        for action, row in enumerate(self._indicator_rows):
             max_count = self._max_count(action)
             program.change_row(row, {} if max_count is None else {self._size + action: max_count, action: -1})
         for (action, count), (column, row) in self._count_indicators.items():

@@ -135,14 +135,14 @@ class PlanProver(CountBound):
         """
         program, size = model.program, self._size
         lower, upper = list(program.lower), list(program.upper)
-        action = column < size
+        is_count = column < size
         program.lower[column] = max_count + 1
-        if action:
+        if is_count:
             program.lower[size + column] = 1
         above = self._prove_node(model, depth + 1)
         program.lower, program.upper = list(lower), list(upper)
         program.upper[column] = max_count
-        if action and not max_count:
+        if is_count and not max_count:
             program.upper[size + column] = 0
         up_to = self._prove_node(model, depth + 1)
         program.lower, program.upper = lower, upper
@@ -211,13 +211,15 @@ class PlanProver(CountBound):
                 return [{row: one} for row, coefficients, least in rows if least > 0 and not coefficients]
             for parts in PARTS:
                 ray = self._rounded_weights(model, [weight / largest for weight in floats], parts, one)
-                nothing = self._bound(model, ray, free=True)
-                if nothing is None or claim.order.sign(nothing) <= 0:
+                bound_without_costs = self._bound(model, ray, free=True)
+                if bound_without_costs is None or claim.order.sign(bound_without_costs) <= 0:
                     continue
                 if self._least is None:
                     return [ray]
-                need = claim.order.approximate(self._least)[0] / claim.order.approximate(nothing)[0]
-                factor = Fraction(math.ceil(abs(need) * 1.001) + 1)
+                missing_factor = (
+                    claim.order.approximate(self._least)[0] / claim.order.approximate(bound_without_costs)[0]
+                )
+                factor = Fraction(math.ceil(abs(missing_factor) * 1.001) + 1)
                 return [{row: times(weight, factor) for row, weight in ray.items()}]
             return []
         floats = [weight / scale for weight in floats]

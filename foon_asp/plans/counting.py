@@ -298,8 +298,8 @@ class Counting:
         if Objective.KITCHEN not in question.levels:
             runs = bulk_order(flows, counts, flows.start, lambda: question.deadline.passed)
             return None if runs is None else plan_of(self.units, runs)
-        first = tuple(sorted(least_copies(flows, counts).items()))
-        waiting, seen = [(sum(n for _, n in first), first)], {first}
+        least_stock = tuple(sorted(least_copies(flows, counts).items()))
+        waiting, seen = [(sum(n for _, n in least_stock), least_stock)], {least_stock}
         for _ in range(PLANS.stocks):
             if not waiting:
                 return None

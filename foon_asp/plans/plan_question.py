@@ -130,8 +130,8 @@ class PlanQuestion:
     def has_no_lasting_tree(self) -> bool:
         """Return whether it is proved that rules allow no tree if items last, and so no plan.
 
-        A solver searches for such a tree. ``False`` without a search if there are no rules, or if some do
-        more than limit plans.
+        A solver searches for such a tree. ``False`` without a search if there are no rules, or if rules use
+        numbers of executions for more than upper bounds.
         """
         rules, problem = self.program.understood, self.problem
         if rules is None or not rules.only_limits:

@@ -129,25 +129,25 @@ def tools_needed(problem: Problem, resources: ScheduleResources, unit: Functiona
 
     They are its utensils, and the tools that its inputs or outputs are in, on or at.
     """
-    needed, _, made = Executions(problem).of(unit)
-    needs: dict[str, ToolNeed] = {}
+    preconditions, _, made = Executions(problem).of(unit)
+    tool_needs: dict[str, ToolNeed] = {}
     nodes = (*dict.fromkeys(unit.inputs), *unit.outputs)
     places = (relation.object for node in nodes for relation in node.relations)
     for label in dict.fromkeys([*(node.label for node in nodes), *places]):
         if not resources.is_limited(problem, label):
             continue
         own_inputs = [node for node in dict.fromkeys(unit.inputs) if node.label == label]
-        kept = tuple(node for node in own_inputs if node in needed and node in unit.outputs)
-        changed = tuple(node for node in own_inputs if node in needed and node not in unit.outputs)
+        kept = tuple(node for node in own_inputs if node in preconditions and node in unit.outputs)
+        changed = tuple(node for node in own_inputs if node in preconditions and node not in unit.outputs)
         outputs = tuple(node for node in made if node.label == label)
-        others: list[ObjectNode | None] = [node for node in own_inputs if node not in needed]
+        others: list[ObjectNode | None] = [node for node in own_inputs if node not in preconditions]
         if not own_inputs and not outputs:
-            inputs_inside = sorted((node for node in needed if node.is_in(label)), key=problem.at_hand)
+            inputs_inside = sorted((node for node in preconditions if node.is_in(label)), key=problem.at_hand)
             others.append(
                 next(iter(inputs_inside), None)
             )  # preferably one that a step made: its tool is known
-        needs[label] = ToolNeed(kept, changed, outputs, tuple(others))
-    return needs
+        tool_needs[label] = ToolNeed(kept, changed, outputs, tuple(others))
+    return tool_needs
 
 
 def timetable_fault(
@@ -254,16 +254,17 @@ class _Run:
         A tool that holds no needed object counts as fetched from the kitchen: what it held is forgotten.
         """
         problem, resources = self._problem, self._resources
-        needs, needed = tools_needed(problem, resources, unit), self._executions.of(unit).preconditions
+        tool_needs = tools_needed(problem, resources, unit)
+        preconditions = self._executions.of(unit).preconditions
         brought = Counter(tool.label for tool in tools)
-        for label in needs.keys() | brought.keys():
-            wanted = needs[label].number if label in needs else 0
+        for label in tool_needs.keys() | brought.keys():
+            wanted = tool_needs[label].number if label in tool_needs else 0
             if brought[label] != wanted:
                 yield f"has {brought[label]} of {label}, and asks for {wanted}"
         for tool in tools:
             if not 1 <= tool.number <= resources.number_of(problem, tool.name):
                 yield f"has {tool}, and there are {resources.number_of(problem, tool.name)}"
-        for label, need in needs.items():
+        for label, need in tool_needs.items():
             brought_tools = [tool for tool in tools if tool.label == label]
             held_nodes = {node for tool in brought_tools for node in self._states.get(tool, ())}
             wanted_nodes = {node for node in (*need.kept, *need.changed, *need.others) if node is not None}
@@ -271,7 +272,7 @@ class _Run:
                 fetched = problem.at_hand(node) and resources.counted_name(node, label) in {
                     tool.name for tool in brought_tools
                 }
-                if not fetched and node in needed:
+                if not fetched and node in preconditions:
                     yield f"has no {label} for {node}"
             for tool in brought_tools:  # a tool fetched from the kitchen loses its earlier state
                 if wanted_nodes and wanted_nodes.isdisjoint(self._states.get(tool, ())):

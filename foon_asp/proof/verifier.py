@@ -361,8 +361,8 @@ class Check:
     def __init__(self, certificate: dict[str, Any], rules: tuple[Rule, ...], subject: Subject) -> None:
         """Read objectives, costs, goals, rules and cuts of a certificate; tree and proof are read later."""
         network, kitchen, rates, utensils, prices = subject[:5]
-        self.allowed = ALLOWED.steps + ALLOWED.steps_each * (len(network) + len(network.objects))
-        self.steps = self.allowed  # steps that remain
+        self.max_steps = ALLOWED.steps + ALLOWED.steps_each * (len(network) + len(network.objects))
+        self.steps_left = self.max_steps
         self.minus_log = cache(self._minus_log)  # of a rate
         self.are_multiples = cache(self._are_multiples)  # of a number, by an objective
         self.trusted_costs: dict[str, dict[int, Fraction]] = {}  # costs by measures that the proof uses
@@ -380,14 +380,14 @@ class Check:
         require(len(set(self.objectives)) == len(self.objectives), "an objective stands twice")
         by_rates = {"success", "attempts"} & set(self.objectives)
         self.rates = self._required_rates(rates) if by_rates else {}
-        self.costly = frozenset(self.rates.values()) - {0, 1}
+        self.fractional_rates = frozenset(self.rates.values()) - {0, 1}
         self.prices = self._required_prices(prices) if "price" in self.objectives else []
         self.goals = tuple(_read_goal(goal, network) for goal in read_list(certificate["goals"]))
         require(len(set(self.goals)) == len(self.goals) > 0, "expected goals, each of them once")
         self.needs, self.gives = cache(self._needs), cache(self._gives)  # of a unit, without its rules
         self.preconditions, self.cost = cache(self._preconditions), cache(self._cost)  # of a member
         self.stand_ins = subject.stand_ins
-        self.rules, self.claimed = rules, 0
+        self.rules, self.claim_size = rules, 0
         each_price = cache(lambda: self._unit_prices(prices))
         question = Question(
             network,
@@ -410,7 +410,7 @@ class Check:
         nodes = len(network.objects) + len(self.ruled.makers)
         self.cuts = [frozenset(read_numbers(cut, nodes)) for cut in read_list(certificate["cuts"])]
         self.members = [frozenset(self._landmark(cut)) for cut in self.cuts]
-        self.met: set[int] = set()  # the cuts that the proof uses
+        self.used_cuts: set[int] = set()  # the cuts that the proof uses
 
     def _check_stand_ins(self, least: Fraction | None) -> None:
         """Refuse a network whose stand-ins do not agree with their table, if it has a table.
@@ -557,7 +557,7 @@ class Check:
             raise RefusedError("expected the claim optimal, bound or infeasible")
         self._check_stand_ins(None if claim == "infeasible" else amount.get((0, None), Fraction(0)))
         self._check_proof(proof, None if claim == "infeasible" else amount)
-        require(len(self.met) == len(self.cuts), "a cut is not used by the proof")
+        require(len(self.used_cuts) == len(self.cuts), "a cut is not used by the proof")
         return Verified(
             claim,
             self.goals,
@@ -631,7 +631,7 @@ class Check:
 
         No tree of the branch has such a unit: it has all members ``used``, and none of ``without``.
         """
-        self._spend(len(self.network) + 5 * self.claimed)
+        self._spend(len(self.network) + 5 * self.claim_size)
         units = frozenset(member for member in used if member < len(self.network))
         return self.ruled.barred[number](units, without)
 
@@ -641,8 +641,8 @@ class Check:
         If ``least`` is ``None``, the proof is that no tree exists. All costs are then 0, so weights that add
         up to more than 0 are a contradiction.
         """
-        nobody: frozenset[int] = frozenset()
-        waiting: list[tuple[Any, frozenset[int], frozenset[int]]] = [(proof, nobody, self.ruled.removed)]
+        no_members: frozenset[int] = frozenset()
+        waiting: list[tuple[Any, frozenset[int], frozenset[int]]] = [(proof, no_members, self.ruled.removed)]
         while waiting:
             node, used, without = waiting.pop()
             self._spend(1 + len(used) + len(without))
@@ -677,10 +677,10 @@ class Check:
             partition_sum, reduced_cost = self._check_cost_partition(
                 node["weights"], node.get("limits", []), used, excluded
             )
-            paid = self.sum(map(self.cost, used))
+            used_cost = self.sum(map(self.cost, used))
             for addition in [{}] if above_cutoff is None else map(reduced_cost, above_cutoff):
                 total = self._round_up(self.sum([partition_sum, addition]), node.get("multiples", {}))
-                require(self._is_enough([total, paid], least), "the weights do not add up to enough")
+                require(self._is_enough([total, used_cost], least), "the weights do not add up to enough")
 
     def _above_cutoff(self, choices: Any, decided: frozenset[int]) -> list[int]:
         """Return the members that a reduced-cost fixing claims to be above the cutoff.
@@ -820,7 +820,7 @@ class Check:
         """
         index = read_number(number, range(len(self.cuts)), "the number of a cut")
         self._spend(1 + len(self.goals) + len(used) + len(self.members[index]))
-        self.met.add(index)
+        self.used_cuts.add(index)
         cut = self.cuts[index]
         before = (
             any(goal in cut and goal not in self.kitchen for goal in self.goals)
@@ -917,7 +917,7 @@ class Check:
     def _rule_meaning(self, rule: Rule, question: Question) -> Meaning:
         """Return the meaning of a rule for the network; the work counts as steps of the check."""
         self._spend(ALLOWED.rule_steps * (len(self.network) + len(self.network.objects)))
-        self.claimed += sum(1 + len(used) + len(without) for used, without in rule.get("claims", ()))
+        self.claim_size += sum(1 + len(used) + len(without) for used, without in rule.get("claims", ()))
         return meaning_of_rule(rule, question)
 
     def _cost(self, member: int) -> Amount:
@@ -1043,7 +1043,10 @@ class Check:
             if objective == "success":
                 for name, exponent in read_object(entries[level]).items():
                     rate = read_rational(name)
-                    require(rate in self.costly, "expected rates of motions in a weight, and none of 0 or 1")
+                    require(
+                        rate in self.fractional_rates,
+                        "expected rates of motions in a weight, and none of 0 or 1",
+                    )
                     amount[level, rate] = read_rational(exponent)
             else:
                 amount[level, None] = read_rational(entries[level])
@@ -1125,9 +1128,9 @@ class Check:
 
     def _spend(self, steps: int) -> None:
         """Count steps of the check; raises :class:`LimitError` if there are too many."""
-        self.steps -= steps
-        if self.steps < 0:
-            raise LimitError(f"to check it takes more than {self.allowed:,} steps")
+        self.steps_left -= steps
+        if self.steps_left < 0:
+            raise LimitError(f"to check it takes more than {self.max_steps:,} steps")
 
 
 def bit_length(value: Fraction) -> int:

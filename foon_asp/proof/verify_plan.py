@@ -630,7 +630,7 @@ class _FarkasCombination:
         """
         check = self.check
         require(holds, f"cut {cut} holds neither a goal nor what the unit asks for")
-        check.met.add(cut)
+        check.used_cuts.add(cut)
         self._add_to_constant(weight, 1)
         for member in check.members[cut]:
             coefficients = self.used if member < len(check.network) else self.executed

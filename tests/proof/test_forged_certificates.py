@@ -499,8 +499,8 @@ PARTS = {
         plain(**NO_TREE, **UNPROVED),
     ),
     "what a rule removes is no member": Part(
-        "[(proof, nobody, self.ruled.removed)]",
-        "[(proof, nobody, frozenset(range(3)))]",
+        "[(proof, no_members, self.ruled.removed)]",
+        "[(proof, no_members, frozenset(range(3)))]",
         plain(**NO_TREE, proof=HOPELESS),
     ),
     # baking on what is mixed is right where something is mixed
