@@ -14,7 +14,7 @@ from foon_asp.plans.tuning import PLANS
 from foon_asp.plans.whole_program import Stopped
 
 Run = tuple[int, int]
-"""An action, and how often it is executed at once."""
+"""An action, and how often it is executed in a row."""
 
 
 def bulk_order(

@@ -8,7 +8,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 Counts = dict[int, int]
-"""How often each action is executed, without actions that are not."""
+"""How often each action is executed; actions that are not executed are omitted."""
 
 
 class Measure(NamedTuple):
@@ -88,7 +88,7 @@ class Rounded(NamedTuple):
 
 
 SumLimit = tuple[Mapping[int, int], int, bool, bool]
-"""Weights by action, a bound on their sum, whether it is a lower bound, whether an action counts once."""
+"""Weights by action, a bound on the sum, whether it is a lower bound, and whether actions count once."""
 
 
 class Level(NamedTuple):
@@ -105,4 +105,4 @@ class Level(NamedTuple):
 
 
 Condition = Landmark | Balance | Supply | Remainder | Sum | Level | Rounded
-"""The condition on the counts of every plan that a row of the program states."""
+"""A condition on the counts of every plan; a row of the program states it."""

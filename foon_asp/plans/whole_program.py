@@ -8,14 +8,14 @@ from typing import Any, NamedTuple
 from foon_asp.hypergraph.highs_run import libraries, run, silent_highs
 
 PARTS = (720720, 2**40)
-"""Denominators of rounded weights; the first that suffices is used, as most weights are simple fractions."""
+"""Denominators of rounded weights; the first is tried first, as most weights are simple fractions."""
 
 INTEGRALITY = 1e-6
-"""Integrality tolerance, for choosing where to branch, and relative tolerance of rows that floats violate."""
+"""Tolerance of whole values when branching, and relative tolerance of rows that floats violate."""
 
 
 Bounds = tuple[list[int], list[int | None]]
-"""The lower and upper bounds of all columns, ``None`` without one."""
+"""The lower and the upper bounds of all columns; ``None`` is no upper bound."""
 
 
 class Stopped(Exception):  # noqa: N818 (no error: there is no time left)

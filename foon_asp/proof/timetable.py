@@ -11,7 +11,7 @@ from foon_asp.proof.execution import Executions
 from foon_asp.text.tables import Duration
 
 ToolName = str | ObjectNode
-"""What tools are counted by: a label, or one that the kitchen has with something in it."""
+"""The name under which tools are counted: a label, or an object node for a tool with contents."""
 
 
 class Tool(NamedTuple):

@@ -67,7 +67,7 @@ class Flow(NamedTuple):
 
 
 Row: TypeAlias = tuple[Mapping[int, int | Fraction], int | Fraction]
-"""A condition on counts: the coefficient of each unit, and the least of the sum."""
+"""A condition on counts: the coefficient of each unit, and a lower bound on the weighted sum."""
 
 
 class Node(NamedTuple):

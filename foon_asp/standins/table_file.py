@@ -99,4 +99,4 @@ def _read_price(written: str, column: int) -> Fraction | None:
 STAND_INS: Table[Entry, Fraction | None] = Table(
     "stand-in", NameKind.OBJECT, "a number or never", _read_row, "a second price for {name!r}"
 )
-"""``USED⇥FOR⇥2`` of two labels or nodes; ``word⇥1`` of an edit, ``more state: dirty⇥never`` of a state."""
+"""The format of rows: ``serving⇥served⇥2``, ``word⇥1`` or ``more state: dirty⇥never`` (⇥ is a tab)."""
