@@ -195,7 +195,7 @@ class CountModel:
         return costs
 
     def add_level(self, level: Level) -> None:
-        """Add the row of a level: counts as good as the incumbent cost at most ``max_cost``.
+        """Add the row of a level: the cost is at most its ``max_cost``.
 
         The counts of single actions are capped, too.
         """
@@ -205,7 +205,7 @@ class CountModel:
         self.cap_counts(level.measure, level.max_cost)
 
     def limit_cost(self, measure: Measure, solution: Sequence[float]) -> None:
-        """Add a row: by a measure, counts cost at most as much as a solution."""
+        """Add a row: the cost by a measure is at most that of a solution."""
         costs = self.objective(measure)
         max_cost = sum(cost * round(solution[column]) for column, cost in costs.items())
         self.program.add_row({column: -cost for column, cost in costs.items()}, -max_cost)

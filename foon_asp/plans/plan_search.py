@@ -62,7 +62,12 @@ def _solve(question: PlanQuestion) -> Outcome:
 
 
 def _search(question: PlanQuestion, units: list[int]) -> Outcome:
-    """Search for the best plan of ``units``, and prove it; return the outcome."""
+    """Search for the best plan of ``units``, and prove it; return the outcome.
+
+    Counts of least cost are looked for first, and then an order of them, which is the first incumbent. If
+    there is none, it is proved that there is no plan. Otherwise, counts of lower cost are searched until the
+    incumbent is proved the best.
+    """
     counting = Counting(question, units)
     if not units:  # every goal is available: only the empty plan is irredundant
         needs_check = not question.program.own or question.problem.counts_amounts

@@ -174,10 +174,7 @@ class StateEquation(RoundedProgram):
                 self.add((Sum(number),), {a: sign * weight for a, weight in weights.items()}, sign * limit)
 
     def add_level(self, level: Level) -> None:
-        """Add the row of a level: counts as good as the incumbent cost at most ``max_cost``.
-
-        Costs of items are left out.
-        """
+        """Add the row of a level: the cost, without items, is at most its ``max_cost``."""
         # without the costs of items, which have no columns, the row is weaker
         costs = level.measure.costs
         self.add((level,), {a: -cost for a, cost in enumerate(costs) if cost}, -level.max_cost)

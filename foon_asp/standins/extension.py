@@ -54,7 +54,10 @@ def with_stand_ins(problem: Problem, table: StandInTable, everything: bool = Fal
 
 
 def _append_stand_ins(network: Network, pairs: Sequence[Pair]) -> Network:
-    """Return a network with a new unit for each pair, which makes the served node of the serving one."""
+    """Return a network with a new unit for each pair of a served and a serving node.
+
+    The unit makes the served node of the serving one.
+    """
     keys = {
         (STAND_IN, frozenset((serving,)), frozenset((served,))): unit
         for unit, (served, serving) in enumerate(pairs, len(network))
