@@ -42,7 +42,7 @@ class Flows:
         return list(map(lacks, self.asks)), lacks(self.targets)
 
     def balances(self) -> Iterator[tuple[int, dict[int, int], int]]:
-        """Yield the rows of the state equation: an object, the change by each action, and the object's target.
+        """Yield the rows of the state equation: object, change by each action, and target of the object.
 
         Objects without target that no action reduces are omitted, since their row always holds.
         """
