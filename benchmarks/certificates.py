@@ -68,7 +68,7 @@ def measure(problem: Problem, objective: Objective, limit: float) -> Row:
     text = found.text()
     content = read_certificate(text)
     checking, _ = timed(lambda: verify(content, subject_of(problem)))
-    proving, answer = timed(lambda: proved_checker.ask(content, subject_of(problem)))
+    proving, answer = timed(lambda: proved_checker.check_certificate(content, subject_of(problem)))
     assert answer in (proved_checker.ACCEPTED, proved_checker.NOT_BUILT)
     size = len(text.encode())
     return Row(len(content["cuts"]), leaves(content["proof"]), size, seconds, solving, checking, proving)

@@ -11,7 +11,7 @@ from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.lexicographic import Lexicographic, Vector
 from foon_asp.hypergraph.proof_tree import Cases
 from foon_asp.problem import Objective, Problem, multiplies
-from foon_asp.proof import ruled, verifier
+from foon_asp.proof import compiled_rules, verifier
 
 
 class Arrays:
@@ -95,7 +95,7 @@ class Arrays:
 
     def _add_own_limit(self, limit: Limit) -> None:
         """Add a limit by user rules, under the next number."""
-        self.ruled.limits[self._first_own_limit + len(self.own_limits)] = ruled.Limit(*limit)
+        self.ruled.limits[self._first_own_limit + len(self.own_limits)] = compiled_rules.Limit(*limit)
 
     def exceeded_limit(self, derivation: frozenset[int]) -> Limit | None:
         """Return a limit by user rules that a derivation exceeds, and add it; ``None`` without one."""
@@ -123,7 +123,7 @@ class Arrays:
 
         A tree with all used actions and none of ``without`` breaks the constraint if it has a barred unit.
         """
-        return self.ruled.bars(self._units_among(used), without)
+        return self.ruled.barred_units(self._units_among(used), without)
 
     def breaking_actions(self, derivation: frozenset[int]) -> list[int]:
         """Return units of a derivation that together break a constraint; none if it breaks none.
@@ -152,7 +152,7 @@ class Arrays:
         """Return the actions of a tree: its units, its steps, and the taking of needed kitchen items."""
         units = list(units)
         needed = {o for unit in units for o in self.problem.needs[unit]}
-        steps = self.ruled.used(frozenset(units)).difference(units)
+        steps = self.ruled.units_and_steps(frozenset(units)).difference(units)
         taking = (action for o, action in self.items.items() if o in needed)
         return [*units, *taking, *map(self._steps.__getitem__, sorted(steps))]
 

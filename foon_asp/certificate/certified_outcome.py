@@ -14,7 +14,7 @@ from foon_asp.certificate.plan import certify_no_plan, certify_plan, covered_for
 from foon_asp.errors import BugError
 from foon_asp.hypergraph.lexicographic import Vector
 from foon_asp.problem import Problem, levels, multiplies
-from foon_asp.proof.verifier import ALLOWED, Subject, trusted
+from foon_asp.proof.verifier import ALLOWED, Subject, trusted_claims
 
 
 def certify_outcome(
@@ -57,7 +57,7 @@ def certify_outcome(
         why = _contradiction(outcome, certificate, covered)
         if why is not None:
             raise _wrong_answer(outcome, settings, why)
-    if certificate is None or certificate.claim == "bound" or trusted(certificate.content):
+    if certificate is None or certificate.claim == "bound" or trusted_claims(certificate.content):
         return outcome, certificate
     complete = certificate.claim == "infeasible" or certificate.certified == levels(outcome.objectives)
     if complete and outcome.status is Status.FEASIBLE and outcome.costs is not None:

@@ -12,9 +12,9 @@ from foon_asp.encoding.encoding_file import string_constant
 from foon_asp.encoding.own_encodings import is_own
 from foon_asp.hypergraph.exact_optimum import Limit
 from foon_asp.problem import Problem
-from foon_asp.proof.rule_meaning import LIBRARY, OWN, Rule, meaning
-from foon_asp.proof.ruled import Ruled
-from foon_asp.proof.verifier import canonical
+from foon_asp.proof.compiled_rules import CompiledRules
+from foon_asp.proof.rule_meaning import LIBRARY, OWN, Rule, meaning_of_rule
+from foon_asp.proof.verifier import canonical_json
 from foon_asp.rules.passed_constraint import Constraint, LibraryUse, RuleText, find_constraint
 from foon_asp.rules.ready_made import LISTED, question_of
 
@@ -46,10 +46,12 @@ class Coverage(NamedTuple):
         """Whether some constraints are not covered, so that trees may have to keep to more than ``rules``."""
         return bool(self.not_covered) or any(rule["rule"] == OWN for rule in self.rules)
 
-    def ruled(self, problem: Problem) -> Ruled:
+    def ruled(self, problem: Problem) -> CompiledRules:
         """Return the rules compiled into the network of a problem."""
         question, nodes = question_of(problem), len(problem.network.objects)
-        return Ruled([meaning(rule, question) for rule in self.rules], nodes, len(problem.network) + nodes)
+        return CompiledRules(
+            [meaning_of_rule(rule, question) for rule in self.rules], nodes, len(problem.network) + nodes
+        )
 
     def forbidden_units(self, problem: Problem) -> frozenset[int]:
         """Return the units of a problem that rules remove."""
@@ -104,7 +106,7 @@ def coverage(settings: Settings) -> Coverage:
         }
         if all(value not in (None, "", []) for value in values.values()):
             rule = {"rule": stem, **values}
-            rules[canonical(rule)] = rule
+            rules[canonical_json(rule)] = rule
     used_constants = {
         LISTED.get(name, name)
         for stem, constants_given in uses

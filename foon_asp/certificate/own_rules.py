@@ -19,7 +19,7 @@ from foon_asp.hypergraph import NONE
 from foon_asp.problem import Contradiction, Objective, Problem
 from foon_asp.problem.number import INT32_MAX
 from foon_asp.proof.rule_meaning import OWN, Rule
-from foon_asp.proof.verifier import LimitError, RefusedError, canonical
+from foon_asp.proof.verifier import LimitError, RefusedError, canonical_json
 from foon_asp.rules.passed_constraint import (
     Constraint,
     LibraryUse,
@@ -68,7 +68,7 @@ def with_own_rules(covered: Coverage, problem: Problem, settings: Settings) -> C
     user_constraints = frozenset(constraint for constraint in constraints if not _is_library(constraint))
     stated = [(limit.amounts, limit.max_sum) for limit in covered.ruled(problem).limits.values()]
     limits = OwnLimits(problem, settings, rules, user_constraints, stated)
-    return Coverage(tuple(sorted((*covered.rules, own_rule), key=canonical)), limits=limits)
+    return Coverage(tuple(sorted((*covered.rules, own_rule), key=canonical_json)), limits=limits)
 
 
 def check_with_clingo(

@@ -46,7 +46,9 @@ _HALF = Fraction(1, 2)
 def covered_for_plans(covered: Coverage) -> Coverage:
     """Return the coverage for plans: rules that their certificates cannot check go to ``not_covered``."""
     rules = tuple(rule for rule in covered.rules if rule["rule"] in PLAN_RULES)
-    others = {verifier.canonical(rule) for rule in covered.rules if rule not in rules and rule["rule"] != OWN}
+    others = {
+        verifier.canonical_json(rule) for rule in covered.rules if rule not in rules and rule["rule"] != OWN
+    }
     return Coverage(rules, tuple(sorted({*covered.not_covered, *others})))
 
 

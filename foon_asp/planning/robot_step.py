@@ -7,7 +7,7 @@ from msgspec import field
 
 from foon_asp.network import FunctionalUnit, Network, ObjectNode
 from foon_asp.problem import Problem
-from foon_asp.proof.replay import replay_for, replayable, waits
+from foon_asp.proof.replay import predecessors, replay_for, replayable_problem
 from foon_asp.results.values import Copy, Node, NumberedStep, Value
 from foon_asp.results.values_of import copy_of, mention_of, named_node
 from foon_asp.text.clip_times import ListedClips
@@ -94,8 +94,10 @@ def robot_steps(
         for source in listed.sources
     }
     network, tree = problem.network, problem.tree(plan)
-    replay = replay_for(replayable(problem, tree), tree)
-    for number, (done, after, id_) in enumerate(zip(replay.steps, waits(replay), plan, strict=True), 1):
+    replay = replay_for(replayable_problem(problem, tree), tree)
+    for number, (done, after, id_) in enumerate(
+        zip(replay.steps, predecessors(replay), plan, strict=True), 1
+    ):
         mention, unit = mention_of(network, id_), done.unit
         duration = durations.get(unit.motion)
         origins, destinations = (

@@ -8,8 +8,8 @@ from typing import NamedTuple
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, ObjectNode
 from foon_asp.problem import Problem
-from foon_asp.proof.replay import Copy, Replay, readers, waits
-from foon_asp.proof.timetable import Means, ToolName, tools_asked
+from foon_asp.proof.replay import Copy, Replay, predecessors, shared_readers
+from foon_asp.proof.timetable import ScheduleResources, ToolName, tools_needed
 
 
 class Use(NamedTuple):
@@ -68,32 +68,32 @@ class ScheduleTask(NamedTuple):
 
 
 def schedule_task(
-    problem: Problem, plan: Sequence[FunctionalUnit], replay: Replay, means: Means
+    problem: Problem, plan: Sequence[FunctionalUnit], replay: Replay, resources: ScheduleResources
 ) -> ScheduleTask:
     """Return the scheduling task of an executable plan.
 
-    ``replay`` says which copy of an item each step takes. ``means`` are the durations of motions, agents and
+    ``replay`` says which copy of an item each step takes. ``resources`` has the durations of motions, agents and
     tools. Raises :class:`UserError` if the durations have too many digits to be added up in ticks.
     """
-    seconds = [Fraction(means.durations[unit.motion].seconds) for unit in plan]
+    seconds = [Fraction(resources.durations[unit.motion].seconds) for unit in plan]
     ticks_per_second = lcm(*(duration.denominator for duration in seconds))
     lengths = tuple(int(duration * ticks_per_second) for duration in seconds)
     if sum(lengths) > 10**12:  # CP-SAT's integers have 64 bits
         raise UserError("the durations are too fine for so long a plan: round them")
-    uses = _uses(problem, replay, means)
+    uses = _uses(problem, replay, resources)
     return ScheduleTask(
         Fraction(1, ticks_per_second),
         lengths,
-        tuple(means.durations[unit.motion].passive for unit in plan),
-        tuple(map(frozenset, waits(replay))),
+        tuple(resources.durations[unit.motion].passive for unit in plan),
+        tuple(map(frozenset, predecessors(replay))),
         uses,
-        {use.name: means.number_of(problem, use.name) for use in uses},
-        means.agents,
-        tuple(readers(replay, means.is_free)),
+        {use.name: resources.number_of(problem, use.name) for use in uses},
+        resources.agents,
+        tuple(shared_readers(replay, resources.is_unlimited)),
     )
 
 
-def _uses(problem: Problem, replay: Replay, means: Means) -> tuple[Use, ...]:
+def _uses(problem: Problem, replay: Replay, resources: ScheduleResources) -> tuple[Use, ...]:
     """Return the uses of tools in a plan.
 
     A step belongs to an earlier use of a tool if it takes a copy that was made during that use; else it
@@ -110,7 +110,9 @@ def _uses(problem: Problem, replay: Replay, means: Means) -> tuple[Use, ...]:
         """
         use = None if copy is None else use_of.get((copy, label))
         if use is None or number in steps[use]:
-            names.append(label if node is None or not problem.at_hand(node) else means.name(node, label))
+            names.append(
+                label if node is None or not problem.at_hand(node) else resources.counted_name(node, label)
+            )
             steps.append([])
             use = len(names) - 1
         steps[use].append(number)
@@ -118,7 +120,7 @@ def _uses(problem: Problem, replay: Replay, means: Means) -> tuple[Use, ...]:
 
     for number, step in enumerate(replay.steps):
         copies = {copy.node: copy for copy in (*step.gone, *step.stayed)}
-        for label, demand in tools_asked(problem, means, step.unit).items():
+        for label, demand in tools_needed(problem, resources, step.unit).items():
             after = {node: assign(number, label, node, copies.get(node)) for node in demand.kept}
             changed = {
                 node: assign(number, label, node, None if node is None else copies.get(node))

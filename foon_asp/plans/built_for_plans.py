@@ -1,4 +1,4 @@
-"""Settings and user rules that are built for items that are used up, and refusals of all others."""
+"""Settings and user rules that plans support, for items that are used up; all others are refused."""
 
 from pathlib import Path
 
@@ -12,7 +12,7 @@ _NOT_READ = frozenset({"available", "executes", "taken", "makes"})
 
 
 def require_built_for_plans(settings: Settings) -> None:
-    """Raise :class:`UserError` naming a feature that is not built for items that are used up."""
+    """Raise :class:`UserError`, naming the feature, if settings ask for what plans do not support."""
     for constraint in settings.constraints:
         name = Path(constraint.name.partition(":")[0]).stem
         if name in _NOT_BUILT:
@@ -27,7 +27,7 @@ def require_built_for_plans(settings: Settings) -> None:
 
 
 def require_rules_of_plans(program: Program) -> None:
-    """Raise :class:`UserError` for user rules that read more than the executions of a plan."""
+    """Raise :class:`UserError` if user rules read more than which units a plan executes, and how often."""
     for name, arity in sorted(program.looked_at):
         if name.lstrip("_") in _NOT_READ:
             raise UserError(f"rules over {name}/{arity} are not built for items that are used up")

@@ -1,8 +1,8 @@
-"""Orders for given counts of executions, as a sequence of runs that repeat one action each.
+"""Orders for given counts of executions, as runs that repeat one action each.
 
-Whether each action can be executed as often as counted is a question about the firing sequences of a Petri
-net. A run executes an action as often as possible. The search tries no alternative to a run if there are
-enough copies of the objects that it consumes for all waiting executions; otherwise it branches.
+Whether each action can be executed as often as counted is a question about firing sequences of a Petri net. A
+run executes an action as often as possible. The search does not branch over runs if one leaves enough copies
+for all executions that wait.
 """
 
 from collections import Counter
@@ -14,22 +14,23 @@ from foon_asp.plans.tuning import PLANS
 from foon_asp.plans.whole_program import Stopped
 
 Run = tuple[int, int]
-"""An action, and how often it is executed at once."""
+"""An action, and how often it is executed in a row."""
 
 
 def bulk_order(
     flows: Flows, counts: Counts, start: Mapping[int, int], expired: Callable[[], bool]
 ) -> list[Run] | None:
-    """Return runs that execute each action as often as counted, from ``start``; ``None`` if there are none.
+    """Return runs that execute each action as often as counted; ``None`` if there is no such order.
 
-    Raises :class:`Stopped` if the search neither finds runs nor proves that there are none.
+    ``start`` has the initial copies by object. ``expired`` returns whether time is up. Raises
+    :class:`Stopped` if the search neither finds runs nor proves that there are none.
     """
-    if not _is_founded(flows, counts, start):
+    if not _may_have_order(flows, counts, start):
         return None
-    runs = _Search(flows, counts, start, expired, single=False).runs()
+    runs = _Search(flows, counts, start, expired, single=False).find_runs()
     if runs is None and sum(counts.values()) <= PLANS.single_executions:
         search = _Search(flows, counts, start, expired, single=True)
-        runs = search.runs()
+        runs = search.find_runs()
         if runs is None and search.is_exhausted:
             return None
     if runs is None:
@@ -38,7 +39,7 @@ def bulk_order(
 
 
 def least_copies(flows: Flows, counts: Counts) -> dict[int, int]:
-    """Return for each initial object a lower bound on the copies that every order of counts needs."""
+    """Return, for each object with initial copies, a lower bound on the copies that any order needs of it."""
     change = Counter({o: -n for o, n in flows.targets.items()})
     required = Counter[int]()
     for action, times in counts.items():
@@ -52,8 +53,8 @@ def least_copies(flows: Flows, counts: Counts) -> dict[int, int]:
     return {o: max(0, -change[o], required[o]) for o in flows.start}
 
 
-def _is_founded(flows: Flows, counts: Counts, start: Mapping[int, int]) -> bool:
-    """Whether counts satisfy two conditions that are necessary for an order.
+def _may_have_order(flows: Flows, counts: Counts, start: Mapping[int, int]) -> bool:
+    """Return whether counts satisfy two conditions that every order needs.
 
     Each action can be reached if nothing is consumed, and enough copies remain in the end.
     """
@@ -75,7 +76,11 @@ def _is_founded(flows: Flows, counts: Counts, start: Mapping[int, int]) -> bool:
 
 
 class _Search:
-    """A depth-first search for an order; with ``single``, it branches over single executions."""
+    """A depth-first search for an order of executions.
+
+    ``single``: whether to branch over single executions, in place of runs.
+    ``start``: the initial copies by object.
+    """
 
     def __init__(
         self,
@@ -85,10 +90,11 @@ class _Search:
         expired: Callable[[], bool],
         single: bool,
     ) -> None:
+        """Begin with all executions waiting, and count the copies that they consume."""
         self._flows, self._expired, self._single = flows, expired, single
         self._copies, self._waiting = Counter(start), dict(counts)
         self._steps_left = PLANS.order_steps
-        # what all executions that wait consume, and the most that one of them has to find beyond that
+        # the copies that all waiting executions consume
         self._consumed = Counter[int]()
         for action, times in counts.items():
             for o, n in flows.uses[action].items():
@@ -96,13 +102,13 @@ class _Search:
 
     @property
     def is_exhausted(self) -> bool:
-        """Whether all orders were tried."""
+        """Whether the search ended because it had tried all orders, and not for lack of steps or time."""
         return self._steps_left > 0
 
-    def runs(self) -> list[Run] | None:
-        """Return an order; ``None`` where none is found."""
+    def find_runs(self) -> list[Run] | None:
+        """Return the runs of an order; ``None`` if none is found."""
         done: list[Run] = []
-        dead: set[tuple[tuple[int, int], ...]] = set()  # what waited where no order was found
+        dead: set[tuple[tuple[int, int], ...]] = set()  # waiting executions without an order
         choices = [self._choices(dead)]
         while choices:
             if not self._waiting:
@@ -115,22 +121,23 @@ class _Search:
                 continue
             if self._steps_left <= 0:
                 return None
-            dead.add(self._state)
+            dead.add(self._waiting_counts)
             choices.pop()
             if done:
                 self._execute(done.pop(), -1)
         return None
 
     @property
-    def _state(self) -> tuple[tuple[int, int], ...]:
+    def _waiting_counts(self) -> tuple[tuple[int, int], ...]:
+        """The executions that wait, as pairs of action and count, ascending."""
         return tuple(sorted(self._waiting.items()))
 
     def _choices(self, dead: set[tuple[tuple[int, int], ...]]) -> Iterator[Run]:
         """Yield the runs to try next; only one if it leaves enough copies for all waiting executions.
 
-        ``dead`` has the waiting executions for which there is no order.
+        Nothing is yielded if the waiting executions are in ``dead``: no order was found for them before.
         """
-        if self._state in dead:
+        if self._waiting_counts in dead:
             return
         ready = [(action, self._max_times(action)) for action in sorted(self._waiting)]
         ready = [(action, max_times) for action, max_times in ready if max_times]
@@ -144,7 +151,7 @@ class _Search:
                 yield action, times
 
     def _max_times(self, action: int) -> int:
-        """Return how often an action can be executed at once, 0 if not at all."""
+        """Return how often a waiting action can be executed in a row; 0 if not at all."""
         max_times, flows = self._waiting[action], self._flows
         for o, n in flows.asks[action].items():
             surplus = self._copies[o] - n
@@ -156,11 +163,16 @@ class _Search:
         return max_times
 
     def _is_free(self, action: int) -> bool:
-        """Whether there are enough copies of what an action consumes for all waiting executions."""
-        return all(self._copies[o] - self._consumed[o] >= self._kept(o) for o in self._flows.uses[action])
+        """Return whether the objects that an action consumes have copies for all waiting executions."""
+        return all(
+            self._copies[o] - self._consumed[o] >= self._copies_to_keep(o) for o in self._flows.uses[action]
+        )
 
-    def _kept(self, o: int) -> int:
-        """Return how many copies of an object have to remain after all waiting executions."""
+    def _copies_to_keep(self, o: int) -> int:
+        """Return how many copies of an object have to remain after all waiting executions.
+
+        They are those of the target, or those that one execution needs and does not consume, if more.
+        """
         readers = (self._flows.asks[a].get(o, 0) - self._flows.uses[a].get(o, 0) for a in self._waiting)
         return max(self._flows.targets.get(o, 0), *readers)
 
@@ -180,5 +192,5 @@ class _Search:
 
 
 def plan_of(units: Sequence[int], runs: Sequence[Run]) -> tuple[int, ...]:
-    """Return the units of runs, with repeats."""
+    """Return the units that runs execute, in order, with repeats; ``units`` has the unit of each action."""
     return tuple(unit for action, times in runs for unit in (units[action],) * times)

@@ -1,21 +1,24 @@
-"""Conditions that the counts of executions in every plan satisfy, and costs of counts."""
+"""Conditions that the counts of executions in every plan satisfy, and costs of counts.
+
+An *action* is a unit of the question, and an *object* an object node; both are numbers.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
 Counts = dict[int, int]
-"""How often each action is executed, without actions that are not."""
+"""How often each action is executed; actions that are not executed are omitted."""
 
 
 class Measure(NamedTuple):
     """The cost of executions by one objective, to be minimized.
 
     ``costs``: the cost of each action, a whole number from 0.
-    ``item``: the cost of each distinct item, and of each initial copy that is consumed.
-    ``exact``: returns the exact cost of counts, if ``costs`` are rounded down; else ``None``.
-    ``classes``: the class of each action. The exact cost depends only on the number of executions in each
-    class; actions of class -1 do not change it.
+    ``item``: the cost of each distinct endless item, and of each initial copy that is taken.
+    ``exact``: a function from counts to their exact cost, if ``costs`` are rounded down; otherwise ``None``.
+    ``classes``: the class of each action, if ``costs`` are rounded. The exact cost depends only on the number
+    of executions in each class. Actions of class -1 do not change it.
     """
 
     costs: Sequence[int]
@@ -25,10 +28,12 @@ class Measure(NamedTuple):
 
 
 class Landmark(NamedTuple):
-    """The condition that one of the ``members`` is executed, or an initial copy of ``stock`` is consumed.
+    """The condition that one of some actions is executed, or an initial copy of an object is taken.
 
-    With an ``action``, the condition applies only if the action is executed. ``objects`` are the objects of
-    the cut from which the landmark follows.
+    ``members``: the actions.
+    ``stock``: the objects of which an initial copy satisfies the condition.
+    ``action``: the condition only applies if this action is executed; ``None`` if it always applies.
+    ``objects``: the objects of the cut from which the landmark follows.
     """
 
     members: tuple[int, ...]
@@ -38,15 +43,15 @@ class Landmark(NamedTuple):
 
 
 class Balance(NamedTuple):
-    """The row of the state equation of an object: no more copies are consumed than there are."""
+    """The row of the state equation of an object: initial and added copies suffice for those consumed."""
 
     object: int
 
 
 class Supply(NamedTuple):
-    """The condition that ``copies`` of an object are supplied for ``action``, if this is executed.
+    """The condition that ``action``, if it is executed, is supplied with ``copies`` of an object.
 
-    The copies are initial or added by other actions, since the action adds none before its first execution.
+    These copies are initial or added by other actions, since the action adds none before its first execution.
     """
 
     object: int
@@ -57,8 +62,8 @@ class Supply(NamedTuple):
 class Remainder(NamedTuple):
     """The condition that ``copies`` of an object remain in the end if ``action`` is executed.
 
-    The action asks for the object. The last execution that asks for it leaves at least ``copies``, and later
-    executions consume none.
+    The action has the object as a precondition. The last execution with this precondition leaves at least
+    ``copies``, and later executions consume none.
     """
 
     object: int
@@ -67,15 +72,15 @@ class Remainder(NamedTuple):
 
 
 class Sum(NamedTuple):
-    """The condition that a weighted sum of executions keeps to the limit with the index ``limit``."""
+    """The condition that executions keep to a limit on a weighted sum; ``limit`` is its index."""
 
     limit: int
 
 
 class Rounded(NamedTuple):
-    """The condition that a weighted sum of conditions on counts implies, as counts are whole numbers.
+    """The condition that follows from a sum of weighted conditions because counts are whole numbers.
 
-    Its row is that of mixed-integer rounding, times ``scale``, which makes its coefficients whole.
+    Its row is that of mixed-integer rounding, multiplied by ``scale``, which makes its coefficients whole.
     """
 
     weights: "tuple[tuple[Condition, Fraction], ...]"
@@ -83,14 +88,14 @@ class Rounded(NamedTuple):
 
 
 SumLimit = tuple[Mapping[int, int], int, bool, bool]
-"""Weights by action, a bound on their sum, whether it is a lower bound, whether an action counts once."""
+"""Weights by action, a bound on the sum, whether it is a lower bound, and whether actions count once."""
 
 
 class Level(NamedTuple):
     """An objective with the cost of the incumbent.
 
-    A plan is as good as the incumbent if its (rounded) costs add up to at most ``max_cost``, and its exact
-    cost is at most ``cost``. If ``strict``, the exact cost has to be below ``cost``.
+    A plan is as good as the incumbent if its costs by ``measure.costs`` add up to at most ``max_cost``. If
+    these costs are rounded down, its exact cost also has to be at most ``cost``, or below it if ``strict``.
     """
 
     measure: Measure
@@ -100,4 +105,4 @@ class Level(NamedTuple):
 
 
 Condition = Landmark | Balance | Supply | Remainder | Sum | Level | Rounded
-"""The condition on the counts of every plan that a row of the program states."""
+"""A condition on the counts of every plan; a row of the program states it."""

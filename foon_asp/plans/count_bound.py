@@ -1,10 +1,10 @@
 """Operator counting with the state equation: lower bounds on the cost of plans that consume objects.
 
-The counts of executions in a plan satisfy linear conditions (operator counting, Pommerening et al. 2014): of
-every object no more copies are consumed than there are, a copy of every target remains, and each action that
-is executed has achievers of its preconditions, if they are not initial. Landmarks of the delete relaxation
-hold as well. HiGHS solves the relaxations in floats; bounds are recomputed in whole numbers, so that no float
-decides.
+The counts of executions in a plan satisfy linear conditions (operator counting, Pommerening et al. 2014). Of
+every object, no more copies are consumed than exist, and the copies of targets remain. An executed action has
+achievers of its preconditions, if they are not initial. Landmarks of the delete relaxation hold as well.
+
+HiGHS solves the relaxations in floats. Bounds are recomputed in whole numbers, so that no float decides.
 """
 
 import math
@@ -25,9 +25,13 @@ from foon_asp.plans.whole_program import INTEGRALITY, Bounds, Solved, Stopped, W
 
 
 class BetterError(Exception):
-    """The counts of a plan better than the incumbent were found."""
+    """Raised when a plan better than the incumbent is found.
+
+    ``counts``: its counts of executions; empty if clingo found it.
+    """
 
     def __init__(self, counts: Counts) -> None:
+        """Keep the counts of the better plan."""
         super().__init__("a better plan was found")
         self.counts = counts
 
@@ -35,12 +39,15 @@ class BetterError(Exception):
 class CountBound:
     """Branch and bound over the counts of executions in plans for one question.
 
+    ``flows``: the preconditions and effects of actions.
     ``required``: disjunctive action landmarks.
-    ``limits``: bounds on weighted sums, with weights from 0, over executions or over the actions used.
+    ``limits``: limits on weighted sums, with weights from 0.
     ``derivation``: actions that reach the targets in the delete relaxation; landmarks are grown around them.
     ``levels``: plans that are worse than the incumbent by any level are excluded.
     ``excluded_counts``: plans that execute each action at least as often as any of the counts are excluded.
     ``expired``: returns whether time is up; the methods then raise :class:`Stopped`.
+
+    ``proved`` is a lower bound on the cost of every plan by the first level; the methods raise it.
     """
 
     def __init__(
@@ -53,6 +60,7 @@ class CountBound:
         excluded_counts: Sequence[Counts] = (),
         expired: Callable[[], bool] = lambda: False,
     ) -> None:
+        """Keep the conditions; nothing is solved yet."""
         self._flows, self._limits, self._expired = flows, limits, expired
         self._size = len(flows.asks)
         self._levels, self._excluded_counts = tuple(levels), tuple(excluded_counts)
@@ -64,12 +72,13 @@ class CountBound:
         self._rounded_rows: list[tuple[Rounded, dict[int, int], int]] = []
         self._copies: list[Supply | Remainder] = []
 
-    def plain_counts(self, measures: Sequence[Measure]) -> Counts | None:
+    def cheapest_counts_by_equation(self, measures: Sequence[Measure]) -> Counts | None:
         """Return counts of least cost in floats, the first measure most important.
 
-        As in :meth:`counts`, the counts are of a plan of the delete relaxation. This search is much faster,
-        as few actions have an indicator. Returns ``None`` if no counts are found, or if items have costs or
-        counts are excluded; it does not search then.
+        The counts are of a plan of the delete relaxation, as those of :meth:`cheapest_counts`. They are found
+        by the state equation, where few actions have indicators, which is much faster. Returns ``None`` if no
+        counts are found. It does not search, and returns ``None``, if items have costs or counts are
+        excluded.
         """
         if self._excluded_counts or any(measure.item for measure in measures):
             return None
@@ -84,37 +93,40 @@ class CountBound:
                 x = solution
                 total = sum(cost * round(x[a]) for a, cost in enumerate(measure.costs))
                 if not number:
-                    self._rounded_rows = list(equation.rounded)
+                    self._rounded_rows = list(equation.rounded_rows)
                     assumed_cost = 2 * total
-                equation.keep(Level(measure, Fraction(total), total))
-            if not self._add_unreached(x, equation):
+                equation.add_level(Level(measure, Fraction(total), total))
+            if not self._add_violated(x, equation):
                 return {a: round(n) for a, n in enumerate(x[: self._size]) if round(n)}
-            self._check()
+            self._stop_if_expired()
 
     def _assumed_caps(self, measure: Measure, assumed_cost: int | None) -> Sequence[int | None]:
-        """Return upper bounds on counts in plans of up to an assumed cost, to tie indicators to counts."""
+        """Return an upper bound on the count of each action in plans of up to an assumed cost.
+
+        Indicators need such bounds. Empty if no cost is assumed.
+        """
         if assumed_cost is None:
             return ()
         free = PLANS.first_executions * max(self._flows.targets.values(), default=1)
         return [assumed_cost // cost if cost else free for cost in measure.costs]
 
     def _state_equation(self, levels: Sequence[Level] = (), caps: Sequence[int | None] = ()) -> StateEquation:
-        """Return the state equation with all known conditions, and the rows of levels."""
+        """Return a new state equation with all known conditions, ``caps`` on counts and ``levels``."""
         equation = StateEquation(self._flows, self._limits, caps, self._expired)
         for condition, row, least in self._rounded_rows:
             equation.add((condition,), row, least)
         for level in (*self._levels, *levels):
-            equation.keep(level)
+            equation.add_level(level)
         for landmark in self._landmarks:
             equation.add_landmark(landmark)
         for copies in self._copies:
             equation.add_copies(copies)
         return equation
 
-    def _add_unreached(self, x: Sequence[float], equation: StateEquation) -> bool:
-        """Add a violated landmark, supply or remainder that is new; return whether there is one."""
+    def _add_violated(self, x: Sequence[float], equation: StateEquation) -> bool:
+        """Add a new landmark, supply or remainder that a solution violates; return whether there is one."""
         used = {a for a in range(self._size) if x[a] > INTEGRALITY}
-        landmark = self._unreached_landmark(used, set(), {})
+        landmark = self._violated_landmark(used, set(), {})
         if landmark is not None and landmark not in self._landmarks:
             self._landmarks.append(landmark)
             equation.add_landmark(landmark)
@@ -122,52 +134,55 @@ class CountBound:
         conditions: list[Supply | Remainder] = [*self._flows.supplies, *self._flows.remainders]
         for condition in conditions:
             if condition.action in used and condition not in self._copies:
-                copies = sum(n * x[a] for a, n in self._flows.change(condition).items())
+                copies = sum(n * x[a] for a, n in self._flows.copy_changes(condition).items())
                 if copies + self._flows.start.get(condition.object, 0) < condition.copies - INTEGRALITY:
                     self._copies.append(condition)
                     equation.add_copies(condition)
                     return True
         return False
 
-    def counts(self, measures: Sequence[Measure], rounds: int = 30) -> Counts | None:
-        """Return counts of least cost in floats, the first measure most important; ``None`` if infeasible.
+    def cheapest_counts(self, measures: Sequence[Measure], rounds: int = 30) -> Counts | None:
+        """Return counts of least cost in floats, the first measure most important.
 
-        The counts are of a plan of the delete relaxation. There may be no plan with these counts, and their
-        optimality is not proved.
+        ``None`` if HiGHS finds none. The counts are of a plan of the delete relaxation. There may be no plan
+        with these counts, and their optimality is not proved. Up to ``rounds`` times, landmarks that the
+        counts violate are added.
         """
         counts = None
         wanted = max(self._flows.targets.values(), default=1)
         for assumed_cap in (PLANS.first_executions * wanted, PLANS.last_executions * wanted):
-            counts = self._counts(measures, rounds, assumed_cap)
+            counts = self._cheapest_counts_up_to(measures, rounds, assumed_cap)
             if counts is not None and max(counts.values(), default=0) < assumed_cap:
                 break
         return counts
 
-    def _counts(self, measures: Sequence[Measure], rounds: int, assumed_cap: int) -> Counts | None:
-        """Return counts of least cost as :meth:`counts` does, under an assumed cap of counts."""
+    def _cheapest_counts_up_to(
+        self, measures: Sequence[Measure], rounds: int, assumed_cap: int
+    ) -> Counts | None:
+        """Return counts of least cost as :meth:`cheapest_counts`, under an assumed cap on all counts."""
         counts: Counts | None = None
         for _ in range(rounds):
-            model = self._model(measures, assumed_cap)
+            model = self._new_model(measures, assumed_cap)
             x: list[float] = []
             for measure in measures:
-                relaxed = self._relaxed(model, model.objective(measure))
-                whole = relaxed or model.program.whole_optimum(model.objective(measure))
-                if whole is None:
+                relaxed = self._solve_relaxed(model, model.objective(measure))
+                solution = relaxed or model.program.whole_optimum(model.objective(measure))
+                if solution is None:
                     return None
-                x = whole
-                for a in range(self._size):  # the larger a count, the less of an indicator satisfies floats
+                x = solution
+                for a in range(self._size):  # floats may leave indicators of large counts near 0
                     x[self._size + a] = float(x[a] > 0.5)
-                model.keep(measure, x)
-                self._check()
+                model.limit_cost(measure, x)
+                self._stop_if_expired()
             counts = {a: round(x[a]) for a in range(self._size) if x[a] > 0.5}
             if not self._add_landmark(x, model):
                 break
         return counts
 
-    def _relaxed(self, model: CountModel, objective: Mapping[int, int]) -> list[float] | None:
-        """Add violated landmarks to the relaxation; return its solution if it is whole, else ``None``."""
+    def _solve_relaxed(self, model: CountModel, objective: Mapping[int, int]) -> list[float] | None:
+        """Add violated landmarks to the relaxation; return its solution if that is whole, else ``None``."""
         while True:
-            self._check()
+            self._stop_if_expired()
             x = model.program.solve(objective).x
             if x is None or not self._separate(x, model, at_root=True):
                 break
@@ -178,30 +193,33 @@ class CountBound:
             return None
         return x
 
-    def none(self) -> bool:
+    def is_infeasible(self) -> bool:
         """Return whether it is proved that no counts satisfy all conditions, so that no plan exists."""
-        model = self._model(())
+        model = self._new_model(())
         while True:
             solved = model.program.solve({})
             if solved.x is None:
                 return solved.bound == math.inf
             if not self._add_landmark(solved.x, model):
                 return False
-            self._check()
+            self._stop_if_expired()
 
-    def most_executions(self) -> int | None:
+    def max_executions(self) -> int | None:
         """Return an upper bound on the executions in a plan; ``None`` if unbounded."""
-        program = self._model(()).program
+        program = self._new_model(()).program
         bound = program.solve(dict.fromkeys(range(self._size), -1)).bound
         return None if abs(bound) == math.inf else math.floor(-bound)
 
-    def caps(self, level: Level) -> list[int | None]:
-        """Return the greatest count of each action in plans as good as a level; ``None``: unbounded."""
-        model = self._model((level.measure,))
-        model.limit(level)
+    def max_counts(self, level: Level) -> list[int | None]:
+        """Return an upper bound on the count of each action in plans as good as a level.
+
+        ``None`` for an action is no bound.
+        """
+        model = self._new_model((level.measure,))
+        model.add_level(level)
         caps: list[int | None] = []
         for action in range(self._size):
-            self._check()
+            self._stop_if_expired()
             solved = model.program.solve({action: -1})
             caps.append(None if solved.bound == -math.inf else math.floor(-solved.bound))
             model.program.upper[action] = caps[-1]
@@ -211,114 +229,122 @@ class CountBound:
     def prove(self, levels: Sequence[Level], is_better: Callable[[Counts], bool]) -> None:
         """Prove that no plan is better than the incumbent, the first level most important.
 
-        ``is_better`` is called with counts of lower cost, and returns whether some order of them is a better
-        plan. Raises :class:`BetterError` with the counts of a better plan, and :class:`Stopped` if time is
-        up.
+        Counts that might be of a better plan are passed to ``is_better``. It returns whether some order of
+        them is a better plan. Raises :class:`BetterError` if so, and :class:`Stopped` if time is up.
         """
         for i, level in enumerate(levels):
-            before, rounded = levels[:i], level.measure.exact is not None
+            earlier, is_rounded = levels[:i], level.measure.exact is not None
             step = math.gcd(*level.measure.costs, level.measure.item) or 1
-            max_cost = level.max_cost if rounded else (math.ceil(level.cost) - 1) // step * step
-            self._prove(level.measure, max_cost, is_better, before, [*before, level._replace(strict=True)])
+            max_cost = level.max_cost if is_rounded else (math.ceil(level.cost) - 1) // step * step
+            self._search_counts(
+                level.measure, max_cost, is_better, earlier, [*earlier, level._replace(strict=True)]
+            )
 
-    def every(self, levels: Sequence[Level], ask: Callable[[Counts], None]) -> None:
-        """Call ``ask`` with all counts that a plan as good as the incumbent by each level can have.
+    def visit_counts(self, levels: Sequence[Level], visit: Callable[[Counts], None]) -> None:
+        """Call ``visit`` with all counts that a plan as good as the incumbent by each level can have.
 
-        Costs of the last level are whole numbers. Raises :class:`Stopped` if time is up.
+        Costs of the last level have to be whole. Raises :class:`Stopped` if time is up.
         """
-        *before, last = levels
-        self._prove(last.measure, last.max_cost, ask, before, before)
+        *earlier, last = levels
+        self._search_counts(last.measure, last.max_cost, visit, earlier, earlier)
 
-    def none_is_left(self, measure: Measure, is_better: Callable[[Counts], bool]) -> None:
-        """Prove that there is no plan at all, looking at counts of low cost by ``measure`` first.
+    def prove_infeasible(self, measure: Measure, is_better: Callable[[Counts], bool]) -> None:
+        """Prove that there is no plan at all; counts of low cost by ``measure`` are tried first.
 
         ``is_better`` is called with counts, and returns whether some order of them is a plan. Raises
-        :class:`BetterError` if there is a plan, and :class:`Stopped` if nothing is proved.
+        :class:`BetterError` if so, and :class:`Stopped` if nothing is proved.
         """
         proved = self.proved
         try:
-            self._prove(measure, self.most_executions(), is_better)
+            self._search_counts(measure, self.max_executions(), is_better)
         finally:
-            self.proved = proved  # by another measure, maybe
+            self.proved = proved  # costs by ``measure`` are no bound on the first level
 
-    def _prove(
+    def _search_counts(
         self,
         measure: Measure,
         max_cost: int | None,
         is_better: Callable[[Counts], bool | None],
-        before: Sequence[Level] = (),
+        earlier: Sequence[Level] = (),
         levels: Sequence[Level] = (),
     ) -> None:
-        """Call ``is_better`` with all counts of cost up to ``max_cost`` (``None``: any), by branch and bound.
+        """Call ``is_better`` with all counts of cost up to ``max_cost``, by branch and bound.
 
-        Only counts as good as the incumbent are considered: by rounded costs for each level in ``before``,
-        and by exact costs for each of ``levels``.
+        ``None`` is no limit of cost. Only counts as good as the incumbent are considered: by rounded costs
+        for each level in ``earlier``, and by exact costs for each of ``levels``. Raises :class:`BetterError`
+        if ``is_better`` returns true, and :class:`Stopped` after too many nodes.
         """
-        if max_cost is not None and not measure.item and self._equation_exceeds(measure, max_cost, before):
+        if max_cost is not None and not measure.item and self._equation_exceeds(measure, max_cost, earlier):
             return
-        model = self._model([measure, *(level.measure for level in before)])
-        for level in before:
-            model.limit(level)
+        model = self._new_model([measure, *(level.measure for level in earlier)])
+        for level in earlier:
+            model.add_level(level)
         objective = model.objective(measure)
         if max_cost is not None:
-            model.cap(measure, max_cost)
-            self._tighten_root(model, objective, max_cost)
+            model.cap_counts(measure, max_cost)
+            self._probe_actions(model, objective, max_cost)
         cutoff = math.inf if max_cost is None else max_cost
         lower, upper = list(model.program.lower), list(model.program.upper)
         number = 0
         waiting: list[tuple[float | Fraction, int, int, Bounds]] = [(0, sum(lower), number, (lower, upper))]
         while waiting:
             bound, _, _, (model.program.lower, model.program.upper) = heappop(waiting)
-            if not before:
+            if not earlier:
                 self.proved = max(self.proved, bound)
-            solved = self._solved(model, objective, cutoff)
+            solved = self._solve_node(model, objective, cutoff)
             if solved.x is None:
                 continue
-            for lower, upper in self._branches(model, solved.x, levels, is_better):
+            for lower, upper in self._child_bounds(model, solved.x, levels, is_better):
                 number += 1
                 executions = sum(lower[: self._size])
                 heappush(waiting, (max(bound, solved.bound), executions, -number, (lower, upper)))
             if number > (PLANS.uncapped_nodes if max_cost is None else PLANS.nodes):
                 raise Stopped
 
-    def _equation_exceeds(self, measure: Measure, max_cost: int, before: Sequence[Level]) -> bool:
-        """Whether the state equation proves that plans as good by earlier levels cost above ``max_cost``.
+    def _equation_exceeds(self, measure: Measure, max_cost: int, earlier: Sequence[Level]) -> bool:
+        """Return whether the state equation proves that plans cost more than ``max_cost`` by a measure.
 
-        It branches over counts, and adds landmarks while some are violated.
+        Only plans as good as the incumbent by the levels in ``earlier`` are considered. The search branches
+        over counts, and adds landmarks that are violated.
         """
         costs = {a: cost for a, cost in enumerate(measure.costs) if cost}
         caps = [max(max_cost, 0) // cost if cost else None for cost in measure.costs]
-        equation = self._state_equation(before, caps)
+        equation = self._state_equation(earlier, caps)
         program = equation.program
         waiting = [(list(program.lower), list(program.upper))]
         for number in range(PLANS.equation_nodes):
             if not waiting:
                 return True
-            program.restrict(waiting.pop())
-            solved = self._strengthened(equation, costs, max_cost)
-            if not before and not number:
-                self._rounded_rows = list(equation.rounded)
+            program.set_bounds(waiting.pop())
+            solved = self._solve_equation_node(equation, costs, max_cost)
+            if not earlier and not number:
+                self._rounded_rows = list(equation.rounded_rows)
                 self.proved = max(self.proved, min(solved.bound, max_cost + 1))
             if solved.bound > max_cost:
                 continue
             column = None if solved.x is None else most_fractional(solved.x[: self._size])
             if column is None or solved.x is None:
                 return False
-            waiting += program.halves(column, solved.x[column])
+            waiting += program.split_bounds(column, solved.x[column])
         return False
 
-    def _strengthened(self, equation: StateEquation, costs: Mapping[int, int], max_cost: int) -> Solved:
-        """Return the solution of a node of the state equation, rounded rows and violated landmarks added."""
+    def _solve_equation_node(
+        self, equation: StateEquation, costs: Mapping[int, int], max_cost: int
+    ) -> Solved:
+        """Add rounded rows and violated landmarks to the state equation; return its solution."""
         while True:
-            self._check()
+            self._stop_if_expired()
             solved = equation.strengthen(costs, max_cost)
-            if solved.bound > max_cost or solved.x is None or not self._add_unreached(solved.x, equation):
+            if solved.bound > max_cost or solved.x is None or not self._add_violated(solved.x, equation):
                 return solved
 
-    def _solved(self, model: CountModel, objective: Mapping[int, int], cutoff: float) -> Solved:
-        """Return the relaxed solution of a node with violated landmarks added; pruned nodes have no ``x``."""
+    def _solve_node(self, model: CountModel, objective: Mapping[int, int], cutoff: float) -> Solved:
+        """Add violated landmarks at a node; return its relaxed solution, with ``x`` ``None`` if pruned.
+
+        Raises :class:`Stopped` if the node is infeasible in floats, but not provably so.
+        """
         while True:
-            self._check()
+            self._stop_if_expired()
             model.tighten()
             solved = model.program.solve(objective, cutoff)
             if solved.bound > cutoff or solved.bound == math.inf:
@@ -328,10 +354,10 @@ class CountBound:
             if not self._add_landmark(solved.x, model) and not self._separate(solved.x, model, at_root=False):
                 return solved
 
-    def _model(self, measures: Sequence[Measure], assumed_cap: int | None = None) -> CountModel:
-        """Return a new relaxation with all known conditions."""
-        every = (*measures, *(level.measure for level in self._levels))
-        different = {id(measure): measure for measure in every}
+    def _new_model(self, measures: Sequence[Measure], assumed_cap: int | None = None) -> CountModel:
+        """Return a new relaxation with all known conditions; ``assumed_cap`` is as in :class:`CountModel`."""
+        all_measures = (*measures, *(level.measure for level in self._levels))
+        different = {id(measure): measure for measure in all_measures}
         model = CountModel(
             self._flows,
             list(different.values()),
@@ -342,16 +368,19 @@ class CountBound:
             self._expired,
         )
         for level in self._levels:
-            model.limit(level)
+            model.add_level(level)
         for condition, row, least in self._rounded_rows:
-            model.conditions[model.program.row(row, least)] = condition
+            model.conditions[model.program.add_row(row, least)] = condition
         return model
 
-    def _tighten_root(self, model: CountModel, objective: Mapping[int, int], cutoff: int) -> None:
-        """Probe which actions cannot be executed twice, which tightens the rows of their indicators."""
+    def _probe_actions(self, model: CountModel, objective: Mapping[int, int], cutoff: int) -> None:
+        """Find actions that cannot be executed twice below the cutoff, and bound their counts by 1.
+
+        This tightens the rows of their indicators. Violated landmarks are added first.
+        """
         program, probed = model.program, set[int]()
         while len(probed) < PLANS.probes:
-            self._check()
+            self._stop_if_expired()
             solved = program.solve(objective, cutoff)
             if solved.x is None or solved.bound > cutoff:
                 return
@@ -366,7 +395,7 @@ class CountBound:
                 return
             for action in loose[: PLANS.probes - len(probed)]:
                 probed.add(action)
-                self._check()
+                self._stop_if_expired()
                 lower = program.lower[action]
                 program.lower[action] = 2
                 if program.solve(objective, cutoff).bound > cutoff:
@@ -374,18 +403,22 @@ class CountBound:
                 program.lower[action] = lower
             model.tighten()
 
-    def _branches(
+    def _child_bounds(
         self,
         model: CountModel,
         x: Sequence[float],
         levels: Sequence[Level],
         is_better: Callable[[Counts], bool | None],
     ) -> Iterator[Bounds]:
-        """Yield the bounds of the child nodes; if the node has whole counts, call ``is_better`` first."""
+        """Yield the bounds of the child nodes of a node with the relaxed solution ``x``.
+
+        If it has whole counts that violate nothing, ``is_better`` is called with them first. The children
+        then exclude only these counts. Raises :class:`BetterError` if ``is_better`` returns true.
+        """
         program = model.program
         column = most_fractional(x)
         if column is not None:
-            yield from program.halves(column, x[column])
+            yield from program.split_bounds(column, x[column])
             return
         counts = {a: round(x[a]) for a in range(self._size) if round(x[a])}
         idle = next((a for a in counts if not round(x[self._size + a])), None)
@@ -395,11 +428,11 @@ class CountBound:
             lower[self._size + idle] = 1
             yield lower, upper
             return
-        rounded = [level for level in (*self._levels, *levels) if level.measure.exact is not None]
+        rounded_levels = [level for level in (*self._levels, *levels) if level.measure.exact is not None]
         worse = [
             level
-            for level in rounded
-            if (cost := _exact(level, counts)) > level.cost or (cost == level.cost and level.strict)
+            for level in rounded_levels
+            if (cost := _exact_cost(level, counts)) > level.cost or (cost == level.cost and level.strict)
         ]
         unforced = model.unforced_count(counts, x)
         if unforced is not None:  # its action is unbounded, so that the indicator is not forced
@@ -410,31 +443,31 @@ class CountBound:
             yield lower, upper
             return
         if worse:
-            yield from _around(program, x, model.class_columns(worse[0].measure))
+            yield from _bounds_around(program, x, model.class_columns(worse[0].measure))
             return
         if is_better(counts):
             raise BetterError(counts)
-        yield from _around(program, x, range(self._size))
+        yield from _bounds_around(program, x, range(self._size))
 
     def _add_landmark(self, x: Sequence[float], model: CountModel) -> bool:
-        """Add a landmark that a solution violates; return whether there is one."""
+        """Add a landmark that a solution of the model violates; return whether there is one."""
         used = {a for a in range(self._size) if x[self._size + a] > INTEGRALITY}
         reached = {o for o, column in model.stock.items() if x[column] > INTEGRALITY}
-        landmark = self._unreached_landmark(used, reached, model.stock)
+        landmark = self._violated_landmark(used, reached, model.stock)
         if landmark is not None:
             self._landmarks.append(landmark)
             model.add_landmark(landmark)
         return landmark is not None
 
-    def _unreached_landmark(
+    def _violated_landmark(
         self, used: set[int], initial: set[int], stock: Mapping[int, int]
     ) -> Landmark | None:
         """Return a landmark that the executed actions ``used`` violate; ``None`` if there is none.
 
         The executed actions are applied to the initial objects in the delete relaxation. If a target or an
-        executed action is not reached, the landmark consists of the achievers at the border of what is
-        reached. If initial copies have a price, ``stock`` has their columns, and ``initial`` the objects of
-        which copies are taken.
+        executed action is not reached, the landmark has actions that would lead to it, none of them executed.
+        If initial copies have a cost, ``stock`` has their columns, and ``initial`` the objects of which
+        copies are taken. Otherwise, both are empty.
         """
         flows = self._flows
         asks, targets = flows.lacking(bool(stock))
@@ -445,16 +478,16 @@ class CountBound:
             grown = bool(ready)
             waiting.difference_update(ready)
             reached.update(o for a in ready for o in flows.adds[a])
-        missed: list[tuple[int, int | None]]
-        missed = [(target, None) for target in targets if target not in reached]
-        missed += [(next(o for o in asks[a] if o not in reached), a) for a in sorted(waiting)]
-        for o, action in missed[:1]:
-            return self._landmark(o, asks, reached, used, stock)._replace(action=action)
+        unreached: list[tuple[int, int | None]]
+        unreached = [(target, None) for target in targets if target not in reached]
+        unreached += [(next(o for o in asks[a] if o not in reached), a) for a in sorted(waiting)]
+        for o, action in unreached[:1]:
+            return self._grow_landmark(o, asks, reached, used, stock)._replace(action=action)
         return None
 
     @cached_property
     def _cutter(self) -> Cutter:
-        """The cutter of the targets in the delete relaxation, in which initial copies cost nothing."""
+        """The cutter of the targets in the delete relaxation, where initial copies cost nothing."""
         flows = self._flows
         asks, targets = flows.lacking(priced=False)
         objects = {o for numbers in (*asks, *flows.adds, targets) for o in numbers}
@@ -464,7 +497,10 @@ class CountBound:
 
     @cached_property
     def _cutter_of_stock(self) -> Cutter:
-        """The cutter where copies of the stock have a price: its cuts hold no initial object."""
+        """The cutter of the targets in the delete relaxation, where initial copies have a cost.
+
+        Its cuts have no initial object.
+        """
         flows = self._flows
         asks, targets = flows.lacking(priced=True)
         start = [o for o, count in flows.start.items() if count]
@@ -475,9 +511,9 @@ class CountBound:
     def _separate(self, x: Sequence[float], model: CountModel, at_root: bool) -> bool:
         """Add landmarks of the targets that an LP solution violates; return whether there are any.
 
-        Actions with large LP values are kept out of the landmarks first. At the root, further landmarks keep
-        out all actions of the derivation but one, for each such action in turn. Without a derivation, no
-        landmarks are sought.
+        Landmarks avoid actions with large LP values. At the root, further ones are tried: for each action of
+        the derivation, a landmark with none of its other actions. Without a derivation, no landmarks are
+        sought.
         """
         derivation, size = self.derivation, self._size
         if not derivation:
@@ -500,7 +536,7 @@ class CountBound:
             model.add_landmark(self._landmarks[-1])
         return bool(cuts)
 
-    def _landmark(
+    def _grow_landmark(
         self,
         o: int,
         asks: Sequence[Sequence[int]],
@@ -508,30 +544,40 @@ class CountBound:
         used: set[int],
         stock: Mapping[int, int],
     ) -> Landmark:
-        """Return the landmark of a small cut, which is grown backwards from an object that is not reached."""
-        zone, stack, edge = {o}, [o], dict[int, None]()
+        """Return a landmark for an object that is not reached, with a small cut that is grown from it.
+
+        The cut grows by a missing precondition of each executed action (``used``) that would satisfy the
+        landmark. ``asks`` has the preconditions of actions, ``reached`` the objects reached, and ``stock``
+        the columns of initial copies.
+        """
+        cut, stack, crossing = {o}, [o], dict[int, None]()
         while stack:
             for achiever in self._achievers.get(stack.pop(), ()):
-                edge[achiever] = None
-                if achiever in used and zone.isdisjoint(asks[achiever]):
+                crossing[achiever] = None
+                if achiever in used and cut.isdisjoint(asks[achiever]):
                     lacking = next(needed for needed in asks[achiever] if needed not in reached)
-                    zone.add(lacking)
+                    cut.add(lacking)
                     stack.append(lacking)
-        members = tuple(achiever for achiever in edge if zone.isdisjoint(asks[achiever]))
-        return Landmark(members, tuple(sorted(zone & stock.keys())), objects=tuple(sorted(zone)))
+        members = tuple(achiever for achiever in crossing if cut.isdisjoint(asks[achiever]))
+        return Landmark(members, tuple(sorted(cut & stock.keys())), objects=tuple(sorted(cut)))
 
-    def _check(self) -> None:
+    def _stop_if_expired(self) -> None:
+        """Raise :class:`Stopped` if time is up."""
         if self._expired():
             raise Stopped
 
 
-def _exact(level: Level, counts: Mapping[int, int]) -> Fraction:
+def _exact_cost(level: Level, counts: Mapping[int, int]) -> Fraction:
+    """Return the exact cost of counts by a level whose costs are rounded."""
     assert level.measure.exact is not None
     return level.measure.exact(counts)
 
 
-def _around(program: WholeProgram, x: Sequence[float], columns: Sequence[int]) -> Iterator[Bounds]:
-    """Yield the bounds of child nodes which together exclude only the current whole values of the columns."""
+def _bounds_around(program: WholeProgram, x: Sequence[float], columns: Sequence[int]) -> Iterator[Bounds]:
+    """Yield the bounds of child nodes that exclude the solution ``x``.
+
+    Together they allow all whole values of the ``columns`` except those in the solution.
+    """
     lower, upper = list(program.lower), list(program.upper)
     for column in sorted(columns, key=lambda column: -x[column]):
         value = round(x[column])

@@ -1,4 +1,8 @@
-"""The linear relaxation of counts of executions: conditions as rows, counts and indicators as columns."""
+"""The linear relaxation of counts of executions, with indicators.
+
+Rows are conditions. Columns are the counts of actions, and the indicators of actions: 1 if the action is
+executed at all. Further columns are auxiliary.
+"""
 
 from collections.abc import Callable, Sequence
 
@@ -17,10 +21,22 @@ from foon_asp.plans.whole_program import WholeProgram
 
 
 class CountModel:
-    """The conditions as rows over columns: the count of each action, its indicator, auxiliary columns.
+    """The relaxation of counts: a linear program, and the conditions of its rows.
 
-    ``assumed_cap`` is an upper bound that is assumed for the counts of unbounded actions. If it is ``None``,
-    nothing is assumed, and each measure with exact costs has a column for each of its classes.
+    ``program``: the program. Column ``a`` is the count of action ``a``. Its indicator is that many columns
+    later as there are actions.
+    ``conditions``: the condition of each row that states one, by row.
+    ``stock``, ``items``: the columns of initial copies and of endless items by object, if they have costs.
+
+    Parameters:
+        flows: The preconditions and effects of actions.
+        measures: The measures of objectives.
+        landmarks: The landmarks known so far.
+        limits: Limits on weighted sums.
+        excluded_counts: No plan of the model executes each action as often as one of these counts say.
+        assumed_cap: An upper bound that is assumed for counts that have none. If ``None``, nothing is
+            assumed, and each class of a measure with exact costs has a column.
+        expired: Returns whether time is up.
     """
 
     def __init__(
@@ -40,38 +56,39 @@ class CountModel:
         self._size, self._assumed_cap = size, assumed_cap
         self.conditions: dict[int, Condition] = {}  # by row
         for _ in range(size):
-            program.column(0, 1)  # whether an action is executed at all
-        self._loose = [program.open_row((size + a, a), 0) for a in range(size)]
+            program.add_column(0, 1)  # whether an action is executed at all
+        self._indicator_rows = [program.add_open_row((size + a, a), 0) for a in range(size)]
         for a in range(size):
-            program.row({a: 1, size + a: -1}, 0)
+            program.add_row({a: 1, size + a: -1}, 0)
         self._classes: dict[int, list[int]] = {}
         priced = any(measure.item for measure in measures)
         self.stock: dict[int, int] = {}
         if priced:
-            self.stock = {o: program.column(0, count) for o, count in flows.start.items() if count}
+            self.stock = {o: program.add_column(0, count) for o, count in flows.start.items() if count}
         for o, change, least in flows.balances():
-            self.conditions[program.row(*self._with_stock(o, change, least))] = Balance(o)
+            self.conditions[program.add_row(*self._with_stock(o, change, least))] = Balance(o)
         for supply in flows.supplies:
-            row = {**flows.change(supply), size + supply.action: -supply.copies}
-            self.conditions[program.row(*self._with_stock(supply.object, row, 0))] = supply
+            row = {**flows.copy_changes(supply), size + supply.action: -supply.copies}
+            self.conditions[program.add_row(*self._with_stock(supply.object, row, 0))] = supply
         items = self.items = dict[int, int]()
         for action in range(size):
-            y = size + action
+            indicator = size + action
             for o in (needed for needed in flows.asks[action] if needed not in flows.uses[action]):
                 achievers = {size + achiever: 1 for achiever in achievers_of.get(o, ())}
-                read = program.row(*self._with_stock(o, {**achievers, y: -1}, 0))
-                if o in self.stock or not flows.start.get(o):  # else it says nothing
-                    self.conditions[read] = Landmark((), (), action, (o,))
+                number = program.add_row(*self._with_stock(o, {**achievers, indicator: -1}, 0))
+                if o in self.stock or not flows.start.get(o):  # otherwise an initial copy satisfies it
+                    self.conditions[number] = Landmark((), (), action, (o,))
             for o in flows.items[action] if priced else ():
                 if o not in items:
-                    items[o] = program.column(0, 1)
-                self.conditions[program.row({items[o]: 1, y: -1}, 0)] = Landmark((), (), action, (o,))
+                    items[o] = program.add_column(0, 1)
+                number = program.add_row({items[o]: 1, indicator: -1}, 0)
+                self.conditions[number] = Landmark((), (), action, (o,))
         for landmark in landmarks:
             self.add_landmark(landmark)
         for i, (weights, limit, at_least, used) in enumerate(limits):
             first, sign = size if used else 0, 1 if at_least else -1
             row = {first + a: sign * weight for a, weight in weights.items()}
-            self.conditions[program.row(row, sign * limit)] = Sum(i)
+            self.conditions[program.add_row(row, sign * limit)] = Sum(i)
             for a, weight in weights.items() if not at_least and not used else ():
                 program.cap(a, max(limit, 0) // weight)
         for measure in measures:
@@ -80,23 +97,29 @@ class CountModel:
         self._count_indicators: dict[tuple[int, int], tuple[int, int]] = {}
         for counts in excluded_counts:
             columns = [self._count_indicator(a, n) for a, n in counts.items()]
-            program.row(dict.fromkeys(columns, -1), 1 - len(columns))
+            program.add_row(dict.fromkeys(columns, -1), 1 - len(columns))
         self.tighten()
 
     def _count_indicator(self, action: int, count: int) -> int:
-        """Return the column that indicates whether an action is executed at least ``count`` times."""
+        """Return the column that indicates whether an action is executed at least ``count`` times.
+
+        The column and its rows are added at the first call.
+        """
         if count == 1:
             return self._size + action
         if (action, count) not in self._count_indicators:
-            column = self.program.column(0, 1)
-            self.program.row({action: 1, column: -count}, 0)
-            self._count_indicators[action, count] = column, self.program.open_row((column, action), 1 - count)
+            column = self.program.add_column(0, 1)
+            self.program.add_row({action: 1, column: -count}, 0)
+            self._count_indicators[action, count] = (
+                column,
+                self.program.add_open_row((column, action), 1 - count),
+            )
         return self._count_indicators[action, count][0]
 
     def unforced_count(self, counts: Counts, x: Sequence[float]) -> tuple[int, int, int] | None:
-        """Find an indicator of a count that is 0, although its action is executed as often.
+        """Return the action, the count and the column of an indicator of a count that is wrong in a solution.
 
-        Returns the action, the count and the column of the indicator; ``None`` if every indicator is right.
+        It is 0 in ``x`` although the action is executed as often. ``None`` if every such indicator is right.
         """
         for (action, count), (column, _) in self._count_indicators.items():
             if action in counts and counts[action] >= count and not round(x[column]):
@@ -104,74 +127,85 @@ class CountModel:
         return None
 
     def _with_stock(self, o: int, row: dict[int, int], least: int) -> tuple[dict[int, int], int]:
+        """Return a row and its least sum, with the initial copies of an object.
+
+        If initial copies have a cost, they are a column of the row. Otherwise they lower the least sum.
+        """
         if o in self.stock:
             return {**row, self.stock[o]: 1}, least
         return row, least - self._flows.start.get(o, 0)
 
     def _add_classes(self, measure: Measure) -> None:
-        """Add a column for each class of actions, equal to the sum of their counts."""
+        """Add a column for each class of actions of a measure, equal to the sum of their counts."""
         columns = []
         for number in sorted(set(measure.classes) - {-1}):
             members = [a for a, class_number in enumerate(measure.classes) if class_number == number]
-            column = self.program.column(0, None)
-            self.program.row({column: 1, **dict.fromkeys(members, -1)}, 0)
-            self.program.row({column: -1, **dict.fromkeys(members, 1)}, 0)
+            column = self.program.add_column(0, None)
+            self.program.add_row({column: 1, **dict.fromkeys(members, -1)}, 0)
+            self.program.add_row({column: -1, **dict.fromkeys(members, 1)}, 0)
             columns.append(column)
         self._classes[id(measure)] = columns
 
     def class_columns(self, measure: Measure) -> list[int]:
-        """Return the columns that count the executions of each class of actions."""
+        """Return the columns of the classes of a measure, ascending by class.
+
+        They exist only if no cap is assumed.
+        """
         return self._classes[id(measure)]
 
     def add_landmark(self, landmark: Landmark) -> None:
-        """Add the row of a landmark, unless an initial copy without column may satisfy it."""
+        """Add the row of a landmark; add nothing if an initial copy without cost may satisfy it."""
         members, stock, action, _ = landmark
         if not self.stock.keys() >= set(stock):
             return
         row = {self._size + member: 1 for member in members} | {self.stock[o]: 1 for o in stock}
         if action is None:
-            number = self.program.row(row, 1)
+            number = self.program.add_row(row, 1)
         else:
-            number = self.program.row({**row, self._size + action: -1}, 0)
+            number = self.program.add_row({**row, self._size + action: -1}, 0)
         self.conditions[number] = landmark
 
     def tighten(self) -> None:
-        """Update the rows of indicators to the greatest count that each action can have."""
+        """Update the rows that tie indicators to counts, by the upper bounds of counts."""
         program = self.program
-        for action, row in enumerate(self._loose):
+        for action, row in enumerate(self._indicator_rows):
             max_count = self._max_count(action)
-            program.change(row, {} if max_count is None else {self._size + action: max_count, action: -1})
+            program.change_row(row, {} if max_count is None else {self._size + action: max_count, action: -1})
         for (action, count), (column, row) in self._count_indicators.items():
             max_count = self._max_count(action)
-            program.change(row, {} if max_count is None else {column: max_count - count + 1, action: -1})
+            program.change_row(row, {} if max_count is None else {column: max_count - count + 1, action: -1})
 
     def _max_count(self, action: int) -> int | None:
+        """Return the upper bound of an action's count, perhaps the assumed one; ``None`` if unbounded."""
         upper = self.program.upper[action]
         return self._assumed_cap if upper is None else upper
 
-    def cap(self, measure: Measure, max_cost: int) -> None:
-        """Bound the count of each action: its executions alone cost at most ``max_cost``."""
+    def cap_counts(self, measure: Measure, max_cost: int) -> None:
+        """Bound the count of each action so that its executions alone cost at most ``max_cost``."""
         for action, cost in enumerate(measure.costs):
             if cost:
                 self.program.cap(action, max(max_cost, 0) // cost)
         self.tighten()
 
     def objective(self, measure: Measure) -> dict[int, int]:
-        """Return the costs of columns that are not 0, by column."""
+        """Return the costs of columns by a measure; columns without cost are omitted."""
         costs = {a: cost for a, cost in enumerate(measure.costs) if cost}
         if measure.item:
             costs |= dict.fromkeys((*self.items.values(), *self.stock.values()), measure.item)
         return costs
 
-    def limit(self, level: Level) -> None:
-        """Add the row of a level: counts as good as the incumbent cost at most ``max_cost``."""
-        costs = self.objective(level.measure)
-        row = self.program.row({column: -cost for column, cost in costs.items()}, -level.max_cost)
-        self.conditions[row] = level
-        self.cap(level.measure, level.max_cost)
+    def add_level(self, level: Level) -> None:
+        """Add the row of a level: the cost is at most its ``max_cost``.
 
-    def keep(self, measure: Measure, solution: Sequence[float]) -> None:
-        """Add the row that counts cost, by a measure, at most as much as a solution."""
+        The counts of single actions are capped, too.
+        """
+        costs = self.objective(level.measure)
+        row = self.program.add_row({column: -cost for column, cost in costs.items()}, -level.max_cost)
+        self.conditions[row] = level
+        self.cap_counts(level.measure, level.max_cost)
+
+    def limit_cost(self, measure: Measure, solution: Sequence[float]) -> None:
+        """Add a row: the cost by a measure is at most that of a solution."""
         costs = self.objective(measure)
         max_cost = sum(cost * round(solution[column]) for column, cost in costs.items())
-        self.program.row({column: -cost for column, cost in costs.items()}, -max_cost)
+        self.program.add_row({column: -cost for column, cost in costs.items()}, -max_cost)

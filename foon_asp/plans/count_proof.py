@@ -1,9 +1,10 @@
 """Proofs that no plan costs less: Farkas combinations of conditions on counts, and branching over counts.
 
-The relaxation of whole counts (:mod:`foon_asp.plans.count_bound`) has dual values of its rows in floats. Any
-such values, rounded or solved for exactly, prove the bound of a Lagrangian relaxation. This bound is the sum
-of the weighted right-hand sides and, for each action, the least reduced cost of a count that it
-may have.
+The relaxation of counts (:mod:`foon_asp.plans.count_bound`) has dual values of its rows in floats. Any such
+values, rounded or solved for exactly, prove a bound (Lagrangian relaxation). It is the sum of the weighted
+right-hand sides and, for each action, of the least reduced cost of a count that it may have.
+
+Costs are vectors in an exact lexicographic order (:class:`Lexicographic`).
 """
 
 import math
@@ -23,13 +24,13 @@ from foon_asp.plans.whole_program import INTEGRALITY, PARTS, Relaxation
 
 
 class Weighted(NamedTuple):
-    """A leaf: weights of conditions, each above 0, that prove the bound for its counts."""
+    """A leaf of a proof: weights above 0 of conditions, which prove the bound for the counts of the leaf."""
 
     weights: Sequence[tuple[Condition, Vector]]
 
 
 class Split(NamedTuple):
-    """A branching: proofs for values of a column up to ``max_count``, and above it."""
+    """A branching of a proof: one proof for values of a column up to ``max_count``, one for values above."""
 
     column: int
     max_count: int
@@ -43,10 +44,12 @@ CountProof = Weighted | Split
 class Claim(NamedTuple):
     """The claim that all plans cost at least ``least``.
 
-    ``costs``: the cost of each action. ``item``: the cost of each item, and of each initial copy consumed.
-    ``least``: ``None`` for the claim that there is no plan at all; then all costs are 0.
+    ``order``: the order on costs.
+    ``costs``: the cost of each action.
+    ``item``: the cost of each endless item, and of each initial copy that is taken.
+    ``least``: the claimed least cost; ``None`` for the claim that there is no plan. All costs are then 0.
     ``parts``: if not ``None``, the costs of plans are multiples of ``1 / parts``.
-    ``caps``: upper bounds on the count of each action in plans that cost less.
+    ``caps``: upper bounds on the count of each action in plans that cost less; ``None`` is no bound.
     """
 
     order: Lexicographic
@@ -58,44 +61,47 @@ class Claim(NamedTuple):
 
 
 class PlanProver(CountBound):
-    """Searches for a proof of a claim about all plans that are as good as the incumbent by some levels."""
+    """Searches for a proof of a claim about all plans that are as good as the incumbent by some levels.
+
+    If the search fails at a node, it lowers the claim to the bound that the node proves.
+    """
 
     def prove_claim(
-        self, claim: Claim, measure: Measure, kept: Sequence[Level]
+        self, claim: Claim, measure: Measure, kept_levels: Sequence[Level]
     ) -> tuple[CountProof, Vector | None, Mapping[int, int]] | None:
-        """Return a proof of a claim or of a weaker claim, the bound proved, and the items by column.
+        """Return a proof of a claim or of a weaker claim, the bound that is proved, and objects by column.
 
-        The bound is ``claim.least`` unless the claim proved is weaker. Returns ``None`` if nothing is proved.
-        ``measure`` is the objective of the claim. Plans that are worse than the incumbent by a level in
-        ``kept`` are excluded from the claim.
+        The last has the object of each column for endless items or initial copies, if these have costs.
+        Returns ``None`` if nothing is proved. ``measure`` is the objective of the claim. Plans that are worse
+        than the incumbent by a level in ``kept_levels`` are excluded from the claim.
         """
         self._claim, self._least, self._leaves = claim, claim.least, 0
         floats = [claim.order.approximate(cost)[0] for cost in claim.costs]
         self._objective = {action: cost for action, cost in enumerate(floats) if cost}
         equation = StateEquation(self._flows, self._limits, claim.caps, self._expired)
-        # in whole numbers, which only tell where to round
+        # costs in whole numbers: they only steer the rounding
         equation.strengthen({action: round(cost / INTEGRALITY) for action, cost in self._objective.items()})
-        self._rounded_rows = list(equation.rounded)
-        model = self._model([measure, *(level.measure for level in kept)])
-        for level in kept:
-            model.limit(level)
+        self._rounded_rows = list(equation.rounded_rows)
+        model = self._new_model([measure, *(level.measure for level in kept_levels)])
+        for level in kept_levels:
+            model.add_level(level)
         for action, cap in enumerate(claim.caps):
             if cap is not None:
                 model.program.cap(action, cap)
         self._columns = {column: o for o, column in {**model.items, **model.stock}.items()}
         self._objective |= dict.fromkeys(self._columns, claim.order.approximate(claim.item)[0])
         self._failed = False
-        proof = self._prove_part(model, 0)
+        proof = self._prove_node(model, 0)
         if self._failed:
             return None
         return proof, self._least, self._columns
 
     def require(self, landmarks: Sequence[Landmark]) -> None:
-        """Add known landmarks."""
+        """Add landmarks that all plans are known to satisfy."""
         self._landmarks += landmarks
 
-    def _prove_part(self, model: CountModel, depth: int) -> CountProof:
-        """Return the proof of a node of the branching.
+    def _prove_node(self, model: CountModel, depth: int) -> CountProof:
+        """Return the proof of a node of the branching, whose bounds of columns ``model`` has.
 
         If the node proves less than the claim, the claim is lowered to the bound of the node.
         """
@@ -106,41 +112,47 @@ class PlanProver(CountBound):
         best: tuple[Vector, dict[int, Vector]] | None = None
         while True:
             relaxed = program.relaxation(self._objective)
-            for weights in self._weights(model, relaxed):
+            for weights in self._candidate_weights(model, relaxed):
                 bound = self._bound(model, weights)
                 if bound is not None and (best is None or self._claim.order.compare(bound, best[0]) > 0):
                     best = bound, weights
                 if best is not None and self._is_enough(best[0]):
-                    return self._leaf(model, best[1])
+                    return self._make_leaf(model, best[1])
             if relaxed.x is None or self._expired():
                 break
             if not (self._add_landmark(relaxed.x, model) or self._separate(relaxed.x, model, depth == 0)):
                 break
-        column = None if relaxed.x is None or self._expired() else self._choice(model, relaxed.x)
+        column = None if relaxed.x is None or self._expired() else self._branching_column(model, relaxed.x)
         if column is None or depth > PLANS.depth or self._leaves > PLANS.leaves:
             self._give_up(best)
-            return self._leaf(model, best[1] if best else {})
-        return self._split(model, *column, depth)
+            return self._make_leaf(model, best[1] if best else {})
+        return self._prove_split(model, *column, depth)
 
-    def _split(self, model: CountModel, column: int, max_count: int, depth: int) -> Split:
-        """Return a proof by branching: for values of a column above ``max_count``, and up to it."""
+    def _prove_split(self, model: CountModel, column: int, max_count: int, depth: int) -> Split:
+        """Return a proof by branching on a column: for values above ``max_count``, and up to it.
+
+        The bounds of the model are restored at the end.
+        """
         program, size = model.program, self._size
         lower, upper = list(program.lower), list(program.upper)
-        action = column < size
+        is_count = column < size
         program.lower[column] = max_count + 1
-        if action:
+        if is_count:
             program.lower[size + column] = 1
-        above = self._prove_part(model, depth + 1)
+        above = self._prove_node(model, depth + 1)
         program.lower, program.upper = list(lower), list(upper)
         program.upper[column] = max_count
-        if action and not max_count:
+        if is_count and not max_count:
             program.upper[size + column] = 0
-        up_to = self._prove_part(model, depth + 1)
+        up_to = self._prove_node(model, depth + 1)
         program.lower, program.upper = lower, upper
         return Split(column, max_count, up_to, above)
 
-    def _choice(self, model: CountModel, x: Sequence[float]) -> tuple[int, int] | None:
-        """Return a column to branch on, and its maximum in the lower branch; ``None`` if all are whole."""
+    def _branching_column(self, model: CountModel, x: Sequence[float]) -> tuple[int, int] | None:
+        """Return a column to branch on, and its maximum in the lower branch; ``None`` if all are whole.
+
+        Counts come first whose indicators are smaller than they should be.
+        """
         program, size = model.program, self._size
         for a in range(size):
             upper = program.upper[a]
@@ -156,28 +168,37 @@ class PlanProver(CountBound):
         return None if half is None else (half[1], math.floor(x[half[1]]))
 
     def _give_up(self, best: tuple[Vector, object] | None) -> None:
-        """Lower the claim to the bound that is proved at a node."""
+        """Lower the claim to the bound of the ``best`` weights at a node, or note that nothing is proved.
+
+        Nothing is proved if there are no such weights, or if the claim is that there is no plan.
+        """
         if self._least is None or best is None:
             self._failed = True
             return
-        self._least = min(self._least, self._rounded(best[0]), key=cmp_to_key(self._claim.order.compare))
+        self._least = min(self._least, self._round_up(best[0]), key=cmp_to_key(self._claim.order.compare))
 
-    def _rounded(self, bound: Vector) -> Vector:
+    def _round_up(self, bound: Vector) -> Vector:
+        """Return a bound rounded up to the next cost that a plan can have."""
         parts = self._claim.parts
         return bound if parts is None else tuple(Fraction(math.ceil(b * parts), parts) for b in bound)
 
     def _is_enough(self, bound: Vector) -> bool:
+        """Return whether a bound, rounded up, proves the claim."""
         order = self._claim.order
         if self._least is None:
             return order.sign(bound) > 0
-        return order.compare(self._rounded(bound), self._least) >= 0
+        return order.compare(self._round_up(bound), self._least) >= 0
 
-    def _leaf(self, model: CountModel, weights: Mapping[int, Vector]) -> Weighted:
+    def _make_leaf(self, model: CountModel, weights: Mapping[int, Vector]) -> Weighted:
+        """Return the leaf with the given weights by row, and count it."""
         self._leaves += 1
         return Weighted([(model.conditions[row], weight) for row, weight in sorted(weights.items())])
 
-    def _weights(self, model: CountModel, relaxed: Relaxation) -> "list[dict[int, Vector]]":
-        """Return candidate weights of rows: the rounded duals, perhaps the exact duals of the basis."""
+    def _candidate_weights(self, model: CountModel, relaxed: Relaxation) -> "list[dict[int, Vector]]":
+        """Return candidate weights of rows, each by row: rounded duals, and perhaps exact duals of the basis.
+
+        If the relaxation is infeasible, they are a Farkas combination, scaled to reach the claim.
+        """
         claim = self._claim
         first = claim.order.levels[0]
         one = (Fraction(1), *claim.order.zero[1:])
@@ -185,18 +206,20 @@ class PlanProver(CountBound):
         floats = relaxed.weights
         if relaxed.x is None:
             largest = max(floats, default=0.0)
-            if largest == 0.0:  # a row without columns that asks for something
+            if largest == 0.0:  # a row without columns whose least sum is above 0
                 rows = ((row, *model.program.row_of(row)) for row in model.conditions)
                 return [{row: one} for row, coefficients, least in rows if least > 0 and not coefficients]
             for parts in PARTS:
                 ray = self._rounded_weights(model, [weight / largest for weight in floats], parts, one)
-                nothing = self._bound(model, ray, free=True)
-                if nothing is None or claim.order.sign(nothing) <= 0:
+                bound_without_costs = self._bound(model, ray, free=True)
+                if bound_without_costs is None or claim.order.sign(bound_without_costs) <= 0:
                     continue
                 if self._least is None:
                     return [ray]
-                need = claim.order.approximate(self._least)[0] / claim.order.approximate(nothing)[0]
-                factor = Fraction(math.ceil(abs(need) * 1.001) + 1)
+                missing_factor = (
+                    claim.order.approximate(self._least)[0] / claim.order.approximate(bound_without_costs)[0]
+                )
+                factor = Fraction(math.ceil(abs(missing_factor) * 1.001) + 1)
                 return [{row: multiply(weight, factor) for row, weight in ray.items()}]
             return []
         floats = [weight / scale for weight in floats]
@@ -216,7 +239,10 @@ class PlanProver(CountBound):
         return {row: multiply(one, Fraction(n, parts)) for row, n in rounded.items() if n > 0}
 
     def _exact_weights(self, model: CountModel, relaxed: Relaxation) -> "list[dict[int, Vector]]":
-        """Return the exact duals of a basis, which make its reduced costs 0; no duals if it is singular."""
+        """Return the exact duals of a basis, which make its reduced costs 0, as a list of one candidate.
+
+        Empty if the basis is singular. Weights below 0 are omitted.
+        """
         columns, tight = set(relaxed.columns), relaxed.rows
         matrix: dict[int, dict[int, Fraction]] = {column: {} for column in sorted(columns)}
         for row in tight:
@@ -226,13 +252,14 @@ class PlanProver(CountBound):
         if len(columns) != len(tight):
             return []
         try:
-            solved = solve_exactly(matrix, {column: self._cost(column) for column in columns})
+            solved = solve_exactly(matrix, {column: self._column_cost(column) for column in columns})
         except UnusableBasisError:
             return []
         sign = self._claim.order.sign
         return [{row: w for row, w in solved.items() if row in model.conditions and sign(w) > 0}]
 
-    def _cost(self, column: int) -> Vector:
+    def _column_cost(self, column: int) -> Vector:
+        """Return the cost of a column; columns other than counts, items and initial copies cost 0."""
         claim = self._claim
         if column < self._size:
             return claim.costs[column]
@@ -254,7 +281,8 @@ class PlanProver(CountBound):
         zero = order.zero
 
         def reduced_cost(column: int) -> Vector:
-            cost = zero if free else self._cost(column)
+            """Return the cost of a column less the weighted coefficients of its rows."""
+            cost = zero if free else self._column_cost(column)
             return subtract(cost, order.total(loads[column])) if column in loads else cost
 
         for column in (*range(size), *self._columns):

@@ -1,4 +1,4 @@
-"""Counts of executions of the units of a question: bounds, proofs, and orders that run."""
+"""The units of a question as counted actions: bounds on their counts, proofs, and orders that run."""
 
 import math
 from collections import Counter
@@ -16,7 +16,7 @@ from foon_asp.errors import UserError
 from foon_asp.plans.bulk_order import bulk_order, least_copies, plan_of
 from foon_asp.plans.conditions import Counts, Level, Measure
 from foon_asp.plans.count_bound import BetterError, CountBound
-from foon_asp.plans.execution_order import sequence
+from foon_asp.plans.execution_order import order_executions
 from foon_asp.plans.flows import flows_of
 from foon_asp.plans.plan_question import Plan, PlanQuestion
 from foon_asp.plans.tuning import PLANS
@@ -26,17 +26,21 @@ from foon_asp.problem.costs import Costs
 
 
 class _ManyError(Exception):
-    """Too many counts have no order: clingo has to search all of them at once."""
+    """Raised if too many counts have no order, so that clingo has to search all of them at once."""
 
 
 class Counting:
-    """Counts of executions of the units of a question, by index, and the search for their order."""
+    """The counts of executions of the units of a question, and the search for their order.
+
+    Counts are by action: action ``a`` is the unit ``units[a]``. ``bound`` is the branch and bound over
+    counts.
+    """
 
     def __init__(self, question: PlanQuestion, units: list[int]) -> None:
         """Build the flows of units, given by id, and the bound on their counts under the question's rules."""
         self._question, self._problem, self.units = question, question.problem, units
         self._measures: dict[Objective, Measure] = {}
-        self._known_figures: dict[Objective, list[Fraction]] = {}
+        self._known_unit_costs: dict[Objective, list[Fraction]] = {}
         self._step = Fraction(1)  # step of the counted costs of the first objective
         self._orders_sought = -math.inf  # searches for an order since the proof began
         problem = question.problem
@@ -55,7 +59,7 @@ class Counting:
                 for limit in question.limits
             ],
             [a for a, unit in enumerate(units) if unit in question.tree],
-            [self._below(objective, cost) for objective, cost in question.below],
+            [self._level_below(objective, cost) for objective, cost in question.below],
             [
                 {positions[u]: n for u, n in plan.items()}
                 for plan in question.incomparable
@@ -65,41 +69,51 @@ class Counting:
         )
 
     def measure(self, objective: Objective) -> Measure:
-        """Return the measure of an objective over the units, cached."""
+        """Return the measure of an objective over the units; cached."""
         if objective not in self._measures:
-            self._measures[objective] = self._measured(objective)
+            self._measures[objective] = self._compute_measure(objective)
         return self._measures[objective]
 
-    def _measured(self, objective: Objective) -> Measure:
-        """Return the measure of an objective, computed from the costs of units."""
-        row, figures = objective.row, self._figures(objective)
+    def _compute_measure(self, objective: Objective) -> Measure:
+        """Return the measure of an objective over the units.
+
+        Costs are multiplied by a common factor. If this does not make them whole, they are rounded down, and
+        the measure also has exact costs. If the objective multiplies rates, costs are rounded logarithms.
+        """
+        row, figures = objective.row, self._unit_costs(objective)
         if multiplies(objective):
-            classes = _classes(figures, Fraction(1))
+            classes = _cost_classes(figures, Fraction(1))
 
             def product(counts: Mapping[int, int]) -> Fraction:
+                """Return the negative product of the rates of executions."""
                 return -math.prod((figures[a] ** n for a, n in counts.items()), start=Fraction(1))
 
-            return Measure([self._rates.weights[rate] for rate in figures], 0, product, classes)
-        scale = self._scale(objective)
+            return Measure([self._rate_scale.weights[rate] for rate in figures], 0, product, classes)
+        scale = self._cost_scale(objective)
         costs = [math.floor(scale * figure) for figure in figures]
         if all(cost == scale * figure for cost, figure in zip(costs, figures, strict=True)):
             return Measure(costs, row.item)
 
         def total(counts: Mapping[int, int]) -> Fraction:
+            """Return the sum of the exact costs of executions."""
             return sum((figures[a] * n for a, n in counts.items()), start=Fraction(0))
 
-        return Measure(costs, 0, total, _classes(figures, Fraction(0)))
+        return Measure(costs, 0, total, _cost_classes(figures, Fraction(0)))
 
-    def _figures(self, objective: Objective) -> list[Fraction]:
-        if objective not in self._known_figures:
-            self._known_figures[objective] = [
+    def _unit_costs(self, objective: Objective) -> list[Fraction]:
+        """Return the exact cost, or rate, of each action by an objective; cached."""
+        if objective not in self._known_unit_costs:
+            self._known_unit_costs[objective] = [
                 Fraction(self._problem.figure(objective, unit)) for unit in self.units
             ]
-        return self._known_figures[objective]
+        return self._known_unit_costs[objective]
 
     @cached_property
-    def _rates(self) -> RateScale:
-        """Return the scale of the rates of units."""
+    def _rate_scale(self) -> RateScale:
+        """The scale by which logarithms of the rates of units become whole numbers.
+
+        Raises :class:`UserError` if a rate is 0.
+        """
         try:
             return rate_scale(self._problem.different_rates(self.units))
         except ValueError:
@@ -107,42 +121,50 @@ class Counting:
                 "a success rate is 0, for which plans with items that are used up cannot be compared"
             ) from None
 
-    def _scale(self, objective: Objective) -> Fraction:
-        """Return the factor by which costs are scaled: exact where costs stay small, else rounding."""
-        figures = self._figures(objective)
+    def _cost_scale(self, objective: Objective) -> Fraction:
+        """Return the factor by which costs are multiplied before they are rounded down.
+
+        It makes all costs whole if the greatest one then stays small.
+        """
+        figures = self._unit_costs(objective)
         common = math.lcm(*(figure.denominator for figure in figures))
         greatest = max(figures, default=Fraction(0))
         return Fraction(common) if common * greatest <= PLANS.exact_cost else PLANS.cost_steps / greatest
 
     def level(self, objective: Objective, costs: Costs) -> Level:
-        """Return the level of an objective with the cost of a plan."""
-        return self._level(objective, Fraction(costs.measure(objective)))
+        """Return the level of an objective for a plan with these costs."""
+        return self._level_at(objective, Fraction(costs.measure(objective)))
 
-    def _below(self, objective: Objective, cost: int | Fraction) -> Level:
-        """Return the level that a plan satisfies if it costs less than ``cost``."""
-        level = self._level(objective, Fraction(cost))
+    def _level_below(self, objective: Objective, cost: int | Fraction) -> Level:
+        """Return the level of plans that cost less than ``cost`` by an objective."""
+        level = self._level_at(objective, Fraction(cost))
         if level.measure.exact is not None:
             return level._replace(strict=True)
         return level._replace(max_cost=math.ceil(level.cost) - 1)
 
-    def _level(self, objective: Objective, cost: Fraction) -> Level:
-        """Return a level for a cost by an objective."""
+    def _level_at(self, objective: Objective, cost: Fraction) -> Level:
+        """Return the level of plans that cost at most ``cost`` by an objective."""
         measure = self.measure(objective)
         if multiplies(objective):
-            return Level(measure, -cost, self._rates.weigh(cost))
-        scale = self._scale(objective)
+            return Level(measure, -cost, self._rate_scale.weigh(cost))
+        scale = self._cost_scale(objective)
         if measure.exact is not None:
             return Level(measure, cost, math.floor(scale * cost))
         return Level(measure, scale * cost, int(scale * cost))
 
     def prove(self) -> None:
-        """Prove that no plan is better than the incumbent; raises :class:`BetterError` if one is."""
+        """Prove that no plan is better than the incumbent.
+
+        After many counts without an order, clingo searches all counts at once, if these have small bounds.
+        Raises :class:`BetterError` if a plan is better; it is the incumbent then. Raises :class:`Stopped` if
+        time is up.
+        """
         assert self._question.best is not None
         plan, costs = self._question.best
         levels: list[Level] = []
-        self._step = 1 / self._scale(self._question.levels[0])
+        self._step = 1 / self._cost_scale(self._question.levels[0])
         for objective in self._question.levels:
-            split = self._split(objective, plan)
+            split = self._split_costs(objective, plan)
             if split is None:
                 levels.append(self.level(objective, costs))
                 continue
@@ -153,20 +175,20 @@ class Counting:
         try:
             self.bound.prove(levels, self._is_better)
         except _ManyError:
-            if not self._best_within_caps(levels[0]):
+            if not self._prove_with_clingo(levels[0]):
                 self._orders_sought = -math.inf
                 self.bound.prove(levels, self._is_better)
 
-    def _split(self, objective: Objective, plan: Plan) -> tuple[Fraction, list[Level]] | None:
-        """Split costs that are too large for exact counting into two levels: the large ones, and all others.
+    def _split_costs(self, objective: Objective, plan: Plan) -> tuple[Fraction, list[Level]] | None:
+        """Split costs that are too large for exact counting into two levels: the large costs and all others.
 
-        Large costs are multiples of a step, their greatest common divisor. The small costs of the incumbent
-        sum up to less than a step, so that a plan with greater large costs is never better.
-        Returns the step and the levels; ``None`` where costs need no such levels, or cannot be split.
+        The first level has the large costs, as multiples of their greatest common divisor, the step. The
+        small costs of the incumbent sum up to less than a step. So a plan with greater large costs is never
+        better. Returns the step and the levels; ``None`` if costs need no such levels, or cannot be split.
         """
         if multiplies(objective) or objective.row.item or self.measure(objective).exact is None:
             return None
-        figures = self._figures(objective)
+        figures = self._unit_costs(objective)
         common = math.lcm(*(figure.denominator for figure in figures))
         costs = [int(common * figure) for figure in figures]
         step = math.gcd(*(cost for cost in costs if cost > PLANS.exact_cost))
@@ -183,22 +205,23 @@ class Counting:
             levels.append(Level(Measure(of_level), Fraction(total), total))
         return Fraction(step, common), levels
 
-    def none_is_left(self) -> bool:
+    def prove_infeasible(self) -> bool:
         """Try all counts to prove that there is no plan; return whether it is proved.
 
         If a plan is found, it becomes the incumbent, and the result is ``False``. Raises :class:`Stopped` if
         neither is decided.
         """
         try:
-            self.bound.none_is_left(self.measure(Objective.UNITS), self._is_better)
+            self.bound.prove_infeasible(self.measure(Objective.UNITS), self._is_better)
         except BetterError:
             return False
         return True
 
-    def proved(self) -> dict[Objective, int | Fraction]:
-        """Return the proved lower bound of the first objective; empty where none is proved or rates multiply.
+    def proved_bounds(self) -> dict[Objective, int | Fraction]:
+        """Return the proved lower bound of the first objective, as a dictionary with this objective only.
 
-        Costs are rounded down, so a bound on rounded costs is valid.
+        Empty if nothing is proved, or if the objective multiplies rates. Costs are rounded down, so a bound
+        on rounded costs is valid.
         """
         objective = self._question.levels[0]
         if self.bound.proved <= 0 or multiplies(objective):
@@ -206,31 +229,38 @@ class Counting:
         least = math.ceil(self.bound.proved) * self._step
         return {objective: int(least) if objective.row.whole else least}
 
-    def _best_within_caps(self, level: Level) -> bool:
-        """Try to prove with clingo that no plan is better, if the counts of all better plans are bounded.
+    def _prove_with_clingo(self, level: Level) -> bool:
+        """Try to prove with clingo that no plan is better, if the counts of better plans have small bounds.
 
-        Returns whether it is proved. Raises :class:`BetterError` if a plan is better.
+        Returns whether it is proved. Raises :class:`BetterError` if a plan is better; it is the incumbent
+        then.
         """
-        caps = [cap for cap in self.bound.caps(level) if cap is not None]
+        caps = [cap for cap in self.bound.max_counts(level) if cap is not None]
         if len(caps) < len(self.units) or sum(caps) > PLANS.clingo_executions:
             return False
         if not all(objective.row.whole for objective in self._question.levels):
             return False
-        ended = self._ended({a: (0, cap) for a, cap in enumerate(caps)}, True)
-        if ended.units is not None and self._question.take(self._sequence(ended)):
+        run = self._run_clingo({a: (0, cap) for a, cap in enumerate(caps)}, True)
+        if run.units is not None and self._question.try_incumbent(self._plan_of_run(run)):
             raise BetterError({})
-        return ended.exhausted and ended.units is not None
+        return run.exhausted and run.units is not None
 
     def _is_better(self, counts: Counts) -> bool:
-        """Return whether some order of the counts is a plan; it becomes the incumbent then."""
+        """Make some order of the counts the incumbent if it is a better plan; return whether it is.
+
+        Raises :class:`_ManyError` if too many orders were sought since the proof began.
+        """
         self._orders_sought += 1
         if self._orders_sought > PLANS.unordered_counts and not self._problem.counts_amounts:
             raise _ManyError
-        plan = self.order(counts)
-        return plan is not None and self._question.take(plan)
+        plan = self.find_order(counts)
+        return plan is not None and self._question.try_incumbent(plan)
 
-    def order(self, counts: Counts) -> Plan | None:
-        """Return an executable order of counts; ``None`` if no order runs."""
+    def find_order(self, counts: Counts) -> Plan | None:
+        """Return a plan that executes each action as often as counted; ``None`` if no order runs.
+
+        Raises :class:`Stopped` if neither is decided.
+        """
         if self._problem.counts_amounts:
             return self._bulk_plan(counts)
         if Objective.KITCHEN not in self._question.levels:
@@ -239,33 +269,37 @@ class Counting:
             except Stopped:
                 if self._question.deadline.passed:
                     raise
-        return self._plan({a: (n, n) for a, n in counts.items()})
+        return self._find_plan({a: (n, n) for a, n in counts.items()})
 
-    def any_order(self, counts: Counts) -> Plan | None:
-        """Return a good plan with few executions beyond counts, found by clingo; ``None`` without one.
+    def find_plan_beyond(self, counts: Counts) -> Plan | None:
+        """Return a good plan with at most a few more executions of each action than counted, found by clingo.
 
-        clingo does not count copies one by one, so where amounts count, ``None`` is returned.
+        ``None`` if there is none. ``None``, too, if amounts count, since clingo does not count copies.
         """
         if self._problem.counts_amounts:
             return None
         extra = 1
         while extra <= PLANS.extra_executions:
-            plan = self._plan({a: (0, counts.get(a, 0) + extra) for a in range(len(self.units))}, True)
+            plan = self._find_plan({a: (0, counts.get(a, 0) + extra) for a in range(len(self.units))}, True)
             if plan is not None:
                 return plan
             extra *= 2
         return None
 
     def _bulk_plan(self, counts: Counts) -> Plan | None:
-        """Return an order of counts in runs, with as few copies of the stock as an objective asks for."""
+        """Return a plan with these counts, built from runs of one action each; ``None`` if there is none.
+
+        With the objective ``kitchen``, it takes as few initial copies as possible. Raises :class:`Stopped` if
+        neither is decided.
+        """
         flows, question = self._flows, self._question
         if not self._keeps_to_rules(counts):
             return None
         if Objective.KITCHEN not in question.levels:
             runs = bulk_order(flows, counts, flows.start, lambda: question.deadline.passed)
             return None if runs is None else plan_of(self.units, runs)
-        first = tuple(sorted(least_copies(flows, counts).items()))
-        waiting, seen = [(sum(n for _, n in first), first)], {first}
+        least_stock = tuple(sorted(least_copies(flows, counts).items()))
+        waiting, seen = [(sum(n for _, n in least_stock), least_stock)], {least_stock}
         for _ in range(PLANS.stocks):
             if not waiting:
                 return None
@@ -283,7 +317,10 @@ class Counting:
         raise Stopped
 
     def _keeps_to_rules(self, counts: Counts) -> bool:
-        """Whether executions keep to the user's rules, which read how often units are executed."""
+        """Return whether counts satisfy the user's rules, by asking clingo; ``True`` without such rules.
+
+        Raises :class:`Stopped` if clingo does not decide it.
+        """
         program, problem = self._question.program, self._problem
         if program.own:
             return True
@@ -298,38 +335,42 @@ class Counting:
             if (number := problem.network.unit_number(self.units[a])) is not None
         )
         added = program.files[len(ENCODING_FILES) :]
-        ended = clingo_run.run(
+        run = clingo_run.run(
             added, text, program.arguments, self._question.deadline, "ignore", endless=program.endless
         )
-        if not ended.exhausted and ended.units is None:
+        if not run.exhausted and run.units is None:
             raise Stopped
-        return ended.units is not None
+        return run.units is not None
 
-    def _plan(self, times: Mapping[int, tuple[int, int]], best: bool = False) -> Plan | None:
+    def _find_plan(self, times: Mapping[int, tuple[int, int]], best: bool = False) -> Plan | None:
         """Return a plan with counts within ``times``, found by clingo; ``None`` if there is none.
 
-        ``times`` has the least and greatest count of each action. With ``best``, the plan is the best such
-        plan.
+        ``times`` has the least and greatest count of each action. With ``best``, the plan is the best one.
+        Raises :class:`Stopped` if clingo does not decide it.
         """
-        ended = self._ended(times, best)
-        if ended.units is None:
-            if not ended.exhausted:
+        run = self._run_clingo(times, best)
+        if run.units is None:
+            if not run.exhausted:
                 raise Stopped
             return None
-        return self._sequence(ended)
+        return self._plan_of_run(run)
 
-    def _sequence(self, ended: Run) -> Plan:
-        return sequence(self._problem, ended.rows["times"], ended.rows["_after"])
+    def _plan_of_run(self, run: Run) -> Plan:
+        """Return the plan that a run of clingo found."""
+        return order_executions(self._problem, run.rows["times"], run.rows["_after"])
 
-    def _ended(self, times: Mapping[int, tuple[int, int]], best: bool) -> Run:
-        """Return the run of clingo for a plan with the least and greatest ``times`` of each action."""
+    def _run_clingo(self, times: Mapping[int, tuple[int, int]], best: bool) -> Run:
+        """Run clingo for a plan with the least and greatest ``times`` of each action; return the run.
+
+        With ``best``, it searches for the best plan. The run's time and statistics are added to the question.
+        """
         from foon_asp.encoding import clingo_run, fact_writer  # noqa: PLC0415 (takes clingo along)
         from foon_asp.encoding.scales import Scales  # noqa: PLC0415
 
         question, problem = self._question, self._problem
         units = [self.units[a] for a in times]
         number = problem.network.unit_number
-        # with fixed counts only the copies taken of a stock are free
+        # if counts are fixed, only the number of initial copies can be minimized
         wanted = question.levels if best else [o for o in question.levels if o is Objective.KITCHEN]
         looked_at = None if question.program.own else question.program.looked_at
         scales = Scales(problem, units, wanted) if best or looked_at is not None else None
@@ -344,7 +385,7 @@ class Counting:
                 [{number(u): n for u, n in plan.items()} for plan in question.incomparable]
             )
             files = (*files, question_encoding("bounded_plans.lp"))
-        ended = clingo_run.run(
+        run = clingo_run.run(
             files,
             text,
             question.program.arguments,
@@ -353,16 +394,16 @@ class Counting:
             predicates=[("times", 2), ("_after", 4)],
             endless=question.program.endless,
         )
-        if ended.statistics:
+        if run.statistics:
             question.searched = True
-            question.reporter.statistics(ended.statistics)
-        question.seconds["ground"] = question.seconds.get("ground", 0.0) + ended.ground_seconds
-        question.seconds["solve"] = question.seconds.get("solve", 0.0) + ended.solve_seconds
-        return ended
+            question.reporter.statistics(run.statistics)
+        question.seconds["ground"] = question.seconds.get("ground", 0.0) + run.ground_seconds
+        question.seconds["solve"] = question.seconds.get("solve", 0.0) + run.solve_seconds
+        return run
 
 
-def _classes(figures: Sequence[Fraction], idle: Fraction) -> list[int]:
-    """Return the rank of each figure among the distinct figures; -1 for the figure ``idle``."""
+def _cost_classes(figures: Sequence[Fraction], idle: Fraction) -> list[int]:
+    """Return the rank of each cost among the different costs; -1 for the cost ``idle``."""
     numbers = {figure: number for number, figure in enumerate(sorted(set(figures)))}
     return [-1 if figure == idle else numbers[figure] for figure in figures]
 
@@ -371,4 +412,4 @@ def order_that_runs(problem: Problem, units: Sequence[int]) -> Plan | None:
     """Return units, repeats included, in an executable order; ``None`` if no order runs."""
     question = PlanQuestion(problem, (Objective.UNITS,), Settings(), Reporter())
     counted = Counter(units)
-    return Counting(question, list(counted)).order(dict(enumerate(counted.values())))
+    return Counting(question, list(counted)).find_order(dict(enumerate(counted.values())))

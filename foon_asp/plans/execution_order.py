@@ -1,4 +1,4 @@
-"""Order of executions under precedences (a partial order)."""
+"""An order of executions in which some executions precede others."""
 
 from graphlib import TopologicalSorter
 
@@ -6,19 +6,22 @@ from foon_asp.plans.plan_question import Plan
 from foon_asp.problem import Problem
 
 
-def sequence(problem: Problem, times: frozenset[tuple[int, ...]], after: frozenset[tuple[int, ...]]) -> Plan:
-    """Return executions in topological order, as unit ids; the smallest ready unit comes first.
+def order_executions(
+    problem: Problem, times: frozenset[tuple[int, ...]], after: frozenset[tuple[int, ...]]
+) -> Plan:
+    """Return executions in topological order, as unit ids.
 
-    ``times`` has pairs of a unit number and its count. ``after`` has rows of two executions, the second of
-    which has to come first; each execution is a unit number and its turn, from 1.
+    ``times`` has pairs of a unit number and its count. An execution is a unit number and its turn, from 1.
+    ``after`` has rows of two executions (four numbers), of which the second has to come first. Of executions
+    that are ready together, smaller ones come first.
     """
-    before: dict[tuple[int, int], set[tuple[int, int]]] = {
+    predecessors: dict[tuple[int, int], set[tuple[int, int]]] = {
         (unit, turn): set() for unit, count in times for turn in range(1, count + 1)
     }
-    for unit, turn, other, earlier in after:
-        before[unit, turn].add((other, earlier))
+    for unit, turn, earlier_unit, earlier_turn in after:
+        predecessors[unit, turn].add((earlier_unit, earlier_turn))
     plan: list[int] = []
-    sorter = TopologicalSorter(before)
+    sorter = TopologicalSorter(predecessors)
     sorter.prepare()
     while sorter.is_active():
         ready = sorted(sorter.get_ready())

@@ -11,13 +11,14 @@ from foon_asp.problem import Problem
 
 @dataclass(frozen=True)
 class Flows:
-    """Actions with preconditions and effects on copies of objects, all by number.
+    """Actions with preconditions and effects on copies of objects. Actions are numbered from 0.
 
-    ``asks``, ``uses`` and ``adds`` map, for each action, objects to numbers of copies. An action can be
-    executed if there are the copies in ``asks``; it consumes the copies in ``uses``, and produces the copies
-    in ``adds``. ``start`` has the initial numbers of copies, ``targets`` the numbers that have to remain.
-    Objects that are not consumable are in none of the three maps; ``items`` has those that each action has as
-    preconditions.
+    ``asks``: for each action, the copies of objects that have to exist.
+    ``uses``: the copies that an execution consumes.
+    ``adds``: the copies that an execution makes.
+    ``items``: for each action, the preconditions that never run out. They are in none of the other maps.
+    ``start``: the initial copies by object.
+    ``targets``: the copies of goals that have to remain.
     """
 
     asks: Sequence[Mapping[int, int]]
@@ -30,18 +31,21 @@ class Flows:
     def lacking(self, priced: bool) -> tuple[list[list[int]], list[int]]:
         """Return the preconditions of each action, and the targets, that initial copies do not satisfy.
 
-        In the delete relaxation an executed action can be executed again, so there are enough copies of any
-        object that is added. If ``priced``, initial copies have a cost, and satisfy no precondition or
-        target.
+        If ``priced``, initial copies have a cost, and satisfy no precondition or target. How many copies
+        other actions add is ignored: in the delete relaxation, an action can be executed again.
         """
 
         def lacks(copies: Mapping[int, int]) -> list[int]:
+            """Return the objects of which more copies are asked for than are initial."""
             return [o for o, n in copies.items() if priced or n > self.start.get(o, 0)]
 
         return list(map(lacks, self.asks)), lacks(self.targets)
 
     def balances(self) -> Iterator[tuple[int, dict[int, int], int]]:
-        """Yield the rows of the state equation: object, change by each action, copies that must remain."""
+        """Yield the rows of the state equation: object, change by each action, and target of the object.
+
+        Objects without target that no action reduces are omitted, since their row always holds.
+        """
         changes: dict[int, dict[int, int]] = {o: {} for o in (*self.achievers, *self.targets)}
         for action, (uses, adds) in enumerate(zip(self.uses, self.adds, strict=True)):
             for o, n in adds.items():
@@ -55,7 +59,7 @@ class Flows:
 
     @property
     def supplies(self) -> Iterator[Supply]:
-        """The supplies of actions that ask for several copies of an object."""
+        """The supply of each action, for each object of which it asks for several copies."""
         for action, preconditions in enumerate(self.asks):
             for o, n in preconditions.items():
                 if n > 1:
@@ -63,19 +67,26 @@ class Flows:
 
     @property
     def remainders(self) -> Iterator[Remainder]:
-        """The remainders of the objects for which every asking action leaves more copies than the target."""
-        kept_by_object: dict[int, dict[int, int]] = {}
+        """The remainders of objects.
+
+        An object has them if every action that asks for it leaves more copies than its target. Each says that
+        the smallest of these numbers of copies remains.
+        """
+        remaining_by_object: dict[int, dict[int, int]] = {}
         for action, preconditions in enumerate(self.asks):
             for o, n in preconditions.items():
-                kept = n - self.uses[action].get(o, 0) + self.adds[action].get(o, 0)
-                kept_by_object.setdefault(o, {})[action] = kept
-        for o, by_action in kept_by_object.items():
+                remaining = n - self.uses[action].get(o, 0) + self.adds[action].get(o, 0)
+                remaining_by_object.setdefault(o, {})[action] = remaining
+        for o, by_action in remaining_by_object.items():
             copies = min(by_action.values())
             if copies > self.targets.get(o, 0):
                 yield from (Remainder(o, action, copies) for action in by_action)
 
-    def change(self, condition: Supply | Remainder) -> dict[int, int]:
-        """Return by how much each action changes the number of copies of a condition's object."""
+    def copy_changes(self, condition: Supply | Remainder) -> dict[int, int]:
+        """Return by how much each action changes the copies that a condition counts.
+
+        A supply counts what other actions add. A remainder counts all net effects other than 0.
+        """
         o, adds = condition.object, self.adds
         if isinstance(condition, Supply):
             return {a: adds[a][o] for a in self.achievers.get(o, ()) if a != condition.action}
@@ -86,8 +97,8 @@ class Flows:
     def roles(self) -> Mapping[int, int]:
         """A number for the role of each object (colour refinement, Weisfeiler & Leman 1968).
 
-        Objects have one role if actions of one kind consume and add them in the same amounts, and actions are
-        of one kind if they do so with objects of the same roles, refined ``role_depth`` times.
+        Objects have one role if actions of one kind consume and add them in the same amounts. Actions are of
+        one kind if they do so with objects of the same roles. This is refined ``role_depth`` times.
         """
         touched: dict[int, list[tuple[int, int]]] = {o: [] for o in self.targets}
         sides = [
@@ -108,7 +119,7 @@ class Flows:
 
     @cached_property
     def achievers(self) -> dict[int, list[int]]:
-        """The actions that add each object."""
+        """The actions that add each object; objects that no action adds are omitted."""
         achievers: dict[int, list[int]] = {}
         for action, effects in enumerate(self.adds):
             for o in effects:
@@ -117,13 +128,14 @@ class Flows:
 
 
 def flows_of(problem: Problem, units: Sequence[int]) -> Flows:
-    """Return the preconditions, consumption and add effects of units, by their index in ``units``.
+    """Return the preconditions, consumption and add effects of units; action ``i`` is ``units[i]``.
 
-    Object nodes that only other units need are excluded.
+    Object nodes that none of these units needs are excluded, except goals.
     """
     needed = {o for unit in units for o in problem.flows[unit].asks}.union(problem.goals)
 
     def finite(copies: Mapping[int, int]) -> dict[int, int]:
+        """Return the copies of nodes that may run out and are needed."""
         return {o: n for o, n in copies.items() if o not in problem.endless and o in needed}
 
     flows = [problem.flows[unit] for unit in units]

@@ -15,9 +15,9 @@ from foon_asp.problem import Objective, Problem
 def most_executions(
     problem: Problem, objectives: Sequence[Objective], settings: Settings
 ) -> dict[int, tuple[int, int]]:
-    """Return the least and greatest number of executions in any best plan, by unit that can matter.
+    """Return bounds on the executions of units in best plans: ``(0, most)`` by unit that can matter.
 
-    If there is no plan, every unit has at most one execution. Raises :class:`UserError` if neither a best
+    If there is no plan, every unit of the network has ``(0, 1)``. Raises :class:`UserError` if neither a best
     plan nor the absence of plans is proved.
     """
     question = PlanQuestion(problem, objectives, settings, Reporter())
@@ -26,22 +26,22 @@ def most_executions(
         return dict.fromkeys(range(len(problem.network)), (0, 1))
     if outcome.status is not Status.OPTIMAL or outcome.costs is None:
         raise UserError("no plan is proved the best, so nothing bounds how often units are executed")
-    units = question.cut() or []
+    units = question.relevant_units() or []
     counting = Counting(question, units)
-    caps = counting.bound.caps(counting.level(Objective.UNITS, outcome.costs))
+    caps = counting.bound.max_counts(counting.level(Objective.UNITS, outcome.costs))
     return {u: (0, outcome.costs.units if cap is None else cap) for u, cap in zip(units, caps, strict=True)}
 
 
 def executions_as_good(outcome: Outcome, settings: Settings) -> dict[int, int] | None:
     """Return the most executions of each unit in plans as good as an outcome by its first objective.
 
-    ``None`` where some unit has no bound, and where there is no plan.
+    Units that cannot matter are omitted. ``None`` if some unit has no bound, or if the outcome has no plan.
     """
     question = PlanQuestion(outcome.problem, outcome.objectives, settings, Reporter())
     if outcome.costs is None or not question.apply_rules():
         return None
-    units = question.cut() or []
+    units = question.relevant_units() or []
     counting = Counting(question, units)
-    caps = counting.bound.caps(counting.level(question.levels[0], outcome.costs)) if units else []
+    caps = counting.bound.max_counts(counting.level(question.levels[0], outcome.costs)) if units else []
     caps_by_unit = {unit: cap for unit, cap in zip(units, caps, strict=True) if cap is not None}
     return caps_by_unit if len(caps_by_unit) == len(units) else None

@@ -35,7 +35,16 @@ Plan = tuple[int, ...]
 
 
 class PlanQuestion:
-    """A question about plans, with the incumbent."""
+    """A question about plans, with the incumbent and what is known of the search.
+
+    ``best``: the incumbent and its costs; ``None`` if there is none.
+    ``bounds``: proved lower bounds by objective.
+    ``limits``, ``restriction``: the rules that :meth:`apply_rules` understood.
+    ``below``: pairs of an objective and a cost; a plan has to cost less than each.
+    ``incomparable``: counts of plans; a plan with at least the executions of one is excluded.
+    ``tree``: some tree that makes the goals if items last, as far as found.
+    ``seconds``: the time of each phase.
+    """
 
     def __init__(
         self,
@@ -44,9 +53,9 @@ class PlanQuestion:
         settings: Settings,
         reporter: Reporter,
     ) -> None:
-        """Read the rules of a question.
+        """Read the objectives, settings and rules of a question; rules are applied later.
 
-        Raises :class:`UserError` naming a feature that is not built for items that are used up.
+        Raises :class:`UserError` naming a feature that plans do not support.
         """
         require_built_for_plans(settings)
         objectives = tuple(objectives)
@@ -64,7 +73,7 @@ class PlanQuestion:
         self.incomparable = bounded.incomparable
         if not {objective for objective, _ in self.below} <= set(by_levels):
             raise BugError("a bound is on an objective that is not asked for")
-        self.tree: frozenset[int] = frozenset()  # some tree that makes the goals if nothing is used up
+        self.tree: frozenset[int] = frozenset()  # some tree that makes the goals if items last
         self.seconds: dict[str, float] = {}
         self.best: tuple[Plan, Costs] | None = None
         self.searched = False  # whether clingo ran, so that there are statistics
@@ -73,8 +82,7 @@ class PlanQuestion:
     def apply_rules(self) -> bool:
         """Apply rules that remove units, require sets or limit sums; return whether they allow a plan.
 
-        Other rules about executions are left to the search: their analysis assumes that items last, so that
-        every unit is executed once.
+        Other rules are left to the search. Their analysis assumes that each unit is executed once.
         """
         rules = self.program.understood
         if rules is None:
@@ -87,20 +95,21 @@ class PlanQuestion:
 
     @property
     def required(self) -> tuple[frozenset[int], ...]:
-        """The sets of units that rules require a unit of."""
+        """The sets of units of which rules require one."""
         return () if self.restriction is None else self.restriction.required
 
     @property
-    def keeps_redundant(self) -> bool:
-        """Whether a rule may require redundant units, which lead to no goal."""
+    def may_need_redundant(self) -> bool:
+        """Whether a rule may require units that lead to no goal."""
         rules = self.program.understood
         return rules is not None and not (rules.shrinking and rules.only_limits)
 
-    def cut(self) -> list[int] | None:
-        """Return the units that can matter, by id; ``None`` if a goal is unreachable even if items last.
+    def relevant_units(self) -> list[int] | None:
+        """Return the units that can matter, by id, and note some tree of them in ``tree``.
 
-        The units are the achievers of goals and, recursively, of their preconditions. If rules may require
-        redundant units, they are all units that can execute.
+        They are the achievers of goals and, recursively, of their preconditions. If rules may require
+        redundant units, they are all units that can execute. ``None`` if a goal, or a set that rules require,
+        cannot be reached even if items last.
         """
         problem = self.problem
         stocked = frozenset(o for o in problem.kitchen if problem.stock_of(o) != 0)
@@ -114,12 +123,16 @@ class PlanQuestion:
         if not all(required_set & set(reached.units) for required_set in self.required):
             return None
         self.tree = frozenset(first_tree(lasting, reached) or ())
-        if self.keeps_redundant:
+        if self.may_need_redundant:
             return sorted(reached.units)
         return sorted(units_relevant_to_plans(problem, reached))
 
     def has_no_lasting_tree(self) -> bool:
-        """Whether it is proved that rules allow no tree even if items last, and so no plan."""
+        """Return whether it is proved that rules allow no tree if items last, and so no plan.
+
+        A solver searches for such a tree. ``False`` without a search if there are no rules, or if rules use
+        numbers of executions for more than upper bounds.
+        """
         rules, problem = self.program.understood, self.problem
         if rules is None or not rules.only_limits:
             return False
@@ -128,8 +141,8 @@ class PlanQuestion:
         settings = self.settings._replace(bounded=None)
         return solve_lasting(lasting, (Objective.UNITS,), settings).status is Status.INFEASIBLE
 
-    def take(self, plan: Plan) -> bool:
-        """Make a plan the incumbent if it is allowed and better; return whether it is."""
+    def try_incumbent(self, plan: Plan) -> bool:
+        """Make a plan the incumbent if it is allowed and better, and report it; return whether it is."""
         costs = self.problem.costs(plan)
         if not self.allows(plan):
             return False
@@ -140,15 +153,19 @@ class PlanQuestion:
         return True
 
     def allows(self, plan: Plan) -> bool:
-        """Whether a plan keeps to limits and bounds, exactly, and includes none of the incomparable plans."""
+        """Return whether a plan keeps to ``limits`` and ``below`` and is not excluded by ``incomparable``."""
         counts, costs = Counter(plan), self.problem.costs(plan)
         if not all(row.holds(plan) for row in self.limits):
             return False
         better = all(costs.key([o]) < (-cost if multiplies(o) else cost,) for o, cost in self.below)
-        return better and not any(counts >= Counter(other) for other in self.incomparable)
+        return better and not any(counts >= Counter(excluded) for excluded in self.incomparable)
 
     def outcome(self, status: Status, proof: Proof | None) -> Outcome:
-        """Replay the incumbent, and return the outcome; raises :class:`BugError` if the replay fails."""
+        """Replay the incumbent, and return the outcome with a status.
+
+        If the status is optimal, the costs of the incumbent become the bounds. ``proof`` is ``None`` if the
+        search was stopped. Raises :class:`BugError` if the replay fails.
+        """
         plan, costs = self.best or (None, None)
         if plan is not None and costs is not None:
             self._require_runs(plan, costs)
@@ -167,7 +184,7 @@ class PlanQuestion:
         )
 
     def _require_runs(self, plan: Plan, costs: Costs) -> None:
-        """Require that a plan executes and has the stated costs, by an independent replay."""
+        """Raise :class:`BugError` unless an independent replay executes a plan at the stated costs."""
         replay = counted_run(self.problem, plan)
         if replay.lacking is not None:
             raise BugError(f"the plan {list(plan)} lacks {replay.lacking}")
@@ -178,6 +195,6 @@ class PlanQuestion:
         if copies != replay.stock:
             raise BugError(f"the plan {list(plan)} takes {replay.stock} of the stock and not {copies}")
 
-    def spent(self, phase: str, began: float) -> None:
-        """Add the time since ``began`` to the seconds of a phase."""
+    def add_seconds(self, phase: str, began: float) -> None:
+        """Add the time since ``began``, on the clock ``perf_counter``, to the seconds of a phase."""
         self.seconds[phase] = self.seconds.get(phase, 0.0) + time.perf_counter() - began

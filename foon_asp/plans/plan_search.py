@@ -24,16 +24,19 @@ def solve_used_up(
     settings: Settings | None = None,
     reporter: Reporter | None = None,
 ) -> Outcome:
-    """Find the best plan under a lexicographic list of objectives, and prove it.
+    """Find the best plan under a lexicographic list of objectives, and prove it; return the outcome.
 
-    Raises :class:`UserError` naming a feature that is not built for items that are used up.
+    Raises :class:`UserError` naming a feature that plans do not support.
     """
     question = PlanQuestion(problem, objectives, settings or Settings(), reporter or Reporter())
     return solve_question(question)
 
 
 def solve_question(question: PlanQuestion) -> Outcome:
-    """Return the outcome of a question: its best plan, as far as it is found and proved."""
+    """Return the outcome of a question: its best plan, as far as it is found and proved.
+
+    An interrupt from the keyboard ends the search like the end of time.
+    """
     try:
         with question.deadline.watched("cutting the network", late=True):
             outcome = _solve(question)
@@ -48,42 +51,49 @@ def solve_question(question: PlanQuestion) -> Outcome:
 
 
 def _solve(question: PlanQuestion) -> Outcome:
-    """Apply the rules, cut the network down to the units that can matter, and search."""
+    """Apply the rules, restrict the network to units that can matter, and search; return the outcome."""
     began = time.perf_counter()
     if not question.apply_rules():
         return question.outcome(Status.INFEASIBLE, Proof.SOLVER)
     question.deadline.doing = "cutting the network"
-    units = question.cut()
-    question.spent("cut", began)
+    units = question.relevant_units()
+    question.add_seconds("cut", began)
     return question.outcome(Status.INFEASIBLE, Proof.CUTS) if units is None else _search(question, units)
 
 
 def _search(question: PlanQuestion, units: list[int]) -> Outcome:
-    """Search for the best plan of some units, and prove it."""
+    """Search for the best plan of ``units``, and prove it; return the outcome.
+
+    Counts of least cost are looked for first, and then an order of them, which is the first incumbent. If
+    there is none, it is proved that there is no plan. Otherwise, counts of lower cost are searched until the
+    incumbent is proved the best.
+    """
     counting = Counting(question, units)
     if not units:  # every goal is available: only the empty plan is irredundant
         needs_check = not question.program.own or question.problem.counts_amounts
-        if needs_check and counting.order({}) is None:
+        if needs_check and counting.find_order({}) is None:
             return question.outcome(Status.INFEASIBLE, Proof.SOLVER)
-        return question.outcome(Status.OPTIMAL if question.take(()) else Status.INFEASIBLE, Proof.CUTS)
+        return question.outcome(
+            Status.OPTIMAL if question.try_incumbent(()) else Status.INFEASIBLE, Proof.CUTS
+        )
     began = time.perf_counter()
     measures = [counting.measure(objective) for objective in question.levels]
     with question.deadline.watched("counting executions"):
-        plan = _plain_plan(question, counting, measures)
-        counts = counting.bound.counts(measures) if plan is None else None
-    question.spent("bound", began)
-    if plan is None and counts is None and counting.bound.none():
+        plan = _plan_by_equation(question, counting, measures)
+        counts = counting.bound.cheapest_counts(measures) if plan is None else None
+    question.add_seconds("bound", began)
+    if plan is None and counts is None and counting.bound.is_infeasible():
         return question.outcome(Status.INFEASIBLE, Proof.COUNTS)
     if counts is not None:
-        plan = counting.order(counts)
+        plan = counting.find_order(counts)
         if plan is None or not question.allows(plan):
-            plan = counting.any_order(counts)
-    if plan is not None and question.take(plan):
+            plan = counting.find_plan_beyond(counts)
+    if plan is not None and question.try_incumbent(plan):
         counting.bound.derivation = _positions(units, plan)
         counting = _below_cutoff(question, counting, plan)
     elif question.has_no_lasting_tree():
         return question.outcome(Status.INFEASIBLE, Proof.SOLVER)
-    elif counting.none_is_left():
+    elif counting.prove_infeasible():
         return question.outcome(Status.INFEASIBLE, Proof.COUNTS)
     while True:
         try:
@@ -94,28 +104,34 @@ def _search(question: PlanQuestion, units: list[int]) -> Outcome:
         except BetterError:
             continue
         finally:
-            question.bounds = counting.proved()
-            question.spent("bound", began)
+            question.bounds = counting.proved_bounds()
+            question.add_seconds("bound", began)
 
 
 def _positions(units: Sequence[int], plan: Plan) -> list[int]:
-    """Return the indices of the units that a plan executes."""
+    """Return the indices in ``units`` of the units that a plan executes."""
     executed = set(plan)
     return [a for a, unit in enumerate(units) if unit in executed]
 
 
-def _plain_plan(question: PlanQuestion, counting: Counting, measures: Sequence[Measure]) -> Plan | None:
-    """Return a plan with the best counts under the state equation alone; ``None`` if these have no order."""
-    counts = counting.bound.plain_counts(measures)
+def _plan_by_equation(question: PlanQuestion, counting: Counting, measures: Sequence[Measure]) -> Plan | None:
+    """Return a plan with the cheapest counts of the state equation, if they have an order.
+
+    ``None`` if there are no such counts, if they have no order that is allowed, or if the time is up.
+    """
+    counts = counting.bound.cheapest_counts_by_equation(measures)
     try:
-        plan = None if counts is None else counting.order(counts)
+        plan = None if counts is None else counting.find_order(counts)
     except Stopped:
         return None
     return plan if plan is not None and question.allows(plan) else None
 
 
 def _below_cutoff(question: PlanQuestion, counting: Counting, plan: Plan) -> Counting:
-    """Return a counting without units that alone cost more than a plan; if costs are exact, the same."""
+    """Return a :class:`Counting` without the units that alone cost more than a plan.
+
+    The given one is returned if costs are exact, or if no unit costs so much.
+    """
     objective = question.levels[0]
     if multiplies(objective) or counting.measure(objective).exact is None:
         return counting

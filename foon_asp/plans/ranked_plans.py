@@ -1,4 +1,4 @@
-"""Ranking of plans in which items are used up, by costs; no plan includes another."""
+"""Ranking of plans where items are used up, by costs; no plan contains another."""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -17,8 +17,11 @@ from foon_asp.problem import Costs, Objective, Problem
 class RankedPlans:
     """The plans of a question, the best first, under a lexicographic list of objectives.
 
-    Plans with at least the executions of an earlier one are excluded. ``complete`` and ``pending`` are as in
-    :class:`foon_asp.asp.ranking.Ranked`, which ranks trees.
+    Plans with at least the executions of an earlier one are excluded.
+
+    ``complete``: whether the iteration ended because there are no more plans.
+    ``pending``: if the iteration ended otherwise, the best plan found and not proved, with its costs; empty
+    if none.
     """
 
     def __init__(
@@ -31,7 +34,7 @@ class RankedPlans:
         self.pending: list[tuple[Plan, Costs]] = []
 
     def __iter__(self) -> Iterator[tuple[Plan, Costs]]:
-        """Iterate over plans, each proved best among the plans that contain no earlier one."""
+        """Yield plans with their costs, each proved the best among the plans that contain no earlier one."""
         yielded: list[Mapping[int, int]] = []
         while True:
             settings = self._settings._replace(bounded=Bounded(incomparable=tuple(yielded)))
@@ -58,7 +61,8 @@ def best_plans(
 ) -> tuple[list[tuple[Plan, Costs]], bool, bool]:
     """Return at most ``max_plans`` best plans with different counts of executions, each with its costs.
 
-    Also returns whether the first is proved optimal, and whether there are no others.
+    Also returns whether the first is proved optimal, and whether there are no other best plans. Without such
+    a proof, the list has the incumbent, if any.
     """
     question = PlanQuestion(problem, objectives, settings, reporter)
     outcome = solve_question(question)
@@ -67,14 +71,17 @@ def best_plans(
             [] if outcome.units is None or outcome.costs is None else [(outcome.units, outcome.costs)]
         )
         return incumbents, False, outcome.status is Status.INFEASIBLE
-    units, best = question.cut() or [], outcome.costs
+    units, best = question.relevant_units() or [], outcome.costs
     counting = Counting(question, units)
     counting.bound.derivation = [a for a, unit in enumerate(units) if unit in outcome.units]
     plans_by_counts = {frozenset(Counter(outcome.units).items()): outcome.units}
 
-    def ask(counts: Counts) -> None:
-        """Add a plan with these counts to the result, if there is one as good as the best plan."""
-        plan = counting.order(counts)
+    def add_plan(counts: Counts) -> None:
+        """Add a plan with these counts to the result if some order of them is as good as the best plan.
+
+        Raises :class:`Stopped` after more than ``max_plans`` plans.
+        """
+        plan = counting.find_order(counts)
         if plan is not None and problem.costs(plan).key(question.levels) == best.key(question.levels):
             plans_by_counts.setdefault(frozenset(Counter(plan).items()), plan)
             if len(plans_by_counts) > max_plans:
@@ -83,7 +90,9 @@ def best_plans(
     complete = True
     try:
         if units:
-            counting.bound.every([counting.level(objective, best) for objective in question.levels], ask)
+            counting.bound.visit_counts(
+                [counting.level(objective, best) for objective in question.levels], add_plan
+            )
     except (Stopped, KeyboardInterrupt) as stop:
         complete = False
         if isinstance(stop, KeyboardInterrupt):

@@ -2,9 +2,11 @@
 
 The rows are about counts only, without indicators. A row of the inverse basis of the relaxation has weights
 for the rows. The weighted sum of the rows, rounded, is a row that a fractional solution violates (Gomory
-1958; Nemhauser & Wolsey 1990): if ``sum a[j] x[j] >= b`` holds for counts from 0, and ``f`` is the fractional
-part of ``b``, then ``sum (floor(a[j]) + min(1, fraction(a[j]) / f)) x[j] >= ceil(b)`` holds, too. The
-rounding is valid for any weights from 0, so it is enough to find weights in floats.
+1958; Nemhauser & Wolsey 1990).
+
+If ``sum a[j] x[j] >= b`` holds for counts from 0, and ``f`` is the fractional part of ``b``, then ``sum
+(floor(a[j]) + min(1, fraction(a[j]) / f)) x[j] >= ceil(b)`` holds, too. This is valid for any weights from 0,
+so it is enough to find weights in floats.
 """
 
 import math
@@ -31,20 +33,26 @@ _Row = tuple[dict[int, int], int]
 
 
 class RoundedProgram:
-    """A program over counts whose rows are sums of conditions, to which rounded rows are added."""
+    """A program over counts whose rows are sums of conditions, to which rounded rows are added.
+
+    ``expired`` returns whether time is up; solving then raises :class:`Stopped`.
+    """
 
     def __init__(self, columns: int, expired: Callable[[], bool]) -> None:
+        """Make a program with this number of columns and without rows."""
         self.program = WholeProgram(columns, expired)
-        self._conditions: list[Sequence[Condition]] = []  # of each row, if it is about counts alone
+        self._conditions: list[
+            Sequence[Condition]
+        ] = []  # of each row; empty if the row is about more than counts
 
     def add(self, conditions: Sequence[Condition], row: dict[int, int], least: int) -> None:
-        """Add a row, the sum of conditions; without conditions, it does not take part in rounding."""
-        self.program.row(row, least)
+        """Add a row, the sum of ``conditions``; a row without conditions takes no part in rounding."""
+        self.program.add_row(row, least)
         self._conditions.append(conditions)
 
     @property
-    def rounded(self) -> Iterator[tuple[Rounded, dict[int, int], int]]:
-        """The rounded rows, with the conditions that they follow from."""
+    def rounded_rows(self) -> Iterator[tuple[Rounded, dict[int, int], int]]:
+        """The rounded rows, each with its condition, its coefficients by column, and its least sum."""
         for number, conditions in enumerate(self._conditions):
             for condition in conditions:
                 if isinstance(condition, Rounded):
@@ -65,16 +73,18 @@ class RoundedProgram:
                 return solved
             previous, value = value, sum(cost * solved.x[a] for a, cost in costs.items())
             stalled = stalled + 1 if value < previous + INTEGRALITY * max(1.0, abs(previous)) else 0
-            if stalled > PLANS.stalled_rounds or not self._round(solved.x):
+            if stalled > PLANS.stalled_rounds or not self._add_rounded_rows(solved.x):
                 return solved
 
-    def _round(self, x: Sequence[float]) -> bool:
+    def _add_rounded_rows(self, x: Sequence[float]) -> bool:
         """Add the rounded rows that a solution violates most; return whether there are any."""
         violated: dict[tuple[tuple[int, int], ...], tuple[float, Rounded, _Row]] = {}
         for floats in self.program.inverse_rows(x):
             for sign in (1, -1):
-                shares = {row: _share(sign * floats[row]) for row in floats if self._conditions[row]}
-                rounded = self._rounded({row: share for row, share in shares.items() if share})
+                shares = {
+                    row: _fraction_of_weight(sign * floats[row]) for row in floats if self._conditions[row]
+                }
+                rounded = self._round_sum({row: share for row, share in shares.items() if share})
                 if rounded is None:
                     continue
                 condition, (row, least) = rounded
@@ -86,24 +96,28 @@ class RoundedProgram:
             self.add((condition,), row, least)
         return bool(violated)
 
-    def _rounded(self, weights: Mapping[int, Fraction]) -> tuple[Rounded, _Row] | None:
-        """Return the rounded sum of weighted rows, in whole numbers; ``None`` if rounding is of no use."""
-        parts = math.lcm(*(weight.denominator for weight in weights.values()))
+    def _round_sum(self, weights: Mapping[int, Fraction]) -> tuple[Rounded, _Row] | None:
+        """Return the rounded sum of weighted rows: its condition, and its row in whole numbers.
+
+        ``None`` if rounding changes nothing, or if the coefficients become too large.
+        """
+        denominator = math.lcm(*(weight.denominator for weight in weights.values()))
         coefficients: dict[int, int] = {}
         least = 0
         for number, weight in weights.items():
-            times = int(weight * parts)
+            times = int(weight * denominator)
             row, wanted = self.program.row_of(number)
             least += times * wanted
             for column, coefficient in row.items():
                 coefficients[column] = coefficients.get(column, 0) + times * coefficient
-        fraction = least % parts
+        fraction = least % denominator
         if not fraction:
             return None
         sums = {
-            column: n // parts * fraction + min(fraction, n % parts) for column, n in coefficients.items()
+            column: n // denominator * fraction + min(fraction, n % denominator)
+            for column, n in coefficients.items()
         }
-        least = -(-least // parts) * fraction
+        least = -(-least // denominator) * fraction
         common = math.gcd(least, *sums.values())
         if not common:
             return None
@@ -119,16 +133,22 @@ class RoundedProgram:
         )
 
 
-def _share(weight: float) -> Fraction:
-    """Return the fractional part of a weight, since whole multiples of a row are not rounded."""
+def _fraction_of_weight(weight: float) -> Fraction:
+    """Return the fractional part of a weight of a row, as a fraction with a small denominator.
+
+    Whole multiples of a row need no rounding.
+    """
     share = Fraction(weight).limit_denominator(PLANS.rounding_denominator)
     return share - math.floor(share)
 
 
 class StateEquation(RoundedProgram):
-    """The conditions on counts alone as rows: balances, sums of executions, levels, and rounded rows.
+    """The conditions on counts alone as rows: balances, limits on sums, levels, and rounded rows.
 
-    Landmarks, supplies and remainders may be added, for which a few actions get an indicator.
+    Landmarks, supplies and remainders may be added. Actions that they mention get an indicator: a column that
+    is 1 if the action is executed at all.
+
+    ``caps``: upper bounds on the counts of actions; empty if there are none.
     """
 
     def __init__(
@@ -138,14 +158,14 @@ class StateEquation(RoundedProgram):
         caps: Sequence[int | None],
         expired: Callable[[], bool],
     ) -> None:
-        """Build the program; ``caps`` are upper bounds on the counts of actions, none if empty."""
+        """Build the program with the balances and the limits that count executions."""
         super().__init__(len(flows.asks), expired)
         self._flows, self._expired = flows, expired
         for action, cap in enumerate(caps):
             if cap is not None:
                 self.program.cap(action, cap)
         self._caps = list(self.program.upper)
-        self._indicators: dict[int, int] = {}  # columns, of a few actions
+        self._indicators: dict[int, int] = {}  # column by action
         for o, change, least in flows.balances():
             self.add((Balance(o),), change, least - flows.start.get(o, 0))
         for number, (weights, limit, at_least, used) in enumerate(limits):
@@ -153,49 +173,59 @@ class StateEquation(RoundedProgram):
             if not used:
                 self.add((Sum(number),), {a: sign * weight for a, weight in weights.items()}, sign * limit)
 
-    def keep(self, level: Level) -> None:
-        """Add the row of a level: counts as good as the incumbent cost at most ``max_cost``."""
+    def add_level(self, level: Level) -> None:
+        """Add the row of a level: the cost, without items, is at most its ``max_cost``."""
         # without the costs of items, which have no columns, the row is weaker
         costs = level.measure.costs
         self.add((level,), {a: -cost for a, cost in enumerate(costs) if cost}, -level.max_cost)
 
     def add_landmark(self, landmark: Landmark) -> None:
-        """Add the row of a landmark: some member is executed, or its action, if it has one, is not.
+        """Add the row of a landmark: a member is executed, or the landmark's action is not.
 
-        Nothing is added if initial copies satisfy the landmark too, or if its action has no indicator.
+        Nothing is added if initial copies may satisfy the landmark, or if its action has no indicator.
         """
         row, least = dict.fromkeys(landmark.members, 1), 1
-        indicator = None if landmark.action is None else self._indicator(landmark.action)
+        indicator = None if landmark.action is None else self._indicator_column(landmark.action)
         if indicator is not None:
             row[indicator], least = -1, 0
         if not landmark.stock and (landmark.action is None) == (indicator is None):
             self.add((), row, least)
 
     def add_copies(self, condition: Supply | Remainder) -> None:
-        """Add the row of copies that an action requires or leaves, if the action has an indicator."""
-        indicator = self._indicator(condition.action)
+        """Add the row of copies that an action requires or leaves; nothing if the action has no indicator."""
+        indicator = self._indicator_column(condition.action)
         if indicator is not None:
-            row = {**self._flows.change(condition), indicator: -condition.copies}
+            row = {**self._flows.copy_changes(condition), indicator: -condition.copies}
             self.add((), row, -self._flows.start.get(condition.object, 0))
 
-    def _indicator(self, action: int) -> int | None:
-        """Return the column that is 1 if an action is executed; ``None`` if its count is unbounded."""
+    def _indicator_column(self, action: int) -> int | None:
+        """Return the column that is 1 if an action is executed; ``None`` if its count is unbounded.
+
+        The column and its row are added at the first call.
+        """
         max_count = self._caps[action]
         if action not in self._indicators and max_count is not None:
-            self._indicators[action] = self.program.column(0, 1)
+            self._indicators[action] = self.program.add_column(0, 1)
             self.add((), {self._indicators[action]: max_count, action: -1}, 0)
         return self._indicators.get(action)
 
     def strengthen(self, costs: Mapping[int, int], cutoff: float | None = None) -> Solved:
-        """Add rounded rows as :class:`RoundedProgram` does, first of all those about alternatives."""
+        """Add rounded rows and return the last solution, as :meth:`RoundedProgram.strengthen`.
+
+        Rows that merge objects of one role come first (:meth:`_round_alternatives`).
+        """
         self._costs: Mapping[int, int] | None = costs
         return super().strengthen(costs, cutoff)
 
-    def _round(self, x: Sequence[float]) -> bool:
+    def _add_rounded_rows(self, x: Sequence[float]) -> bool:
+        """Add rounded rows that a solution violates; return whether there are any.
+
+        In the first call of a :meth:`strengthen`, rows that merge objects of one role are tried first.
+        """
         if all(abs(value - round(value)) < INTEGRALITY for value in x):
-            return False  # no row that holds of whole counts is violated
+            return False  # whole counts violate no rounded row
         costs, self._costs = self._costs, None
-        return (costs is not None and self._round_alternatives(costs)) or super()._round(x)
+        return (costs is not None and self._round_alternatives(costs)) or super()._add_rounded_rows(x)
 
     def _round_alternatives(self, costs: Mapping[int, int]) -> bool:
         """Add rounded rows of a smaller program that merges objects of one role; return whether any is added.
@@ -209,11 +239,11 @@ class StateEquation(RoundedProgram):
         for number, conditions in enumerate(self._conditions):
             for condition in conditions:
                 role = roles[condition.object] if isinstance(condition, Balance) else -1 - number
-                parts, total, least = sums.get(role, ([], {}, 0))
+                summed, total, least = sums.get(role, ([], {}, 0))
                 row, wanted = self.program.row_of(number)
                 for column, coefficient in row.items():
                     total[column] = total.get(column, 0) + coefficient
-                sums[role] = [*parts, condition], total, least + wanted
+                sums[role] = [*summed, condition], total, least + wanted
         columns: dict[tuple[int, ...], list[int]] = {}
         for action in range(len(self._flows.asks)):
             alike = (costs.get(action, 0), *(total.get(action, 0) for _, total, _ in sums.values()))
@@ -222,24 +252,28 @@ class StateEquation(RoundedProgram):
             return False
         merged = RoundedProgram(len(columns), self._expired)
         members = list(columns.values())
-        for parts, total, least in sums.values():
+        for summed, total, least in sums.values():
             row = {column: total.get(actions[0], 0) for column, actions in enumerate(members)}
-            merged.add(parts, {column: n for column, n in row.items() if n}, least)
-        earlier = len(list(merged.rounded))
+            merged.add(summed, {column: n for column, n in row.items() if n}, least)
+        earlier = len(list(merged.rounded_rows))
         merged.strengthen({column: alike[0] for column, alike in enumerate(columns) if alike[0]})
-        for condition, row, least in list(merged.rounded)[earlier:]:
+        for condition, row, least in list(merged.rounded_rows)[earlier:]:
             self.add((condition,), {a: n for column, n in row.items() for a in members[column]}, least)
-        return len(list(merged.rounded)) > earlier
+        return len(list(merged.rounded_rows)) > earlier
 
     def optimum(self, costs: Sequence[int]) -> list[float] | None:
-        """Return whole values of least cost in floats; ``None`` if HiGHS finds none, or when time is up."""
+        """Return whole counts of least cost in floats; ``None`` if HiGHS finds none, or when time is up."""
         objective = {a: cost for a, cost in enumerate(costs) if cost}
         x = self.strengthen(objective).x
         if x is None or all(abs(value - round(value)) < INTEGRALITY for value in x):
             return x
         least = sum(cost * x[a] for a, cost in objective.items())
         # HiGHS has cuts of its own, and is slower with rows of great coefficients
-        program = self.program.without(
-            {row for row, parts in enumerate(self._conditions) if parts and isinstance(parts[0], Rounded)}
+        program = self.program.without_rows(
+            {
+                row
+                for row, conditions in enumerate(self._conditions)
+                if conditions and isinstance(conditions[0], Rounded)
+            }
         )
         return program.whole_optimum(objective, math.ceil(least - INTEGRALITY * max(1.0, abs(least))))

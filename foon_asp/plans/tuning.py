@@ -1,34 +1,34 @@
-"""Numbers that steer the stages of this room; none of them decides what is proved, only how fast.
+"""Numbers that steer the search for plans; they decide how fast something is proved, never what.
 
-Stages read the object at the end of this module when they are called.
+Functions read :data:`PLANS` when they are called.
 """
 
 from typing import NamedTuple
 
 
 class PlanTuning(NamedTuple):
-    """When the searches for counts, orders and proofs end, and what they begin with.
+    """When the searches for counts, orders and proofs end, and where they begin.
 
     ``rounded_rows``: rows that are added for one solution of the state equation, at most.
-    ``stalled_rounds``: rounds of such rows that may leave the bound as it is.
+    ``stalled_rounds``: successive rounds of such rows that may leave the bound as it is.
     ``role_depth``: rounds of refinement by which the roles of objects are told apart.
     ``rounding_denominator``: greatest denominator of the weights that rounded rows are made of.
     ``equation_nodes``: nodes of branch and bound over the state equation, before actions get indicators.
-    ``probes``: actions that are probed at the root: can they be executed twice?
+    ``probes``: actions for which it is tried, at the root, whether they can be executed twice.
     ``nodes``: nodes of branch and bound over counts, after which a proof is given up.
-    ``uncapped_nodes``: such nodes where nothing bounds the number of executions.
+    ``uncapped_nodes``: the same if nothing bounds the number of executions.
     ``landmark_orders``: orders in which landmarks are grown before a search for violated ones ends.
-    ``first_executions``: executions of an action for each copy wanted, at most, where counts are looked for.
-    ``last_executions``: the same maximum in a second attempt.
+    ``first_executions``: cap on the count of an action, for each copy wanted, when counts are looked for.
+    ``last_executions``: the same cap in a second attempt.
     ``leaves``: leaves of a proof by branching, in a certificate.
     ``depth``: depth of the branching in such a proof; its check is a recursion of the same depth.
     ``order_steps``: runs that a search for an order tries; most orders take as many as there are actions.
     ``single_executions``: executions up to which every order is tried, one execution at a time.
-    ``stocks``: numbers of copies of the stock that an order is looked for with.
+    ``stocks``: choices of initial copies for which an order is looked for.
     ``unordered_counts``: counts without an order, after which clingo searches all counts at once.
     ``clingo_executions``: executions in one such search.
     ``exact_cost``: largest cost that is counted unrounded.
-    ``cost_steps``: steps of the greatest cost where costs are rounded.
+    ``cost_steps``: whole number that the greatest cost becomes if costs are rounded.
     ``extra_executions``: executions of a unit beyond its count, in the search of clingo for a first plan.
     """
 

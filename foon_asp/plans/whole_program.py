@@ -8,14 +8,14 @@ from typing import Any, NamedTuple
 from foon_asp.hypergraph.highs_run import libraries, run, silent_highs
 
 PARTS = (720720, 2**40)
-"""Denominators of rounded weights; the first that suffices is used, as most weights are simple fractions."""
+"""Denominators of rounded weights; the first is tried first, as most weights are simple fractions."""
 
 INTEGRALITY = 1e-6
-"""Integrality tolerance, for choosing where to branch, and relative tolerance of rows that floats violate."""
+"""Tolerance of whole values when branching, and relative tolerance of rows that floats violate."""
 
 
 Bounds = tuple[list[int], list[int | None]]
-"""The lower and upper bounds of all columns, ``None`` without one."""
+"""The lower and the upper bounds of all columns; ``None`` is no upper bound."""
 
 
 class Stopped(Exception):  # noqa: N818 (no error: there is no time left)
@@ -23,10 +23,11 @@ class Stopped(Exception):  # noqa: N818 (no error: there is no time left)
 
 
 class Solved(NamedTuple):
-    """The solution ``x`` of a relaxation (``None`` if none is found), and a proved lower ``bound``.
+    """The result of solving a relaxation.
 
-    The bound is infinity if it is proved that there is no solution, and -infinity if nothing is proved. A
-    solution with a bound of -infinity may violate rows a little.
+    ``x``: the value of each column in floats; ``None`` if no solution is found.
+    ``bound``: a proved lower bound on the cost. It is infinity if it is proved that there is no solution, and
+    -infinity if nothing is proved. In the latter case, ``x`` may violate rows a little.
     """
 
     x: list[float] | None
@@ -34,10 +35,11 @@ class Solved(NamedTuple):
 
 
 class Relaxation(NamedTuple):
-    """The solution ``x`` of a relaxation in floats (``None`` without one), and ``weights`` of its rows.
+    """The solution of a relaxation in floats, with weights of its rows.
 
-    The weights are the duals or, without a solution, a Farkas combination of the rows. ``columns`` are the
-    basic columns and ``rows`` the tight rows: these are the square system that the weights solve.
+    ``x``: the value of each column; ``None`` without a solution.
+    ``weights``: the dual of each row or, without a solution, a Farkas combination of the rows.
+    ``columns``, ``rows``: the basic columns and the tight rows, whose square system the weights solve.
     """
 
     x: list[float] | None
@@ -54,10 +56,12 @@ def most_fractional(x: Sequence[float]) -> int | None:
 
 
 class WholeProgram:
-    """An integer program: columns between ``lower`` and ``upper`` (``None`` is no bound), and rows.
+    """An integer program to be minimized: columns with bounds, and rows. Both are numbered from 0.
 
-    Each row states that its columns, times whole coefficients, add up to at least a number. ``expired`` is
-    called now and then: when time is up, solving a relaxation raises :class:`Stopped`.
+    ``lower``, ``upper``: the bounds of each column, which may be changed; ``None`` is no upper bound.
+    ``expired``: a function that returns whether time is up; solving then raises :class:`Stopped`.
+
+    A row has whole coefficients of columns. It states that the weighted sum is at least a whole number.
     """
 
     def __init__(self, columns: int, expired: Callable[[], bool] = lambda: False) -> None:
@@ -68,7 +72,7 @@ class WholeProgram:
         self.lower: list[int] = [0] * columns
         self.upper: list[int | None] = [None] * columns
         self._rows: list[tuple[dict[int, int], int]] = []
-        self._sent: int  # rows that HiGHS has
+        self._sent: int  # number of rows that HiGHS has
         self._changed: set[int] = set()
 
     @property
@@ -78,40 +82,43 @@ class WholeProgram:
 
     @property
     def is_empty(self) -> bool:
-        """Whether some column has nothing between its bounds."""
+        """Whether some column has no value between its bounds."""
         return any(upper is not None and self.lower[c] > upper for c, upper in enumerate(self.upper))
 
-    def column(self, lower: int, upper: int | None) -> int:
-        """Add a column, and return its number."""
+    def add_column(self, lower: int, upper: int | None) -> int:
+        """Add a column with bounds, and return its number."""
         self.lower.append(lower)
         self.upper.append(upper)
         self._highs = None
         return len(self.lower) - 1
 
-    def row(self, parts: dict[int, int], least: int) -> int:
-        """Add a row, and return its number."""
-        self._rows.append((parts, least))
+    def add_row(self, coefficients: dict[int, int], least: int) -> int:
+        """Add a row: coefficients by column, and the least sum; return its number."""
+        self._rows.append((coefficients, least))
         return len(self._rows) - 1
 
-    def open_row(self, columns: Iterable[int], least: int) -> int:
-        """Add a row of some columns whose coefficients are set by :meth:`change`, and return its number."""
-        return self.row(dict.fromkeys(columns, 0), least)
+    def add_open_row(self, columns: Iterable[int], least: int) -> int:
+        """Add a row whose coefficients :meth:`change_row` sets later; return its number."""
+        return self.add_row(dict.fromkeys(columns, 0), least)
 
-    def change(self, row: int, parts: dict[int, int]) -> None:
-        """Change the coefficients of the columns of a row; those not in ``parts`` become 0."""
+    def change_row(self, row: int, coefficients: dict[int, int]) -> None:
+        """Replace the coefficients of a row; columns of the row that are not in ``coefficients`` get 0.
+
+        Columns that are not in the row are ignored.
+        """
         current = self._rows[row][0]
-        new = {column: parts.get(column, 0) for column in current}
+        new = {column: coefficients.get(column, 0) for column in current}
         if new != current:
             self._rows[row] = new, self._rows[row][1]
             self._changed.add(row)
 
     def cap(self, column: int, upper: int) -> None:
-        """Bound a column from above, if it is not bounded more tightly."""
+        """Bound a column from above, unless its upper bound is lower already."""
         current = self.upper[column]
         self.upper[column] = upper if current is None else min(current, upper)
 
     def with_bounds(self, column: int, lower: int | None, upper: int | None) -> Bounds:
-        """Return the bounds of all columns with one changed."""
+        """Return a copy of the bounds of all columns, changed for one column; ``None`` keeps a bound."""
         lowers, uppers = list(self.lower), list(self.upper)
         if lower is not None:
             lowers[column] = lower
@@ -119,18 +126,24 @@ class WholeProgram:
             uppers[column] = upper
         return lowers, uppers
 
-    def restrict(self, bounds: Bounds) -> None:
+    def set_bounds(self, bounds: Bounds) -> None:
         """Set the bounds of columns; columns that were added after ``bounds`` were made do not change."""
         lower, upper = bounds
         self.lower[: len(lower)], self.upper[: len(upper)] = lower, upper
 
-    def halves(self, column: int, value: float) -> tuple[Bounds, Bounds]:
-        """Return the bounds of two nodes in which a column is at most, or at least, the next whole number."""
+    def split_bounds(self, column: int, value: float) -> tuple[Bounds, Bounds]:
+        """Return the bounds of two child nodes, for a column with a fractional value.
+
+        In the first, the column is at most the whole number below the value. In the second, it is above that.
+        """
         below = math.floor(value)
         return self.with_bounds(column, None, below), self.with_bounds(column, below + 1, None)
 
     def solve(self, objective: Mapping[int, int], cutoff: float = math.inf) -> Solved:
-        """Return the solution and bound of the relaxation; a bound above ``cutoff`` is not improved."""
+        """Return the solution of the relaxation and a proved bound.
+
+        Once the bound is above ``cutoff``, it is not improved. Raises :class:`Stopped` if time is up.
+        """
         if self.is_empty:
             return Solved(None, math.inf)
         highs = self._run(objective)
@@ -143,19 +156,18 @@ class WholeProgram:
         largest = max(ray, default=0.0)
         if largest and self._bound({}, [weight / largest for weight in ray], 0) > 0:
             return Solved(None, math.inf)
-        return Solved(self._nearly(), -math.inf)
+        return Solved(self._nearly_feasible(), -math.inf)
 
     def inverse_rows(self, x: Sequence[float]) -> Iterator[dict[int, float]]:
-        """Yield the rows of the inverse basis for fractional basic columns, the most fractional first.
+        """Yield rows of the inverse basis, for basic columns with a fractional value in ``x``.
 
-        A row of the inverse basis has weights of rows of the program, in floats. ``x`` is the solution that
-        was returned last.
+        ``x`` is the solution that was returned last. A row of the inverse basis has weights of rows of the
+        program, by row, in floats. The most fractional column comes first.
         """
         halves = {column: abs(value - math.floor(value) - 0.5) for column, value in enumerate(x)}
         fractional = {column: half for column, half in halves.items() if half < 0.5 - INTEGRALITY}
-        if (
-            self._highs is None or not fractional
-        ):  # HiGHS does not survive the question where it used no basis
+        # HiGHS crashes if it is asked for basic variables and has no basis
+        if self._highs is None or not fractional:
             return
         basic = [(index, int(column)) for index, column in enumerate(self._highs.getBasicVariables()[1])]
         basic = [(index, column) for index, column in basic if column in fractional]
@@ -163,8 +175,8 @@ class WholeProgram:
             weights = self._highs.getBasisInverseRow(index)[1]
             yield {row: float(weights[row]) for row in self._np.flatnonzero(weights).tolist()}
 
-    def _nearly(self) -> list[float] | None:
-        """Return a solution that may violate rows a little, where floats find none and prove nothing.
+    def _nearly_feasible(self) -> list[float] | None:
+        """Return a solution that may violate rows a little; ``None`` if HiGHS finds none.
 
         Rows with large coefficients may leave so small a feasible region that it is lost in floats.
         """
@@ -179,7 +191,10 @@ class WholeProgram:
         return x
 
     def relaxation(self, objective: Mapping[int, float]) -> Relaxation:
-        """Return the solution of the relaxation in floats, with the weights of its rows and its basis."""
+        """Return the solution of the relaxation in floats, with the weights of its rows and its basis.
+
+        Raises :class:`Stopped` if time is up.
+        """
         highs = self._run(objective)
         if highs.getModelStatus() == self._library.HighsModelStatus.kOptimal:
             solution, basis = highs.getSolution(), highs.getBasis()
@@ -193,24 +208,24 @@ class WholeProgram:
         return Relaxation(None, [abs(weight) for weight in highs.getDualRay()[2]], [], [])
 
     def row_of(self, row: int) -> tuple[dict[int, int], int]:
-        """Return a row: its coefficients, and the least sum."""
+        """Return a row: its coefficients by column, and the least sum."""
         return self._rows[row]
 
-    def without(self, rows: Container[int]) -> "WholeProgram":
-        """Return a program with the same columns, and without some rows."""
-        other = WholeProgram(0, self._expired)
-        other.lower, other.upper = list(self.lower), list(self.upper)
-        other._rows = [row for number, row in enumerate(self._rows) if number not in rows]
-        return other
+    def without_rows(self, rows: Container[int]) -> "WholeProgram":
+        """Return a program with the same columns, and without these rows; the others are numbered anew."""
+        program = WholeProgram(0, self._expired)
+        program.lower, program.upper = list(self.lower), list(self.upper)
+        program._rows = [row for number, row in enumerate(self._rows) if number not in rows]
+        return program
 
     def whole_optimum(
         self, objective: Mapping[int, int], sufficient_cost: float = -math.inf
     ) -> list[float] | None:
         """Return the optimal whole solution in floats; ``None`` if HiGHS finds none, or when time is up.
 
-        A solution that costs up to ``sufficient_cost`` is taken at once.
+        The search ends at a solution that costs at most ``sufficient_cost``.
         """
-        highs = self._send(objective)
+        highs = self._update_highs(objective)
         count = self.columns
         whole = self._library.HighsVarType.kInteger
         highs.changeColsIntegrality(
@@ -219,30 +234,34 @@ class WholeProgram:
         highs.setOptionValue("presolve", "on")
         highs.setOptionValue("mip_rel_gap", 0.0)
         highs.setOptionValue("objective_target", sufficient_cost)
-        ended = not self._expired() and run(highs, self._expired, has_integers=True)
+        is_solved = not self._expired() and run(highs, self._expired, has_integers=True)
         status = self._library.HighsModelStatus
-        optimal = ended and highs.getModelStatus() in {status.kOptimal, status.kObjectiveTarget}
+        optimal = is_solved and highs.getModelStatus() in {status.kOptimal, status.kObjectiveTarget}
         values = list(highs.getSolution().col_value) if optimal else None
         self._highs = None
         return values
 
     def _run(self, objective: Mapping[int, int] | Mapping[int, float]) -> Any:
-        """Solve the relaxation with HiGHS, from scratch where the warm start fails; return the instance."""
-        highs = self._send(objective)
+        """Solve the relaxation with HiGHS; return the HiGHS instance.
+
+        If a warm start ends without a result, solve it again from scratch. Raises :class:`Stopped` if time is
+        up.
+        """
+        highs = self._update_highs(objective)
         self._run_to_the_end(highs)
         if highs.getModelStatus() != self._library.HighsModelStatus.kOptimal and not highs.getDualRay()[1]:
             self._highs = None
-            highs = self._send(objective)
+            highs = self._update_highs(objective)
             self._run_to_the_end(highs)
         return highs
 
     def _run_to_the_end(self, highs: Any) -> None:
-        """Solve a relaxation with HiGHS; raises :class:`Stopped` where time is up."""
+        """Solve the relaxation that HiGHS has; raises :class:`Stopped` if time is up."""
         if not run(highs, self._expired):
             raise Stopped
 
-    def _send(self, objective: Mapping[int, int] | Mapping[int, float]) -> Any:
-        """Return the HiGHS instance, brought up to date with rows, bounds and costs."""
+    def _update_highs(self, objective: Mapping[int, int] | Mapping[int, float]) -> Any:
+        """Bring the HiGHS instance up to date with columns, rows, bounds and costs; return it."""
         np, inf = self._np, self._library.kHighsInf
         count = self.columns
         if self._highs is None:
@@ -252,9 +271,10 @@ class WholeProgram:
             self._highs.addVars(count, np.zeros(count), np.full(count, inf))
             self._sent = 0
         highs = self._highs
-        for parts, least in self._rows[self._sent :]:
-            columns = np.array(list(parts), dtype="int32")
-            highs.addRow(float(least), inf, len(parts), columns, np.array(list(parts.values()), dtype=float))
+        for coefficients, least in self._rows[self._sent :]:
+            columns = np.array(list(coefficients), dtype="int32")
+            factors = np.array(list(coefficients.values()), dtype=float)
+            highs.addRow(float(least), inf, len(coefficients), columns, factors)
         for row in self._changed:
             for column, coefficient in self._rows[row][0].items():
                 highs.changeCoeff(row, column, float(coefficient))
@@ -274,14 +294,18 @@ class WholeProgram:
     def _bound(
         self, objective: Mapping[int, int], weights: Sequence[float], cutoff: float
     ) -> float | Fraction:
-        """Return the Lagrangian bound of any weights of rows, computed in whole numbers."""
+        """Return the bound on the cost that weights of rows prove (Lagrangian relaxation).
+
+        It is computed in whole numbers, so any weights are valid; -infinity if they prove nothing. Weights
+        are rounded finely only if a coarse rounding proves no bound above ``cutoff``.
+        """
         best: float | Fraction = -math.inf
-        for parts in PARTS:
-            scaled = [max(0, round(weight * parts)) if abs(weight) < 1e15 else 0 for weight in weights]
+        for denominator in PARTS:
+            scaled = [max(0, round(weight * denominator)) if abs(weight) < 1e15 else 0 for weight in weights]
             total = 0
             reduced_costs = dict.fromkeys(range(self.columns), 0)
             for column, cost in objective.items():
-                reduced_costs[column] = cost * parts
+                reduced_costs[column] = cost * denominator
             for (row, least), weight in zip(self._rows, scaled, strict=True):
                 if weight:
                     total += weight * least
@@ -293,7 +317,7 @@ class WholeProgram:
                     break
                 total += reduced_cost * cheapest
             else:
-                best = max(best, Fraction(total, parts))
+                best = max(best, Fraction(total, denominator))
                 if best > cutoff:
                     break
         return best

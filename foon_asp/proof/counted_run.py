@@ -1,4 +1,4 @@
-"""Execution of plans of any length by numbers of copies, independent of the solver."""
+"""Execution of plans of any length: copies are counted instead of listed, without the solver's code."""
 
 from collections.abc import Iterable
 from itertools import groupby
@@ -10,10 +10,11 @@ from foon_asp.proof.execution import Executions
 
 
 class CountedRun(NamedTuple):
-    """The result of an execution by numbers.
+    """The result of executing a plan with :func:`counted_run`.
 
-    ``lacking`` is the node that has too few copies, ``None`` where the plan runs. ``stock`` maps each node
-    with a finite stock to the number of copies that the plan needs.
+    ``lacking``: the node of which too few copies exist at some step or for a goal; ``None`` if the plan runs.
+    ``stock``: for each node with a finite stock, the initial copies that the plan needs, up to where it
+    stopped.
     """
 
     lacking: ObjectNode | None
@@ -21,12 +22,13 @@ class CountedRun(NamedTuple):
 
 
 def counted_run(problem: Problem, plan: Iterable[int]) -> CountedRun:
-    """Execute a plan, given by unit ids with repeats, from the kitchen of a problem whose items are used up.
+    """Execute a plan from the kitchen of a problem whose items are used up; stop at the first shortage.
 
-    Equal units that follow each other are executed at once.
+    ``plan`` has the ids of the units in order, with repeats. Equal units in a row are executed in one step,
+    so the time depends on the number of such runs.
     """
     executions = Executions(problem)
-    initial = executions.stock()
+    initial = executions.initial_copies()
     copies, stock = initial.copy(), dict.fromkeys(initial, 0)
     for unit, run in groupby(plan):
         times = sum(1 for _ in run)
@@ -42,7 +44,7 @@ def counted_run(problem: Problem, plan: Iterable[int]) -> CountedRun:
             if node in initial:
                 stock[node] = max(stock[node], needed - least + initial[node])
             copies[node] += times * change
-    for node, wanted in executions.wanted().items():
+    for node, wanted in executions.wanted_copies().items():
         if executions.is_endless(node):
             continue
         if copies[node] < wanted:

@@ -1,4 +1,4 @@
-"""Executions of units where items are used up (docs/plans.md): copies needed, used up and added."""
+"""Executions of units where items are used up: copies needed, consumed and added (docs/plans.md)."""
 
 from collections import Counter
 from collections.abc import Callable, Mapping
@@ -12,10 +12,12 @@ _NO_AMOUNTS = UnitAmounts()
 
 
 class Execution(NamedTuple):
-    """One execution of a unit: the numbers of copies of object nodes that it needs, uses up and adds.
+    """One execution of a unit: numbers of copies by object node.
 
-    ``consumes`` are the ``preconditions`` that are used up. ``adds`` are the outputs. If an output is also an
-    input, only its surplus over the input is added.
+    ``preconditions``: the copies that have to exist.
+    ``consumes``: the copies that are used up; only nodes of ``preconditions`` occur.
+    ``adds``: the copies that are made. Of an output that is also an input, only the surplus over the input
+    counts.
     """
 
     preconditions: Mapping[ObjectNode, int]
@@ -26,26 +28,28 @@ class Execution(NamedTuple):
 class Executions:
     """Executions of units from the kitchen of a problem.
 
-    If the items of the problem are used up, the problem says which inputs of a unit stay. If its items last,
-    the rule of docs/plans.md decides this, and every amount is 1.
+    ``of(unit)`` returns the :class:`Execution` of a unit; results are cached. If items are used up, the
+    problem says which inputs of a unit stay. If items last, the rule of docs/plans.md says it, and every
+    amount is 1.
     """
 
     def __init__(self, problem: Problem) -> None:
+        """Make the function ``of`` for the items, amounts and container rule of the problem."""
         self._problem, self._items = problem, problem.items or UsedUp()
         network = None if problem.network.level == 3 else problem.network
         amounts = {} if problem.items is None else problem.amounts
         self.of = _execution_of(problem.items, problem.containers, problem.utensils, network, amounts)
 
-    def wanted(self) -> dict[ObjectNode, int]:
-        """Return how many copies of each goal have to be there in the end."""
+    def wanted_copies(self) -> dict[ObjectNode, int]:
+        """Return for each goal how many copies have to exist in the end."""
         return {node: self._items.wanted.get(node, 1) for node in self._problem.goal_nodes}
 
     def is_endless(self, node: ObjectNode) -> bool:
-        """Return whether a node never runs out: it is in the kitchen and not counted by the stock."""
+        """Return whether a node never runs out: the kitchen has it, and the stock does not count it."""
         return self._problem.at_hand(node) and node not in self._items.stock
 
-    def stock(self) -> Counter[ObjectNode]:
-        """Return the initial number of copies of each consumable node."""
+    def initial_copies(self) -> Counter[ObjectNode]:
+        """Return the initial number of copies of each kitchen node that the stock counts."""
         return Counter({n: count for n, count in self._items.stock.items() if self._problem.at_hand(n)})
 
 
@@ -58,7 +62,8 @@ def _execution_of(
 ) -> Callable[[FunctionalUnit], Execution]:
     """Return a cached function from a unit to its execution.
 
-    ``network`` is the network of the units if its level is below 3, and ``None`` otherwise.
+    ``items`` is ``None`` if items last. ``network`` is the network of the units if its level is below 3, and
+    ``None`` otherwise.
     """
     if items is None and network is None:
         return _by_the_rule(rule, utensils)
@@ -67,7 +72,10 @@ def _execution_of(
 
 @lru_cache(maxsize=4)
 def _by_the_rule(rule: ContainerRule, utensils: frozenset[str]) -> Callable[[FunctionalUnit], Execution]:
-    """Return the execution function under the plain rule of docs/plans.md; all trees share its cache."""
+    """Return the function from a unit to its execution where items last, at level 3.
+
+    The function and its cache are shared by all problems with this container rule and these utensils.
+    """
     return lru_cache(maxsize=10_000)(partial(_execution, UsedUp(), rule, utensils, None, {}))
 
 
@@ -79,7 +87,11 @@ def _execution(
     amounts: Amounts,
     unit: FunctionalUnit,
 ) -> Execution:
-    """Return preconditions, consumption and add effects of one execution of a unit."""
+    """Return the execution of a unit.
+
+    ``network`` is as in :func:`_execution_of`. An amount that ``amounts`` does not state is 1. An input that
+    stays because it is also an output is consumed as far as its amount exceeds that of the output.
+    """
     input_amounts, output_amounts = amounts.get(unit, _NO_AMOUNTS)
     preconditions = {
         node: input_amounts.get(node, 1) for node in needed_inputs(unit, rule, utensils, network)

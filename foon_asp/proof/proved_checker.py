@@ -1,4 +1,4 @@
-"""The checker of certificates that is proved in Coq: a separate program, built from ``verified/``.
+"""Calls the checker of certificates that is proved in Coq: a separate program, built from ``verified/``.
 
 It shares no code with ``verify``. From the same data, it computes landmarks, costs and the meanings of
 constraints by definitions of its own. docs/proofs.md states the theorem that is proved about these
@@ -21,49 +21,58 @@ _PROGRAM = "foon-verified"
 _BUILT = Path(__file__).resolve().parents[2] / "verified" / "build" / _PROGRAM
 
 
-def program() -> Path | None:
-    """Return the path of the proved checker, from a build in a checkout or on PATH; ``None`` without one."""
+def find_checker() -> Path | None:
+    """Return the path of the proved checker: the build of this checkout, or else the one on PATH.
+
+    ``None`` if neither exists.
+    """
     if _BUILT.is_file():
         return _BUILT
     installed = shutil.which(_PROGRAM)
     return None if installed is None else Path(installed)
 
 
-def judge(checker: Path, data: str, certificate: str) -> tuple[str, str]:
-    """Return the verdict of the proved checker: ``accepted``, ``refused`` or ``not checked``, and the reason.
+def run_checker(checker: Path, subject_data: str, certificate: str) -> tuple[str, str]:
+    """Run the proved checker; return its verdict and the reason.
+
+    The verdict is ``accepted``, ``refused`` or ``not checked``. It is ``not checked``, too, if the program
+    fails.
 
     Parameters:
-        checker: The program.
-        data: The data as :meth:`Subject.described` writes them.
-        certificate: The text of the certificate.
+        checker: The path of the program.
+        data: The data as :meth:`Subject.canonical_data` returns them.
+        certificate: The certificate as JSON text.
     """
-    ended = subprocess.run(
-        [checker], input=f"{data}\n{certificate}".encode(errors="replace"), capture_output=True, check=False
+    process = subprocess.run(
+        [checker],
+        input=f"{subject_data}\n{certificate}".encode(errors="replace"),
+        capture_output=True,
+        check=False,
     )
-    verdict, _, reason = ended.stdout.decode(errors="replace").strip().partition(": ")
+    verdict, _, reason = process.stdout.decode(errors="replace").strip().partition(": ")
     expected = {0: ACCEPTED, 1: "refused", 3: "not checked"}
-    if expected.get(ended.returncode) == verdict:
+    if expected.get(process.returncode) == verdict:
         return verdict, reason
-    return "not checked", f"it ended with the exit code {ended.returncode}"
+    return "not checked", f"it ended with the exit code {process.returncode}"
 
 
-def ask(certificate: Mapping[str, Any], subject: Subject) -> str:
-    """Check a certificate that :func:`verify` accepts with the proved checker.
+def check_certificate(certificate: Mapping[str, Any], subject: Subject) -> str:
+    """Check a certificate with the proved checker, after :func:`verify` accepted it.
 
     Returns:
-        ``accepted``, or the reason why the checker did not check the certificate, in words.
+        ``accepted``, or in words why nothing was checked, such as that the checker is not built.
 
     Raises:
         RefusedError: if the proved checker refuses the certificate.
     """
-    checker = program()
+    checker = find_checker()
     if checker is None:
         return NOT_BUILT
     rules = read_rules(certificate["rules"], len(subject.network))
-    data = subject.described(rules, [goal["id"] for goal in certificate["goals"]])
+    subject_data = subject.canonical_data(rules, [goal["id"] for goal in certificate["goals"]])
     # no longer than the file that was read
     text = json.dumps(certificate, separators=(",", ":"), ensure_ascii=False)
-    verdict, reason = judge(checker, data, text)
+    verdict, reason = run_checker(checker, subject_data, text)
     if verdict == "refused":
         raise RefusedError(f"by the proved checker: {reason}")
     return verdict if verdict == ACCEPTED else f"{verdict}: {reason}"

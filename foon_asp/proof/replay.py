@@ -1,4 +1,4 @@
-"""Replay of a plan with consumable items, copy by copy, in plain Python and independent of the solver."""
+"""Replay of a plan with consumable items, copy by copy, in plain Python and without the solver's code."""
 
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -14,7 +14,7 @@ from foon_asp.proof.execution import Executions
 class Copy(NamedTuple):
     """A copy of an object ``node``.
 
-    ``made`` is the position of the step that made it, ``None`` for the kitchen.
+    ``made`` is the position of the step that made it, from 0; ``None`` if the kitchen had it.
     """
 
     node: ObjectNode
@@ -24,9 +24,9 @@ class Copy(NamedTuple):
 class Shortage(NamedTuple):
     """A shortage: ``node`` has fewer copies than are needed at a step or at the end.
 
-    ``step`` is the position of the step that lacks copies, from 0; ``None`` if the goals lack copies at the
-    end. ``consumers`` are the positions of the steps that used up copies of the node, in order. ``amount`` is
-    the number of copies needed.
+    ``step``: the position of the step that lacks copies, from 0; ``None`` if the goals lack them at the end.
+    ``consumers``: the positions of the earlier steps that used up copies of the node, ascending.
+    ``amount``: the number of copies needed.
     """
 
     step: int | None
@@ -36,7 +36,12 @@ class Shortage(NamedTuple):
 
 
 class Step(NamedTuple):
-    """A step that ran, with the copies that it used up (``gone``), read (``stayed``) and made (``came``)."""
+    """A step that ran.
+
+    ``gone``: the copies that it used up.
+    ``stayed``: the copies that it needed and did not use up.
+    ``came``: the copies that it made.
+    """
 
     unit: FunctionalUnit
     gone: tuple[Copy, ...]
@@ -45,11 +50,12 @@ class Step(NamedTuple):
 
 
 class Replay(NamedTuple):
-    """The result of a replay: the ``steps`` that ran, and the ``shortage`` that stopped it, if one did.
+    """The result of a replay.
 
-    ``left`` are the copies that exist after the last step, made by steps or remaining from the stock; nodes
-    that are not consumable are omitted. ``stock`` maps each node with a finite stock to the number of copies
-    that the plan needs.
+    ``steps``: the steps that ran, in order.
+    ``shortage``: the shortage that stopped the replay; ``None`` if the plan runs and makes the goals.
+    ``left``: the consumable copies that exist after the last step, from the stock or made by steps.
+    ``stock``: for each node with a finite stock, the number of initial copies that the plan needs.
     """
 
     steps: tuple[Step, ...]
@@ -59,18 +65,19 @@ class Replay(NamedTuple):
 
 
 def replay_for(problem: Problem, plan: Iterable[FunctionalUnit]) -> Replay:
-    """Replay a plan with consumable items from the kitchen of a problem, up to its goals.
+    """Replay a plan from the kitchen of a problem whose items are used up; then look for the goals.
 
-    Kitchen items never run out, except those that the stock counts. A repeated unit runs again.
+    The replay stops at the first step that lacks a copy. Kitchen items never run out unless the stock counts
+    them. A unit that is listed twice runs twice.
     """
     return _Kitchen(problem).run(list(plan))
 
 
-def replayable(problem: Problem, plan: Iterable[FunctionalUnit]) -> Problem:
-    """Return a problem in which a plan can be replayed.
+def replayable_problem(problem: Problem, plan: Iterable[FunctionalUnit]) -> Problem:
+    """Return a problem in which :func:`replay_for` can replay a plan.
 
-    This is the problem itself if its items are used up. If its items last, return a copy whose items can be
-    used up, but in which every input of the plan stays.
+    A problem whose items are used up is returned as it is. If items last, return a copy with items that are
+    used up, in which all inputs of the plan stay.
     """
     if problem.items is not None:
         return problem
@@ -78,17 +85,17 @@ def replayable(problem: Problem, plan: Iterable[FunctionalUnit]) -> Problem:
     return replace(problem, items=UsedUp(stays))
 
 
-def waits(replay: Replay) -> Iterator[set[int]]:
-    """Yield for each step, in order, the positions of the steps that have to be done before it.
+def predecessors(replay: Replay) -> Iterator[set[int]]:
+    """Yield for each step, in order, the positions of the earlier steps that have to be done before it.
 
-    These are the earlier steps that made a copy that the step needs, or that read a copy that the step uses
-    up. Nodes that are not consumable always have another copy.
+    Such an earlier step made a copy that the step needs, or read a copy that the step uses up. Endless nodes
+    cause no order, since another copy always exists.
     """
     readers: dict[tuple[Copy, int], set[int]] = {}
-    spent: Counter[Copy] = Counter()  # how often a copy like this was used up: those of a stock are alike
+    spent: Counter[Copy] = Counter()  # how often an equal copy was used up
     for number, step in enumerate(replay.steps):
         after = {copy.made for copy in (*step.gone, *step.stayed) if copy.made is not None}
-        for read in _read(step, spent):
+        for read in _numbered_reads(step, spent):
             readers.setdefault(read, set()).add(number)
         for copy in step.gone:
             if copy.made is not None or copy.node in replay.stock:
@@ -97,27 +104,27 @@ def waits(replay: Replay) -> Iterator[set[int]]:
         yield after
 
 
-def readers(replay: Replay, is_free: Callable[[str], bool]) -> list[tuple[int, ...]]:
-    """Return, for each copy that several steps need and do not use up, the positions of the steps.
+def shared_readers(replay: Replay, is_free: Callable[[str], bool]) -> list[tuple[int, ...]]:
+    """Return, for each copy that several steps need and do not use up, the positions of these steps.
 
-    Copies that neither a step made nor the stock counts are omitted, since they never run out. Nodes whose
-    label ``is_free`` accepts are omitted, too, since each step can have another copy.
+    Copies that never run out are omitted: the kitchen has them, and the stock does not count them. Nodes with
+    a label that ``is_free`` accepts are omitted, too.
     """
     reading: dict[tuple[Copy, int], list[int]] = {}
-    spent: Counter[Copy] = Counter()  # as in waits
+    spent: Counter[Copy] = Counter()  # as in predecessors
     for number, step in enumerate(replay.steps):
-        for copy, earlier in _read(step, spent):
+        for copy, earlier in _numbered_reads(step, spent):
             if (copy.made is not None or copy.node in replay.stock) and not is_free(copy.node.label):
                 reading.setdefault((copy, earlier), []).append(number)
         spent.update(step.gone)
     return [tuple(steps) for steps in reading.values() if len(steps) > 1]
 
 
-def _read(step: Step, spent: Counter[Copy]) -> Iterator[tuple[Copy, int]]:
-    """Yield each copy that a step reads, with the copy's number among the copies of equal node and maker.
+def _numbered_reads(step: Step, spent: Counter[Copy]) -> Iterator[tuple[Copy, int]]:
+    """Yield each copy that a step needs and does not use up, with a number that tells it from its equals.
 
-    ``spent`` counts the copies that earlier steps used up; they come first in the numbering, then those that
-    this step uses up.
+    Copies are equal if node and maker are equal. Copies used up by earlier steps, counted in ``spent``, have
+    the first numbers. Those that this step uses up come next.
     """
     before = spent + Counter(step.gone)
     for copy in step.stayed:
@@ -126,66 +133,80 @@ def _read(step: Step, spent: Counter[Copy]) -> Iterator[tuple[Copy, int]]:
 
 
 class _Kitchen:
-    """The state of the kitchen: nodes that are not consumable, and single copies of others, oldest first."""
+    """The kitchen during a replay: endless nodes, and single copies of the others, oldest first."""
 
     def __init__(self, problem: Problem) -> None:
+        """Start with the initial copies of a problem whose items are used up."""
         assert problem.items is not None
         self._executions = Executions(problem)
-        self._copies = {node: deque([Copy(node, None)] * n) for node, n in self._executions.stock().items()}
+        self._copies = {
+            node: deque([Copy(node, None)] * n) for node, n in self._executions.initial_copies().items()
+        }
         self._consumers_of: dict[ObjectNode, list[int]] = {}
         self._made: Counter[ObjectNode] = Counter()  # copies made less copies used up
-        self._least: dict[ObjectNode, int] = dict.fromkeys(self._copies, 0)
+        self._stock_needed: dict[ObjectNode, int] = dict.fromkeys(self._copies, 0)
 
     def run(self, plan: Sequence[FunctionalUnit]) -> Replay:
-        """Execute the units in order up to the first that lacks a copy; then look for the goals."""
+        """Execute the units in order, up to the first that lacks a copy; then look for the goals."""
         steps: list[Step] = []
         shortage: Shortage | None = None
         for position, unit in enumerate(plan):
             preconditions = self._executions.of(unit).preconditions
-            lacking = [(node, n) for node, n in preconditions.items() if not self._has(node, n)]
+            lacking = [(node, n) for node, n in preconditions.items() if not self._has_copies(node, n)]
             if lacking:
                 shortage = self._shortage(position, *lacking[0])
                 break
-            steps.append(self._step(position, unit))
+            steps.append(self._run_step(position, unit))
         if shortage is None:
-            missing = [(node, n) for node, n in self._executions.wanted().items() if not self._has(node, n)]
+            missing = [
+                (node, n)
+                for node, n in self._executions.wanted_copies().items()
+                if not self._has_copies(node, n)
+            ]
             if missing:
                 shortage = self._shortage(None, *missing[0])
         remaining = tuple(copy for copies in self._copies.values() for copy in copies)
-        return Replay(tuple(steps), shortage, remaining, self._least)
+        return Replay(tuple(steps), shortage, remaining, self._stock_needed)
 
-    def _step(self, position: int, unit: FunctionalUnit) -> Step:
-        """Execute a unit whose preconditions are available; it takes the oldest copies first."""
+    def _run_step(self, position: int, unit: FunctionalUnit) -> Step:
+        """Execute a unit whose preconditions are available, oldest copies first, and return its step."""
         preconditions, consumes, adds = self._executions.of(unit)
         gone, stayed, came = list[Copy](), list[Copy](), list[Copy]()
         for node, amount in preconditions.items():
             used = consumes.get(node, 0)
-            gone += self._take(node, used, position)
-            endless = self._endless(node)
-            kept = amount - used
-            stayed += [endless] * kept if endless else islice(self._copies[node], kept)
+            gone += self._take_copies(node, used, position)
+            endless = self._endless_copy(node)
+            unconsumed = amount - used
+            stayed += [endless] * unconsumed if endless else islice(self._copies[node], unconsumed)
         for node, amount in adds.items():
             copies = [Copy(node, position)] * amount
             came += copies
-            if not self._endless(node):
+            if not self._endless_copy(node):
                 self._copies.setdefault(node, deque()).extend(copies)
                 self._made[node] += amount
         return Step(unit, tuple(gone), tuple(stayed), tuple(came))
 
-    def _endless(self, node: ObjectNode) -> Copy | None:
+    def _endless_copy(self, node: ObjectNode) -> Copy | None:
+        """Return the copy that stands for a node that never runs out; ``None`` for other nodes."""
         return Copy(node, None) if self._executions.is_endless(node) else None
 
-    def _has(self, node: ObjectNode, amount: int) -> bool:
-        """Return whether there are ``amount`` copies of a node, and record that the plan needs them."""
-        if self._endless(node):
+    def _has_copies(self, node: ObjectNode, amount: int) -> bool:
+        """Return whether ``amount`` copies of a node exist.
+
+        Also raise the number of initial copies that the plan needs of the node, if its stock is finite.
+        """
+        if self._endless_copy(node):
             return True
-        if node in self._least:
-            self._least[node] = max(self._least[node], amount - self._made[node])
+        if node in self._stock_needed:
+            self._stock_needed[node] = max(self._stock_needed[node], amount - self._made[node])
         return len(self._copies.get(node, ())) >= amount
 
-    def _take(self, node: ObjectNode, amount: int, position: int) -> list[Copy]:
-        """Remove and return the oldest copies of a node; copies that are not consumable stay."""
-        endless = self._endless(node)
+    def _take_copies(self, node: ObjectNode, amount: int, position: int) -> list[Copy]:
+        """Remove and return the oldest copies of a node, and note the step at ``position`` as their consumer.
+
+        An endless node keeps its copies.
+        """
+        endless = self._endless_copy(node)
         if endless:
             return [endless] * amount
         if amount:
@@ -194,4 +215,5 @@ class _Kitchen:
         return [self._copies[node].popleft() for _ in range(amount)]
 
     def _shortage(self, step: int | None, node: ObjectNode, amount: int) -> Shortage:
+        """Return the shortage of a node of which ``amount`` copies are needed, with its consumers so far."""
         return Shortage(step, node, tuple(self._consumers_of.get(node, ())), amount)

@@ -1,6 +1,6 @@
 """The meanings of the ready-made constraints, computed from the plain network.
 
-Certificates are checked by these meanings, so nothing here uses clingo: each constraint of
+Certificates are checked by these meanings, so nothing here uses clingo. Each constraint of
 ``encodings/constraints`` is a few lines of Python, and :data:`LIBRARY` lists them. docs/dev/certificates.md
 says how their meanings enter a proof.
 """
@@ -19,10 +19,16 @@ Barred = Callable[[Units, Units], Units]
 
 
 class Question(NamedTuple):
-    """The data that constraints depend on.
+    """The parts of a planning question that constraints depend on.
 
-    Four fields are functions of a unit id: ``rate`` and ``price`` return its success rate and price, ``None``
-    where unknown; ``needs`` and ``gives`` return its preconditions and add effects.
+    ``network``: the network; units and nodes are given by id.
+    ``kitchen``: the nodes that are available at first.
+    ``goals``: the goal nodes.
+    ``utensils``: the labels of utensils.
+    ``rate``: a function that returns the success rate of a unit; ``None`` if unknown.
+    ``price``: a function that returns the price of a unit; ``None`` if unknown.
+    ``needs``, ``gives``: functions that return the preconditions and the add effects of a unit. They are
+    nodes, or ``None`` for a node that is not in the network.
     """
 
     network: Network
@@ -35,11 +41,11 @@ class Question(NamedTuple):
     gives: Callable[[int], frozenset[int | None]]
 
     def with_motion(self, motion: str) -> Units:
-        """Return the units with a motion."""
+        """Return the units with a motion, by id."""
         return frozenset(unit for unit, name in enumerate(self.network.motions) if name == motion)
 
     def touching(self, nodes: Iterable[int]) -> Units:
-        """Return the units with one of the nodes among their inputs or outputs."""
+        """Return the units that have one of the nodes among their inputs or outputs."""
         touched, network = frozenset(nodes), self.network
         sides = enumerate(zip(network.inputs, network.outputs, strict=True))
         return frozenset(
@@ -49,11 +55,11 @@ class Question(NamedTuple):
         )
 
     def labelled(self, label: str) -> list[int]:
-        """Return the nodes with a label."""
+        """Return the nodes with a label, by id, ascending."""
         return [o for o, node in enumerate(self.network.objects) if node.label == label]
 
     def made_with(self, names: Collection[str]) -> list[int]:
-        """Return the nodes that are labelled as one of some names, or contain one of them."""
+        """Return the nodes that have one of the names as label or among their ingredients, ascending."""
         wanted = frozenset(names)
         return [
             o
@@ -63,24 +69,24 @@ class Question(NamedTuple):
 
 
 class Meaning(NamedTuple):
-    """The meaning of a constraint: conditions that a tree has to satisfy, all of them together.
+    """The meaning of a constraint: all conditions that a tree has to satisfy. Units are given by id.
 
     Attributes:
         removed: Units that the tree does not have.
-        wanted: Requirements. Each is a list of alternatives, of which the tree has to satisfy one. An
-            alternative is a list of sets of units, and the tree has to have a unit of each set.
-        things: Sets of units, each with an amount from 0; the tree uses a thing if it has one of its units.
-        max_sum: The greatest sum of the amounts of the things that a tree may use; ``None`` is no limit.
+        requirements: Each requirement is a list of alternatives, and the tree satisfies one of them. An
+            alternative is a list of sets of units. The tree satisfies it if it has a unit of each set.
+        counted_sets: Sets of units, each with an amount from 0. A set counts once if the tree has a unit of
+            it.
+        max_sum: The greatest sum of the amounts of sets that count; ``None`` is no limit.
         never: Whether no tree satisfies the constraint.
-        barred: A function of two sets of units. It returns units that are in no tree with all of the first
-            set and none of the second.
-        limits: Further limits, each as the amounts of units, from 0, and the greatest sum that a tree may
-            have.
+        barred: A function of two sets of units. It returns units that no tree has together with all of the
+            first set and none of the second.
+        limits: Further limits. Each has the amounts of units, from 0, and the greatest sum for a tree.
     """
 
     removed: Units = frozenset()
-    wanted: Sequence[Sequence[Sequence[Units]]] = ()
-    things: Sequence[tuple[Units, Fraction]] = ()
+    requirements: Sequence[Sequence[Sequence[Units]]] = ()
+    counted_sets: Sequence[tuple[Units, Fraction]] = ()
     max_sum: Fraction | None = None
     never: bool = False
     barred: Barred | None = None
@@ -88,64 +94,82 @@ class Meaning(NamedTuple):
 
 
 class Constraint(NamedTuple):
-    """A ready-made constraint: the types of its values by name (``list`` is of texts), and its meaning.
+    """A ready-made constraint.
 
-    ``removes`` says that the constraint only removes units. ``places`` returns the parts of a unit's sources
-    that the constraint reads; it is ``None`` where the constraint reads no sources.
+    ``values``: the type of each value of the constraint, by name; ``list`` is a list of texts.
+    ``meaning``: a function from a :class:`Question` and the values, as keyword arguments, to the meaning.
+    ``removes``: whether the constraint only removes units.
+    ``read_sources``: a function from the network, a unit and the values to what the constraint reads of the
+    unit's sources, such as file names. ``None`` if it reads no sources.
     """
 
     values: Mapping[str, type]
     meaning: Callable[..., Meaning]
     removes: bool = False
-    places: Callable[..., Collection[str]] | None = None
+    read_sources: Callable[..., Collection[str]] | None = None
 
 
-def meaning(rule: Rule, question: Question) -> Meaning:
+def meaning_of_rule(rule: Rule, question: Question) -> Meaning:
     """Return the meaning of a rule of a certificate.
 
-    A rule is a ready-made constraint with its values, claims about user rules (:data:`OWN`), or units that
-    every tree has (:data:`ALL_STEPS`).
+    A rule is one of three: a ready-made constraint with its values, claims about user rules (:data:`OWN`), or
+    a list of units that every tree has (:data:`ALL_STEPS`).
     """
     if rule["rule"] == OWN:
-        return own(rule)
+        return meaning_of_user_rules(rule)
     if rule["rule"] == ALL_STEPS:
-        return Meaning(wanted=[[[frozenset({unit})]] for unit in rule["units"]])
-    return LIBRARY[rule["rule"]].meaning(question, **_values(rule))
+        return Meaning(requirements=[[[frozenset({unit})]] for unit in rule["units"]])
+    return LIBRARY[rule["rule"]].meaning(question, **_values_of_rule(rule))
 
 
-def looked_at(rule: Rule, network: Network) -> list[list[str]] | None:
-    """Return for each unit the sources that a constraint reads; ``None`` where it reads no sources."""
-    places = None if rule["rule"] in {OWN, ALL_STEPS} else LIBRARY[rule["rule"]].places
-    if places is None:
+def sources_read(rule: Rule, network: Network) -> list[list[str]] | None:
+    """Return for each unit, by id, what a rule reads of the unit's sources, sorted.
+
+    ``None`` if the rule reads no sources.
+    """
+    read_sources = None if rule["rule"] in {OWN, ALL_STEPS} else LIBRARY[rule["rule"]].read_sources
+    if read_sources is None:
         return None
-    return [sorted(places(network, unit, **_values(rule))) for unit in range(len(network))]
+    return [sorted(read_sources(network, unit, **_values_of_rule(rule))) for unit in range(len(network))]
 
 
-def _values(rule: Rule) -> dict[str, Any]:
+def _values_of_rule(rule: Rule) -> dict[str, Any]:
+    """Return the values of a ready-made constraint by name, without its own name."""
     return {name: value for name, value in rule.items() if name != "rule"}
 
 
 def _forbid_motion(question: Question, forbidden_motion: str) -> Meaning:
+    """Return a meaning that removes the units with the motion."""
     return Meaning(question.with_motion(forbidden_motion))
 
 
 def _forbid_object(question: Question, forbidden_object: str) -> Meaning:
+    """Return a meaning that removes the units with an object of this label among inputs or outputs."""
     return Meaning(question.touching(question.labelled(forbidden_object)))
 
 
 def _forbid_ingredient(question: Question, allergen: list[str]) -> Meaning:
+    """Return a meaning that removes the units that touch an object with an allergen.
+
+    The object is labelled as one of the names in ``allergen``, or has it as an ingredient. If a goal is such
+    an object, no tree satisfies the constraint.
+    """
     tainted = question.made_with(allergen)
     return Meaning(question.touching(tainted), never=not set(tainted).isdisjoint(question.goals))
 
 
 def _least_rate(question: Question, least_rate: int) -> Meaning:
+    """Return a meaning that removes the units whose success rate is unknown or below ``least_rate``.
+
+    Rates are compared in millionths, rounded down.
+    """
     rates = map(question.rate, range(len(question.network)))
     enough = [rate is not None and rate * 1_000_000 // 1 >= least_rate for rate in rates]
     return Meaning(frozenset(unit for unit, reliable in enumerate(enough) if not reliable))
 
 
-def _vouching(network: Network, unit: int, allowed: list[str]) -> set[str]:
-    """Return the names that match the source of a unit: a file name, a path, or the address of a video."""
+def _matching_source_names(network: Network, unit: int, allowed: list[str]) -> set[str]:
+    """Return the names of ``allowed`` that name a source of the unit: a path, file name or video address."""
     return {
         name
         for source in network.sources[unit]
@@ -155,27 +179,35 @@ def _vouching(network: Network, unit: int, allowed: list[str]) -> set[str]:
 
 
 def _only_sources(question: Question, allowed: list[str]) -> Meaning:
+    """Return a meaning that removes the units without a source in ``allowed``."""
     network = question.network
-    return Meaning(frozenset(u for u in range(len(network)) if not _vouching(network, u, allowed)))
+    return Meaning(
+        frozenset(u for u in range(len(network)) if not _matching_source_names(network, u, allowed))
+    )
 
 
 def _videos(network: Network, unit: int, least_videos: int) -> set[str]:
+    """Return the video addresses of all sources of a unit; ``least_videos`` is not read."""
     return {video for source in network.sources[unit] for video in source.videos}
 
 
 def _at_least_videos(question: Question, least_videos: int) -> Meaning:
+    """Return a meaning that removes the units that are in fewer videos than ``least_videos``."""
     network = question.network
     seen = [len(_videos(network, unit, least_videos)) for unit in range(len(network))]
     return Meaning(frozenset(unit for unit, videos in enumerate(seen) if videos < least_videos))
 
 
 def _motion_only_with(question: Question, tied_motion: str, tied_utensil: str) -> Meaning:
-    """Remove the units with the motion that do not touch the utensil."""
+    """Return a meaning that removes the units with the motion that have no object of the utensil's label."""
     return Meaning(question.with_motion(tied_motion) - question.touching(question.labelled(tied_utensil)))
 
 
 def _never_heated(question: Question, unheated_ingredient: str, heats: list[str]) -> Meaning:
-    """Remove the units with a motion of ``heats`` that have the ingredient in one of their inputs."""
+    """Return a meaning that removes units with a motion of ``heats`` and the ingredient in an input.
+
+    An input labelled as the ingredient counts, too.
+    """
     network, hot = question.network, frozenset(heats)
     tainted = frozenset(question.made_with([unheated_ingredient]))
     heating = (unit for unit, motion in enumerate(network.motions) if motion in hot)
@@ -183,44 +215,59 @@ def _never_heated(question: Question, unheated_ingredient: str, heats: list[str]
 
 
 def _require_motion(question: Question, required_motion: str) -> Meaning:
-    return Meaning(wanted=[[[question.with_motion(required_motion)]]])
+    """Return a meaning that requires a unit with the motion."""
+    return Meaning(requirements=[[[question.with_motion(required_motion)]]])
 
 
 def _require_object(question: Question, required_object: str) -> Meaning:
-    return Meaning(wanted=[[[question.touching(question.labelled(required_object))]]])
+    """Return a meaning that requires a unit with an object of this label among inputs or outputs."""
+    return Meaning(requirements=[[[question.touching(question.labelled(required_object))]]])
 
 
 def _require_ingredient(question: Question, required_ingredient: str) -> Meaning:
-    return Meaning(wanted=[[[question.touching(question.made_with([required_ingredient]))]]])
+    """Return a meaning that requires a unit with the ingredient in an input or output.
+
+    An input or output labelled as the ingredient counts, too.
+    """
+    return Meaning(requirements=[[[question.touching(question.made_with([required_ingredient]))]]])
 
 
 def _require_intermediate(question: Question, required_intermediate: str) -> Meaning:
-    """Require a unit that makes one of the nodes without needing it, and another one that needs it."""
+    """Return a meaning that requires that an object of this label is made and used.
+
+    For one node of the label that the kitchen does not have, the tree has a unit that needs it, and another
+    that makes it without needing it.
+    """
     network = question.network
     wanted = []
     for o in question.labelled(required_intermediate):
         if o not in question.kitchen:
-            takers = frozenset(unit for unit in network.consumers[o] if o in question.needs(unit))
-            wanted.append([frozenset(network.producers[o]) - takers, takers])
-    return Meaning(wanted=[wanted])
+            consumers = frozenset(unit for unit in network.consumers[o] if o in question.needs(unit))
+            wanted.append([frozenset(network.producers[o]) - consumers, consumers])
+    return Meaning(requirements=[wanted])
 
 
-def _one_each(units: Iterable[int]) -> list[tuple[Units, Fraction]]:
-    """Return units as things, each of amount 1."""
+def _singletons(units: Iterable[int]) -> list[tuple[Units, Fraction]]:
+    """Return a set for each unit, with the unit alone and the amount 1, ascending."""
     one = Fraction(1)
     return [(frozenset({unit}), one) for unit in sorted(units)]
 
 
 def _at_most_units(question: Question, max_units: int) -> Meaning:
-    return Meaning(things=_one_each(range(len(question.network))), max_sum=Fraction(max_units))
+    """Return a meaning that limits the number of units."""
+    return Meaning(counted_sets=_singletons(range(len(question.network))), max_sum=Fraction(max_units))
 
 
 def _at_most_motion(question: Question, limited_motion: str, max_uses: int) -> Meaning:
-    return Meaning(things=_one_each(question.with_motion(limited_motion)), max_sum=Fraction(max_uses))
+    """Return a meaning that limits the number of units with the motion."""
+    return Meaning(counted_sets=_singletons(question.with_motion(limited_motion)), max_sum=Fraction(max_uses))
 
 
 def _at_most_utensils(question: Question, max_utensils: int) -> Meaning:
-    """Return a limit on the utensils that the units of a tree touch, by label."""
+    """Return a meaning that limits the number of different utensils, by label.
+
+    It counts the utensils among the inputs and outputs of the tree's units.
+    """
     network, utensils = question.network, question.utensils
     labels = {o: node.label for o, node in enumerate(network.objects) if node.label in utensils}
     touching: dict[str, list[int]] = {label: [] for label in sorted(utensils)}
@@ -229,42 +276,48 @@ def _at_most_utensils(question: Question, max_utensils: int) -> Meaning:
             touching[label].append(unit)
     one = Fraction(1)
     touched = [(frozenset(units), one) for units in touching.values() if units]
-    return Meaning(things=touched, max_sum=Fraction(max_utensils))
+    return Meaning(counted_sets=touched, max_sum=Fraction(max_utensils))
 
 
 def _at_most_utensil_uses(question: Question, limited_utensil: str, max_utensil_uses: int) -> Meaning:
+    """Return a meaning that limits the number of units with an object of the utensil's label."""
     units = question.touching(question.labelled(limited_utensil))
-    return Meaning(things=_one_each(units), max_sum=Fraction(max_utensil_uses))
+    return Meaning(counted_sets=_singletons(units), max_sum=Fraction(max_utensil_uses))
 
 
 def _at_most_price(question: Question, max_price: int) -> Meaning:
-    """Limit the sum of prices, in hundredths; a unit without a price is excluded."""
+    """Return a meaning that limits the sum of prices to ``max_price`` hundredths.
+
+    It removes the units without a price.
+    """
     prices = {unit: question.price(unit) for unit in range(len(question.network))}
     unknown = frozenset(unit for unit, price in prices.items() if price is None)
-    things = [(frozenset({unit}), price * 100) for unit, price in prices.items() if price is not None]
-    return Meaning(unknown, things=things, max_sum=Fraction(max_price))
+    priced_units = [(frozenset({unit}), price * 100) for unit, price in prices.items() if price is not None]
+    return Meaning(unknown, counted_sets=priced_units, max_sum=Fraction(max_price))
 
 
 def _not_both_motions(question: Question, one_motion: str, other_motion: str) -> Meaning:
+    """Return a meaning that allows units with one of the two motions, but not with both."""
     motions = [question.with_motion(motion) for motion in (one_motion, other_motion)]
-    return Meaning(things=[(units, Fraction(1)) for units in motions], max_sum=Fraction(1))
+    return Meaning(counted_sets=[(units, Fraction(1)) for units in motions], max_sum=Fraction(1))
 
 
 def _before(question: Question, earlier_motion: str, later_motion: str) -> Meaning:
-    """Forbid units with the later motion that need no node made with or after the earlier motion.
+    """Return a meaning that bars units with the later motion that cannot come after the earlier motion.
 
-    On a branch, the nodes that the used units can make without the earlier motion are *early*. Any other node
-    becomes late only through a unit that makes it, is not excluded, and either has the earlier motion or
-    needs a late node. A unit with the later motion is barred if it needs no late node.
+    The certificate is at a branch, on which some units are used and others excluded. Nodes that the used
+    units can make without the earlier motion are *early*. Other nodes are *late* if a unit that is not
+    excluded makes them, and has the earlier motion or needs a late node. A unit with the later motion is
+    barred if it needs no late node.
     """
     network, needs, gives = question.network, question.needs, question.gives
-    first = question.with_motion(earlier_motion)
-    later = question.with_motion(later_motion) - first
+    with_earlier = question.with_motion(earlier_motion)
+    with_later = question.with_motion(later_motion) - with_earlier
 
     def early(used: Units) -> set[int | None]:
-        """Return the nodes that ``used`` units can make without the earlier motion."""
+        """Return the early nodes: those that ``used`` units can make without the earlier motion."""
         available: set[int | None] = set(question.kitchen)
-        waiting = used - first
+        waiting = used - with_earlier
         while runs := {unit for unit in waiting if needs(unit) <= available}:
             available.update(o for unit in runs for o in gives(unit))
             waiting -= runs
@@ -274,13 +327,13 @@ def _before(question: Question, earlier_motion: str, later_motion: str) -> Meani
         """Return the units with the later motion that need no late node."""
         available = early(used)
         late: set[int | None] = set()
-        stack = list(first - without)
+        stack = list(with_earlier - without)
         for unit in stack:  # grows while it is walked through
             for o in gives(unit) - available - late:
                 late.add(o)
                 consumers = network.consumers[o] if o is not None else ()
                 stack += (u for u in consumers if u not in without and o in needs(u))
-        return frozenset(unit for unit in later if late.isdisjoint(needs(unit)))
+        return frozenset(unit for unit in with_later if late.isdisjoint(needs(unit)))
 
     return Meaning(barred=barred)
 
@@ -289,27 +342,36 @@ ALL_STEPS = "all_steps"  # in place of a constraint's name: units that every tre
 OWN = "own"  # in place of a constraint's name: user rules
 
 
-def own(rule: Rule) -> Meaning:
-    """Return the meaning of claims about user rules: no tree has all units of one set and none of another.
+def meaning_of_user_rules(rule: Rule) -> Meaning:
+    """Return the meaning of claims about user rules, which a certificate takes on trust.
 
-    Limits are claims, too. On a branch, unit propagation bars a unit: it is the only unit of the first set
-    that is not used, and all units of the second set are excluded.
+    A claim is a pair of sets: no tree has all units of the first and none of the second. Limits on sums of
+    amounts are claims, too.
     """
     claims = [(frozenset(used), frozenset(without)) for used, without in rule["claims"]]
     removed = [used for used, without in claims if len(used) == 1 and not without]
     wanted = [[[without]] for used, without in claims if not used]
-    others = [(used, without) for used, without in claims if used and (len(used) > 1 or without)]
+    barring_claims = [(used, without) for used, without in claims if used and (len(used) > 1 or without)]
 
     def barred(used: Units, without: Units) -> Units:
-        unused = [together - used for together, excluded in others if excluded <= without]
-        whole = [together for together, excluded in others if excluded <= without and together <= used]
-        return frozenset().union(*(one for one in unused if len(one) == 1), *whole)
+        """Return the units that claims bar (unit propagation).
+
+        A claim bars units if all units of its second set are excluded. If one unit of its first set is not
+        used, it bars this unit. If all of them are used, it bars them all.
+        """
+        unused = [used_together - used for used_together, excluded in barring_claims if excluded <= without]
+        broken = [
+            used_together
+            for used_together, excluded in barring_claims
+            if excluded <= without and used_together <= used
+        ]
+        return frozenset().union(*(remaining for remaining in unused if len(remaining) == 1), *broken)
 
     limits = [
         ({unit: Fraction(amount) for amount, units in amounts.items() for unit in units}, Fraction(max_sum))
         for amounts, max_sum in rule["limits"]
     ]
-    bars = barred if others else None
+    bars = barred if barring_claims else None
     return Meaning(frozenset().union(*removed), wanted, barred=bars, limits=limits)
 
 
@@ -318,8 +380,12 @@ LIBRARY: Mapping[str, Constraint] = {
     "forbid_object": Constraint({"forbidden_object": str}, _forbid_object, removes=True),
     "forbid_ingredient": Constraint({"allergen": list}, _forbid_ingredient),
     "least_rate": Constraint({"least_rate": int}, _least_rate, removes=True),
-    "only_sources": Constraint({"allowed": list}, _only_sources, removes=True, places=_vouching),
-    "at_least_videos": Constraint({"least_videos": int}, _at_least_videos, removes=True, places=_videos),
+    "only_sources": Constraint(
+        {"allowed": list}, _only_sources, removes=True, read_sources=_matching_source_names
+    ),
+    "at_least_videos": Constraint(
+        {"least_videos": int}, _at_least_videos, removes=True, read_sources=_videos
+    ),
     "motion_only_with": Constraint(
         {"tied_motion": str, "tied_utensil": str}, _motion_only_with, removes=True
     ),

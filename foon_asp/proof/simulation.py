@@ -1,4 +1,4 @@
-"""Forward simulation of a tree, in plain Python and independent of the solver."""
+"""Simulation of a tree whose items last, in plain Python and without the solver's code."""
 
 from collections.abc import Iterator, Sequence
 from enum import StrEnum
@@ -23,13 +23,14 @@ class Verdict(StrEnum):
 
 
 class Obstacle(NamedTuple):
-    """Why a tree does not execute: the position of a unit in the tree (from 0) and an input it lacks.
+    """Why a tree does not execute: a unit, and an input that it lacks.
 
-    ``unit`` is ``None`` when every unit runs and a goal is still missing; ``missing`` is then the goal.
-    ``cycle`` has the positions of a cycle of units that ``unit`` waits for: each waits for an output of the
-    next one, and the last for an output of the first. If the cycle is empty, ``unit`` needs, perhaps through
-    other units, an input that no unit of the tree makes. In a plan, ``used_up_by`` are the positions of the
-    steps that used up copies of ``missing``, and ``amount`` is the number of copies needed.
+    ``unit``: the position of the unit in the tree, from 0. ``None`` if every unit runs and a goal is missing.
+    ``missing``: the input or goal that is not available.
+    ``cycle``: positions of units in a cycle that ``unit`` waits for. Each needs an output of the next, and
+    the last one of the first. If it is empty, ``unit`` depends on an input that no unit makes.
+    ``used_up_by``: in a plan, the positions of the steps that used up copies of ``missing``.
+    ``amount``: in a plan, the number of copies needed.
     """
 
     unit: int | None
@@ -42,9 +43,10 @@ class Obstacle(NamedTuple):
 class Simulation(NamedTuple):
     """The result of a simulation of a tree.
 
-    ``verdict`` tells how the tree executes. ``order`` has positions in the tree, in an executable order;
-    units that cannot run are omitted. ``as_listed`` is the obstacle of the listed order, and ``obstacle``
-    that of every order; ``None`` without an obstacle.
+    ``verdict``: how the tree executes.
+    ``order``: positions in the tree, from 0, in an order that executes. Units that cannot run are omitted.
+    ``as_listed``: the obstacle in the listed order; ``None`` if the tree executes as listed.
+    ``obstacle``: an obstacle in every order; ``None`` if some order executes.
 
     Example:
         >>> problem = foon_asp.load().problem("macaroni")
@@ -59,7 +61,10 @@ class Simulation(NamedTuple):
 
 
 def simulate_for(problem: Problem, tree: TaskTree) -> Simulation:
-    """Execute a tree from the kitchen of a problem, for its goals and under its container rule."""
+    """Simulate a tree from the kitchen of a problem, for its goals and under its container rule.
+
+    Items last, whatever the problem says about them.
+    """
     network = problem.network
     goals = tuple(network.objects[goal] for goal in problem.goals)
     # Only goals and inputs of the tree: a large kitchen takes longer to hash than a tree to execute.
@@ -76,11 +81,11 @@ def simulate(
     utensils: frozenset[str],
     network: Network | None = None,
 ) -> Simulation:
-    """Execute the units of a tree from the kitchen, first as listed, then in any order that works.
+    """Execute the units of a tree from the kitchen: first as listed, then in any order that works.
 
-    Items are not consumed. The tree executes if all its units run and all goals are then available. Below
-    level 3, a unit stands for several units of the ``network`` of level 3, which decide its preconditions and
-    add effects.
+    Items last. The tree executes if all its units run and all goals are then available. Below level 3,
+    ``network`` has to be the network of the units. A unit then stands for several units of level 3, which
+    decide its preconditions and add effects.
     """
     needs = [needed_inputs(unit, containers, utensils, network) for unit in tree]
     gives = [given_outputs(unit, containers, utensils, network) for unit in tree]
@@ -113,7 +118,7 @@ def simulate(
         waiting = held_back
     if waiting:
         lacking = next(node for node in needs[waiting[0]] if node not in available)
-        blocked = Obstacle(waiting[0], lacking, _cycle(needs, gives, waiting, available))
+        blocked = Obstacle(waiting[0], lacking, _waiting_cycle(needs, gives, waiting, available))
         return Simulation(Verdict.NEVER, tuple(order), as_listed, blocked)
     obstacle = _missing_goal(goals, available)
     verdict = Verdict.REORDERED if obstacle is None else Verdict.NEVER
@@ -121,24 +126,29 @@ def simulate(
 
 
 def _missing_goal(goals: tuple[ObjectNode, ...], available: set[ObjectNode]) -> Obstacle | None:
-    """Return the first goal that is not available as an obstacle; ``None`` if all are available."""
+    """Return an obstacle for the first goal that is not available; ``None`` if all are available."""
     missing = next((goal for goal in goals if goal not in available), None)
     return None if missing is None else Obstacle(None, missing)
 
 
-def _cycle(
+def _waiting_cycle(
     needs: Sequence[tuple[ObjectNode, ...]],
     gives: Sequence[tuple[ObjectNode, ...]],
     waiting: Sequence[int],
     available: set[ObjectNode],
 ) -> tuple[int, ...]:
-    """Return the positions of a cycle of units that the first waiting unit waits for; empty without one."""
+    """Return a cycle of waiting units, by position, that keeps the first waiting unit from running.
+
+    A unit waits for the units that make one of its unavailable inputs. Empty if there is no cycle. ``needs``
+    and ``gives`` have the inputs and outputs of each unit, by position.
+    """
     makers: dict[ObjectNode, list[int]] = {}
     for position in waiting:
         for node in gives[position]:
             makers.setdefault(node, []).append(position)
 
     def waits_for(position: int) -> Iterator[int]:
+        """Yield the positions of the waiting units that make an unavailable input of a unit."""
         for node in needs[position]:
             if node not in available:
                 yield from makers.get(node, ())

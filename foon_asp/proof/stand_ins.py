@@ -1,7 +1,8 @@
-"""Check, for certificates, that a network has the stand-ins of its table.
+"""Check, for certificates, that a network has the stand-ins that its table asks for.
 
-docs/stand-ins.md has the definition, and the argument why no other stand-in can be in a best tree. The code
-that makes stand-ins is not used here: the prices are computed anew.
+A stand-in is a unit that uses an available node in place of one that cannot be made. docs/stand-ins.md argues
+why no other stand-in can be in a best tree. Prices are computed here anew, without the code that adds
+stand-ins.
 """
 
 from collections import Counter, deque
@@ -15,27 +16,31 @@ from foon_asp.network import STAND_IN, Edit, Network, ObjectNode, StandInTable
 Sides = Callable[[int], Collection[int | None]]
 
 
-class Makes(NamedTuple):
-    """The kitchen, and the inputs and outputs of each unit, by id; ``None`` is a node outside the network."""
+class Actions(NamedTuple):
+    """The kitchen, and functions from a unit to its preconditions (``needs``) and add effects (``gives``).
+
+    All are ids of nodes; ``None`` is a node that is not in the network.
+    """
 
     kitchen: Collection[int]
     needs: Sides
     gives: Sides
 
 
-class Claim(NamedTuple):
-    """The part of a claim that concerns stand-ins.
+class StandInClaim(NamedTuple):
+    """The part of a certificate's claim that concerns stand-ins.
 
-    It says whether dissimilarity is the first objective, and has a lower bound on dissimilarity. ``bound`` is
-    ``None`` where there is no tree, or where the claim does not bound dissimilarity.
+    ``by_dissimilarity``: whether dissimilarity is the first objective.
+    ``bound``: the claimed lower bound on the dissimilarity of trees. ``None`` if nothing is claimed of it, or
+    if the claim is that there is no tree.
     """
 
     by_dissimilarity: bool
     bound: Fraction | None
 
 
-def stand_in_prices(table: StandInTable) -> list[list[str]]:
-    """Return all data about stand-ins that a claim depends on, in a fixed order."""
+def stand_in_price_data(table: StandInTable) -> list[list[str]]:
+    """Return the prices of a table as sorted rows of texts, for the digest of a certificate."""
     edits = [[str(edit), str(price)] for edit, price in table.edits.items()]
     words = [[str(edit), word, str(price)] for (edit, word), price in table.words.items()]
     kinds = {str: "label", ObjectNode: "node"}
@@ -47,16 +52,19 @@ def stand_in_prices(table: StandInTable) -> list[list[str]]:
 
 
 def price_of(table: StandInTable, serving: ObjectNode, served: ObjectNode) -> Fraction | None:
-    """Return the price of using ``serving`` in place of ``served``; ``None`` where the table forbids it.
+    """Return the price of using ``serving`` in place of ``served``; ``None`` if the table forbids it.
 
-    The price is the table's price of the pair of nodes, or else the sum of the prices of all differences.
+    The table's price of the pair of nodes takes precedence. Otherwise the prices of all differences are added
+    up.
     """
     if (serving, served) in table.pairs:
         return table.pairs[serving, served]
     prices: list[Fraction | None] = []
     labels = serving.label, served.label
     if serving.label != served.label:
-        same_word = labels not in table.pairs and _bare(serving.label) == _bare(served.label)
+        same_word = labels not in table.pairs and _singular_word(serving.label) == _singular_word(
+            served.label
+        )
         prices.append(table.edits[Edit.SPELLING] if same_word else table.pairs.get(labels))
     items, other_items = Counter(serving.ingredients), Counter(served.ingredients)
     if items != other_items and max(items.total(), other_items.total()) >= 2 * (items & other_items).total():
@@ -80,23 +88,28 @@ def price_of(table: StandInTable, serving: ObjectNode, served: ObjectNode) -> Fr
 
 
 def stand_in_fault(
-    network: Network, table: StandInTable, makes: Makes, goals: Sequence[int], claim: Claim
+    network: Network, table: StandInTable, actions: Actions, goals: Sequence[int], claim: StandInClaim
 ) -> str | None:
-    """Return the first fault of the stand-ins of a network; ``None`` if they agree with its table.
+    """Return in words the first fault of the stand-ins of a network; ``None`` without one.
 
-    Each stand-in has to have a price, and to serve a node that cannot be made without stand-ins. No stand-in
-    may be missing. If ``claim`` is by dissimilarity, two kinds may be missing: stand-ins that cost more than
-    a free node in the same place, and stand-ins that lead to more than ``claim.bound``. A free node can be
-    made without stand-ins. ``goals`` are all nodes that every tree makes or takes.
+    A node is *free* if it can be made without stand-ins. Each stand-in of the network needs a price above 0,
+    and has to serve a node that is not free. Other pairs of this kind are missing stand-ins, which is a
+    fault, too.
+
+    If the claim is by dissimilarity, two kinds may be missing. In one, the serving node costs more than the
+    cheapest free node that could serve. In the other, every tree with the stand-in has a dissimilarity above
+    ``claim.bound``.
+
+    ``goals`` are the nodes that every tree makes or takes from the kitchen.
     """
     objects = network.objects
-    listed: set[tuple[int, int]] = set()
+    stand_ins: set[tuple[int, int]] = set()
     for unit, motion in enumerate(network.motions):
         if motion == STAND_IN:
             (serving,), (served,) = network.inputs[unit], network.outputs[unit]
-            listed.add((serving, served))
-    free = _made(network, makes)
-    for serving, served in listed:
+            stand_ins.add((serving, served))
+    free = _nodes_made(network, actions)
+    for serving, served in stand_ins:
         price = price_of(table, objects[serving], objects[served])
         if price is None or price <= 0:
             return f"{objects[serving]} does not stand in for {objects[served]} by the table"
@@ -104,13 +117,13 @@ def stand_in_fault(
             return f"a stand-in serves {objects[served]}, which can be made"
     servers = _Servers(network, table, free, claim.by_dissimilarity)
     if claim.by_dissimilarity:
-        lacking = _needed(network, goals, free, makes)
-        least = _least(network, servers, goals, makes)
+        lacking = _nodes_needed(network, goals, free, actions)
+        least = _least_dissimilarities(network, servers, goals, actions)
     else:
         lacking, least = set(range(len(objects))) - free, {}
     for served in lacking:
-        for serving, price in servers.of(served).items():
-            if (serving, served) in listed:
+        for serving, price in servers.prices_of(served).items():
+            if (serving, served) in stand_ins:
                 continue
             before = Fraction(0) if serving in free or claim.bound is None else least.get(serving)
             if before is not None and (claim.bound is None or price + before <= claim.bound):
@@ -118,8 +131,8 @@ def stand_in_fault(
     return None
 
 
-def _bare(label: str) -> str:
-    """Return a label as a single word in the singular."""
+def _singular_word(label: str) -> str:
+    """Return a label in lower case, in the singular, without spaces, hyphens and underscores."""
     word = "".join(letter for letter in label.casefold() if letter not in " -_")
     if len(word) > 5 and word[-3:] in {"ies", "oes"}:
         return word[:-3] + {"i": "y", "o": "o"}[word[-3]]
@@ -130,10 +143,10 @@ def _bare(label: str) -> str:
 
 
 class _Servers:
-    """The nodes that may stand in for others, by a table.
+    """The nodes that may stand in for others by a table (*serving* nodes).
 
-    ``free`` are the nodes that can be made without stand-ins. With ``nearest``, a node that costs more than
-    the cheapest free node is left out.
+    ``free``: the nodes that can be made without stand-ins.
+    ``nearest``: whether to omit nodes that cost more than the cheapest free node.
     """
 
     def __init__(self, network: Network, table: StandInTable, free: Collection[int], nearest: bool) -> None:
@@ -145,11 +158,11 @@ class _Servers:
             self._by_label.setdefault(node.label, []).append(o)
         self._spelled: dict[str, list[int]] = {}
         for label, nodes in self._by_label.items():
-            self._spelled.setdefault(_bare(label), []).extend(nodes)
+            self._spelled.setdefault(_singular_word(label), []).extend(nodes)
         self._of: dict[int, dict[int, Fraction]] = {}
 
-    def of(self, served: int) -> dict[int, Fraction]:
-        """Return the nodes that may serve for a node, by id, with their prices."""
+    def prices_of(self, served: int) -> dict[int, Fraction]:
+        """Return the price of each node that may serve in place of a node, by id; cached."""
         if served not in self._of:
             objects = self._network.objects
             node = objects[served]
@@ -165,8 +178,11 @@ class _Servers:
         return self._of[served]
 
     def _candidates(self, node: ObjectNode) -> Iterator[int]:
-        """Yield the nodes to be priced: those whose label is spelled alike, and those paired by the table."""
-        yield from self._spelled[_bare(node.label)]
+        """Yield the nodes that may have a price in place of ``node``, perhaps twice.
+
+        Their label is spelled alike, or the table lists the pair of labels or nodes.
+        """
+        yield from self._spelled[_singular_word(node.label)]
         for serving, served in self._table.pairs:
             if served == node.label and isinstance(serving, str):
                 yield from self._by_label.get(serving, ())
@@ -176,10 +192,13 @@ class _Servers:
                     yield number
 
 
-def _least(network: Network, servers: _Servers, goals: Sequence[int], makes: Makes) -> dict[int, Fraction]:
-    """Return a lower bound on the dissimilarity of making each node; 0 for nodes that need no stand-in.
+def _least_dissimilarities(
+    network: Network, servers: _Servers, goals: Sequence[int], actions: Actions
+) -> dict[int, Fraction]:
+    """Return a lower bound on the dissimilarity of making each node that is not free (h_max).
 
-    A unit costs at least as much as its most expensive input; a stand-in adds its price.
+    A unit costs at least as much as its most expensive input; a stand-in adds its price. Nodes that cannot be
+    made even with stand-ins are omitted, as are nodes that no goal needs.
     """
     makers: dict[int, list[set[int]]] = {}
     stack = [goal for goal in goals if goal not in servers.free]
@@ -188,17 +207,17 @@ def _least(network: Network, servers: _Servers, goals: Sequence[int], makes: Mak
         if made in makers:
             continue
         makers[made] = [
-            {o for o in makes.needs(unit) if o is not None} - {*servers.free}
+            {o for o in actions.needs(unit) if o is not None} - {*servers.free}
             for unit in network.producers[made]
-            if network.motions[unit] != STAND_IN and made in makes.gives(unit)
+            if network.motions[unit] != STAND_IN and made in actions.gives(unit)
         ]
         stack += (o for inputs in makers[made] for o in inputs)
-        stack += (o for o in servers.of(made) if o not in servers.free)
+        stack += (o for o in servers.prices_of(made) if o not in servers.free)
     served_by: dict[int, list[tuple[int, Fraction]]] = {}
     waiting: dict[int, list[tuple[int, set[int]]]] = {}
     heap: list[tuple[Fraction, int]] = []
     for made, units in makers.items():
-        for serving, price in servers.of(made).items():
+        for serving, price in servers.prices_of(made).items():
             if serving in servers.free:
                 heap.append((price, made))
             else:
@@ -222,17 +241,17 @@ def _least(network: Network, servers: _Servers, goals: Sequence[int], makes: Mak
     return least
 
 
-def _made(network: Network, makes: Makes) -> set[int]:
-    """Return the nodes that can be made from the kitchen without stand-ins."""
+def _nodes_made(network: Network, actions: Actions) -> set[int]:
+    """Return the nodes that can be made from the kitchen without stand-ins, and those of the kitchen."""
     units = [unit for unit, motion in enumerate(network.motions) if motion != STAND_IN]
-    needs, gives = makes.needs, makes.gives
+    needs, gives = actions.needs, actions.gives
     waiting = {unit: {o for o in needs(unit) if o is not None} for unit in units}
     consumers: dict[int, list[int]] = {}
     for unit, inputs in waiting.items():
         for o in inputs:
             consumers.setdefault(o, []).append(unit)
     made: set[int] = set()
-    queue = deque(makes.kitchen)
+    queue = deque(actions.kitchen)
     for unit, inputs in waiting.items():
         if not inputs:
             queue.extend(o for o in gives(unit) if o is not None)
@@ -248,16 +267,21 @@ def _made(network: Network, makes: Makes) -> set[int]:
     return made
 
 
-def _needed(network: Network, goals: Sequence[int], free: Collection[int], makes: Makes) -> set[int]:
-    """Return the nodes that a tree can need although they cannot be made without stand-ins."""
+def _nodes_needed(
+    network: Network, goals: Sequence[int], free: Collection[int], actions: Actions
+) -> set[int]:
+    """Return the nodes that are not free and that a tree may need.
+
+    They are goals and, recursively, inputs of their achievers.
+    """
     needed = {goal for goal in goals if goal not in free}
     stack = list(needed)
     while stack:
         served = stack.pop()
         for unit in network.producers[served]:
-            if served not in makes.gives(unit):
+            if served not in actions.gives(unit):
                 continue
-            for o in makes.needs(unit):
+            for o in actions.needs(unit):
                 if o is not None and o not in free and o not in needed:
                     needed.add(o)
                     stack.append(o)

@@ -1,4 +1,4 @@
-"""Check of a schedule by simulating it in time, in plain Python and independent of the scheduler."""
+"""Check of a schedule by simulating it in time, in plain Python and without the scheduler's code."""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -11,29 +11,34 @@ from foon_asp.proof.execution import Executions
 from foon_asp.text.tables import Duration
 
 ToolName = str | ObjectNode
-"""What tools are counted by: a label, or one that the kitchen has with something in it."""
+"""The name under which tools are counted: a label, or an object node for a tool with contents."""
 
 
 class Tool(NamedTuple):
-    """One tool or vessel: the ``number``-th (from 1) of a ``name``, which is a label or an object node."""
+    """One tool or vessel: the ``number``-th, from 1, of those that are counted under ``name``.
+
+    ``name`` is a label, or an object node for a tool that the kitchen has with contents.
+    """
 
     name: ToolName
     number: int
 
     def __str__(self) -> str:
+        """Return the name and the number, such as ``bowl 2``."""
         return f"{self.name} {self.number}"
 
     @property
     def label(self) -> str:
-        """The label of its object nodes."""
+        """The label of the tool: its name, or the label of the object node that is its name."""
         return self.name if isinstance(self.name, str) else self.name.label
 
 
 class TimedStep(NamedTuple):
-    """A scheduled step: its times, its agent and its tools.
+    """A scheduled step.
 
-    ``start`` and ``end`` are in seconds. ``agent`` is a number from 1, ``None`` where nobody has to stand by.
-    ``tools`` are used only by this step while it runs; they are in the order of the unit's objects.
+    ``start``, ``end``: its times, in seconds.
+    ``agent``: the number of its agent, from 1; ``None`` if nobody has to stand by.
+    ``tools``: the tools that no other step may use while it runs, in the order of the unit's objects.
     """
 
     start: Fraction
@@ -42,33 +47,38 @@ class TimedStep(NamedTuple):
     tools: tuple[Tool, ...]
 
 
-class Means(NamedTuple):
+class ScheduleResources(NamedTuple):
     """The resources of a schedule.
 
-    ``durations`` are those of motions. ``tools`` maps tools to their number, ``None`` for an unlimited
-    number. There is one of each utensil that ``tools`` omits.
+    ``durations``: how long each motion takes, and whether somebody has to stand by.
+    ``agents``: the number of agents.
+    ``tools``: the number of tools by name; ``None`` if unlimited. Utensils that it omits exist once each.
     """
 
     durations: Mapping[str, Duration]
     agents: int
     tools: Mapping[ToolName, int | None]
 
-    def waited_for(self, problem: Problem, label: str) -> bool:
-        """Return whether a step may have to wait for objects of a label, as tools in limited number."""
+    def is_limited(self, problem: Problem, label: str) -> bool:
+        """Return whether objects of a label are tools in limited number, so that steps may wait for them."""
         if label in self.tools:
             return self.tools[label] is not None
         named = any(isinstance(name, ObjectNode) and name.label == label for name in self.tools)
         return named or label in problem.utensils
 
-    def is_free(self, label: str) -> bool:
-        """Return whether several steps can share one object of a label at the same time."""
+    def is_unlimited(self, label: str) -> bool:
+        """Return whether ``tools`` says that the number of a label is unlimited.
+
+        Several steps can then share one object of the label at the same time.
+        """
         return label in self.tools and self.tools[label] is None
 
-    def name(self, node: ObjectNode, label: str) -> ToolName:
+    def counted_name(self, node: ObjectNode, label: str) -> ToolName:
         """Return the name under which a tool is counted.
 
-        ``label`` is the label of the tool, and ``node`` is the tool or an object in it. The name is the node
-        or the label if ``tools`` lists it. Otherwise, a tool with contents is named by its contents.
+        ``label`` is the tool's label, and ``node`` is the tool itself or an object in it. The name is the
+        node if ``tools`` lists it, or else the label if ``tools`` lists that. A tool that is not listed is
+        named by an object node that has only its contents. An empty one is named by its label.
         """
         if node in self.tools:
             return node
@@ -78,20 +88,26 @@ class Means(NamedTuple):
         return ObjectNode.of(label, (), (), [Contents("contains", tuple(sorted({*inside})))])
 
     def number_of(self, problem: Problem, name: ToolName) -> int:
-        """Return the number of tools of a name: as in ``tools``, else as in the stock, else 1."""
+        """Return the number of tools of a name.
+
+        It is the number in ``tools``, or else the number of such nodes in the stock of the problem, at least
+        1.
+        """
         stated = self.tools.get(name)
         if stated is not None:
             return stated
         stock = {} if problem.items is None else problem.items.stock
-        return max(1, sum(n for node, n in stock.items() if self.name(node, node.label) == name))
+        return max(1, sum(n for node, n in stock.items() if self.counted_name(node, node.label) == name))
 
 
 class ToolNeed(NamedTuple):
-    """The tools of one label that a unit needs.
+    """The objects of one label that a unit needs as tools.
 
-    ``kept`` are inputs that stay as they are, ``changed`` inputs that change, and ``made`` are the outputs.
-    ``others`` are tools that are no preconditions: skipped containers, the contents of a tool that the unit
-    does not list, or ``None`` for a tool that something is put in, on or by.
+    ``kept``: preconditions that stay as they are.
+    ``changed``: preconditions that are no outputs.
+    ``made``: outputs that the unit makes.
+    ``others``: inputs of the label that the container rule skips. If the label is neither an input nor an
+    output, it is one input that is in, on or at such a tool, or ``None``.
     """
 
     kept: tuple[ObjectNode, ...]
@@ -101,146 +117,168 @@ class ToolNeed(NamedTuple):
 
     @property
     def number(self) -> int:
-        """The number of the tools."""
+        """The number of tools of the label that the unit occupies.
+
+        A tool that changes can be one that is made, so the larger of these numbers counts.
+        """
         return len(self.kept) + max(len(self.changed) + len(self.others), len(self.made))
 
 
-def tools_asked(problem: Problem, means: Means, unit: FunctionalUnit) -> dict[str, ToolNeed]:
-    """Return the tools that a unit needs, by label.
+def tools_needed(problem: Problem, resources: ScheduleResources, unit: FunctionalUnit) -> dict[str, ToolNeed]:
+    """Return the tools that a unit needs, by label, if their number is limited.
 
-    They are its utensils, and the tools that its objects are in, on or at.
+    They are its utensils, and the tools that its inputs or outputs are in, on or at.
     """
-    needed, _, made = Executions(problem).of(unit)
-    needs: dict[str, ToolNeed] = {}
+    preconditions, _, made = Executions(problem).of(unit)
+    tool_needs: dict[str, ToolNeed] = {}
     nodes = (*dict.fromkeys(unit.inputs), *unit.outputs)
-    around = (relation.object for node in nodes for relation in node.relations)
-    for label in dict.fromkeys([*(node.label for node in nodes), *around]):
-        if not means.waited_for(problem, label):
+    places = (relation.object for node in nodes for relation in node.relations)
+    for label in dict.fromkeys([*(node.label for node in nodes), *places]):
+        if not resources.is_limited(problem, label):
             continue
-        own = [node for node in dict.fromkeys(unit.inputs) if node.label == label]
-        kept = tuple(node for node in own if node in needed and node in unit.outputs)
-        changed = tuple(node for node in own if node in needed and node not in unit.outputs)
-        out = tuple(node for node in made if node.label == label)
-        others: list[ObjectNode | None] = [node for node in own if node not in needed]
-        if not own and not out:
-            inside = sorted((node for node in needed if node.is_in(label)), key=problem.at_hand)
-            others.append(next(iter(inside), None))  # preferably one that was made: it is known where
-        needs[label] = ToolNeed(kept, changed, out, tuple(others))
-    return needs
+        own_inputs = [node for node in dict.fromkeys(unit.inputs) if node.label == label]
+        kept = tuple(node for node in own_inputs if node in preconditions and node in unit.outputs)
+        changed = tuple(node for node in own_inputs if node in preconditions and node not in unit.outputs)
+        outputs = tuple(node for node in made if node.label == label)
+        others: list[ObjectNode | None] = [node for node in own_inputs if node not in preconditions]
+        if not own_inputs and not outputs:
+            inputs_inside = sorted((node for node in preconditions if node.is_in(label)), key=problem.at_hand)
+            others.append(
+                next(iter(inputs_inside), None)
+            )  # preferably one that a step made: its tool is known
+        tool_needs[label] = ToolNeed(kept, changed, outputs, tuple(others))
+    return tool_needs
 
 
 def timetable_fault(
-    problem: Problem, plan: Sequence[FunctionalUnit], steps: Sequence[TimedStep], means: Means
+    problem: Problem, plan: Sequence[FunctionalUnit], steps: Sequence[TimedStep], resources: ScheduleResources
 ) -> str | None:
-    """Return the first fault of a schedule of a plan in words; ``None`` without one.
+    """Return in words the first fault of a schedule of a plan; ``None`` without one.
 
-    At each moment, there have to be enough copies for all running steps, and each agent and each tool may be
-    at only one step. A tool has to be in the state in which an earlier step left it, or as the kitchen has
-    it. Items of the problem have to be used up (:func:`foon_asp.proof.replay.replayable`).
+    Steps have to take the durations in ``resources``. At each moment, there have to be enough copies for all
+    running steps. Each agent and each tool may be at only one step. A tool has to be in the state in which an
+    earlier step left it, or as the kitchen has it.
+
+    ``steps`` has the times of each unit of ``plan``, in the same order. Items of the problem have to be used
+    up (:func:`foon_asp.proof.replay.replayable_problem`).
     """
     if len(steps) != len(plan):
         return f"there are {len(plan)} steps, and times for {len(steps)}"
     for number, (unit, step) in enumerate(zip(plan, steps, strict=True), 1):
-        duration = means.durations[unit.motion]
+        duration = resources.durations[unit.motion]
         if step.start < 0 or step.end - step.start != duration.seconds:
             return f"step {number} does not take the time that {unit.motion} takes"
         if (step.agent is None) != duration.passive:
             return f"step {number} is done by nobody, or by somebody where nobody has to"
-        if step.agent is not None and not 1 <= step.agent <= means.agents:
-            return f"step {number} is done by agent {step.agent}, and there are {means.agents}"
-    return _Run(problem, plan, steps, means).fault()
+        if step.agent is not None and not 1 <= step.agent <= resources.agents:
+            return f"step {number} is done by agent {step.agent}, and there are {resources.agents}"
+    return _Run(problem, plan, steps, resources).fault()
 
 
 class _Run:
-    """The state of the kitchen while steps start and end."""
+    """The state of a kitchen while the steps of a schedule start and end."""
 
     def __init__(
-        self, problem: Problem, plan: Sequence[FunctionalUnit], steps: Sequence[TimedStep], means: Means
+        self,
+        problem: Problem,
+        plan: Sequence[FunctionalUnit],
+        steps: Sequence[TimedStep],
+        resources: ScheduleResources,
     ) -> None:
+        """Start with the initial copies of the problem, and with no step running."""
         assert problem.items is not None
-        self._problem, self._executions, self._means = problem, Executions(problem), means
+        self._problem, self._executions, self._resources = problem, Executions(problem), resources
         self._plan, self._steps = plan, steps
-        self._copies = self._executions.stock()
-        self._read: Counter[ObjectNode] = Counter()
-        self._working: dict[int | Tool, int] = {}  # who and what is at a step
+        self._copies = self._executions.initial_copies()
+        self._copies_read: Counter[ObjectNode] = Counter()
+        self._step_using: dict[int | Tool, int] = {}  # by agent or tool, while occupied
         self._states: dict[Tool, frozenset[ObjectNode]] = {}
 
     def fault(self) -> str | None:
-        """Return the first fault of the schedule in words; ``None`` without one.
+        """Simulate the schedule; return its first fault in words, ``None`` without one.
 
-        At the same time, ends of steps come before starts of steps.
+        Of events at the same time, ends of steps come first.
         """
         events = [(step.end, False, number) for number, step in enumerate(self._steps)]
         events += [(step.start, True, number) for number, step in enumerate(self._steps)]
         for _, starts, number in sorted(events):
             if not starts:
-                self._end(number)
-            elif fault := next(self._start(number), None):
+                self._end_step(number)
+            elif fault := next(self._start_step(number), None):
                 return f"step {number + 1} ({self._plan[number].motion}) {fault}"
         return None
 
-    def _start(self, number: int) -> Iterator[str]:
-        """Start a step; yield each reason why it cannot."""
+    def _start_step(self, number: int) -> Iterator[str]:
+        """Start a step, and yield in words each reason why it cannot start.
+
+        If there is none, its copies, agent and tools are taken from the kitchen. ``number`` is the position
+        of the step, from 0.
+        """
         unit, step = self._plan[number], self._steps[number]
-        hands = _hands(step)
-        if len(set(hands)) < len(hands):
+        occupied = _resources_of(step)
+        if len(set(occupied)) < len(occupied):
             yield "has the same tool twice"
-        for hand in hands:
-            if hand in self._working:
-                yield f"waits for {hand}, which is at step {self._working[hand] + 1}"
-        yield from self._wrong_tools(unit, step.tools)
+        for resource in occupied:
+            if resource in self._step_using:
+                yield f"waits for {resource}, which is at step {self._step_using[resource] + 1}"
+        yield from self._tool_faults(unit, step.tools)
         needed, consumes, _ = self._executions.of(unit)
         for node, amount in needed.items():
             if self._executions.is_endless(node):
                 continue
             goes = consumes.get(node, 0)
-            in_use = 0 if self._means.is_free(node.label) and not goes else self._read[node]
+            in_use = 0 if self._resources.is_unlimited(node.label) and not goes else self._copies_read[node]
             if self._copies[node] < in_use + amount:
                 yield f"lacks a copy of {node}"
             self._copies[node] -= goes
-            self._read[node] += amount - goes
-        self._working.update(dict.fromkeys(hands, number))
+            self._copies_read[node] += amount - goes
+        self._step_using.update(dict.fromkeys(occupied, number))
 
-    def _end(self, number: int) -> None:
-        """End a step: add its outputs, and release its tools and its agent."""
+    def _end_step(self, number: int) -> None:
+        """End a step: add its outputs, update the states of its tools, and release its tools and agent."""
         unit, step = self._plan[number], self._steps[number]
         needed, consumes, made = self._executions.of(unit)
         for node, amount in needed.items():
-            self._read[node] -= amount - consumes.get(node, 0)  # of what is endless, nobody asks for this
+            # endless nodes get negative numbers, which nothing reads
+            self._copies_read[node] -= amount - consumes.get(node, 0)
         self._copies.update(made)
         for tool in step.tools:
-            # what of it is at other tools, nobody asks this one for
+            # some of these nodes are at other tools: nothing looks for them here
             self._states[tool] = self._states.get(tool, frozenset()).difference(consumes).union(made)
-        for hand in _hands(step):
-            self._working.pop(hand, None)
+        for resource in _resources_of(step):
+            self._step_using.pop(resource, None)
 
-    def _wrong_tools(self, unit: FunctionalUnit, tools: Sequence[Tool]) -> Iterator[str]:
-        """Yield each fault of the tools with which a step starts."""
-        problem, means = self._problem, self._means
-        needs, needed = tools_asked(problem, means, unit), self._executions.of(unit).preconditions
+    def _tool_faults(self, unit: FunctionalUnit, tools: Sequence[Tool]) -> Iterator[str]:
+        """Yield in words each fault of the tools with which a step starts.
+
+        A tool that holds no needed object counts as fetched from the kitchen: what it held is forgotten.
+        """
+        problem, resources = self._problem, self._resources
+        tool_needs = tools_needed(problem, resources, unit)
+        preconditions = self._executions.of(unit).preconditions
         brought = Counter(tool.label for tool in tools)
-        for label in needs.keys() | brought.keys():
-            wanted = needs[label].number if label in needs else 0
+        for label in tool_needs.keys() | brought.keys():
+            wanted = tool_needs[label].number if label in tool_needs else 0
             if brought[label] != wanted:
                 yield f"has {brought[label]} of {label}, and asks for {wanted}"
         for tool in tools:
-            if not 1 <= tool.number <= means.number_of(problem, tool.name):
-                yield f"has {tool}, and there are {means.number_of(problem, tool.name)}"
-        for label, need in needs.items():
+            if not 1 <= tool.number <= resources.number_of(problem, tool.name):
+                yield f"has {tool}, and there are {resources.number_of(problem, tool.name)}"
+        for label, need in tool_needs.items():
             brought_tools = [tool for tool in tools if tool.label == label]
             held_nodes = {node for tool in brought_tools for node in self._states.get(tool, ())}
             wanted_nodes = {node for node in (*need.kept, *need.changed, *need.others) if node is not None}
             for node in wanted_nodes - held_nodes:
-                fetched = problem.at_hand(node) and means.name(node, label) in {
+                fetched = problem.at_hand(node) and resources.counted_name(node, label) in {
                     tool.name for tool in brought_tools
                 }
-                if not fetched and node in needed:
+                if not fetched and node in preconditions:
                     yield f"has no {label} for {node}"
-            for tool in brought_tools:  # what is fetched is as the kitchen has it, whatever it was before
+            for tool in brought_tools:  # a tool fetched from the kitchen loses its earlier state
                 if wanted_nodes and wanted_nodes.isdisjoint(self._states.get(tool, ())):
                     self._states[tool] = frozenset()
 
 
-def _hands(step: TimedStep) -> list[int | Tool]:
-    """Return the resources that a step occupies: its tools, and its agent as a number."""
+def _resources_of(step: TimedStep) -> list[int | Tool]:
+    """Return the resources that a step occupies: its tools, and its agent as a number if it has one."""
     return [*step.tools] + ([] if step.agent is None else [step.agent])

@@ -1,8 +1,8 @@
 """Search for an order in which a tree with consumable items runs, each of its steps once.
 
-Whether each of a multiset of steps can be done once is a question about the firing sequences of a Petri net.
-If more copies of some node are used up than exist and are made, there is no such sequence. Otherwise, the
-sequence is searched for, depth first.
+Whether each step of a multiset can be done once is a question about firing sequences of a Petri net. If more
+copies of a node are used up than exist in total, there is no such sequence. Otherwise, a depth-first search
+looks for one.
 """
 
 from collections import Counter
@@ -16,11 +16,12 @@ from foon_asp.proof.replay import Shortage
 
 
 class UsedUpRun(NamedTuple):
-    """The result of a search for an order of a tree with consumable items.
+    """The result of a search for an order in which a tree with consumable items runs.
 
-    ``order`` has the positions of the units in the tree, from 0, in an order that runs; it is the listed
-    order if this runs. ``order`` is ``None`` if no order runs (``proved`` is true), or if the search was
-    given up (``proved`` is false). ``shortage`` is then the copy that is missing.
+    ``order``: positions of the units in the tree, from 0; the listed order if that runs. ``None`` if no order
+    was found.
+    ``shortage``: a shortage that kept the search from an order; ``None`` if there is an order or no search.
+    ``proved``: whether the result is certain; ``False`` if the search was given up.
     """
 
     order: tuple[int, ...] | None
@@ -29,16 +30,17 @@ class UsedUpRun(NamedTuple):
 
     @property
     def runs(self) -> bool | None:
-        """Whether the tree runs in some order, ``None`` where that is not known."""
+        """Whether the tree runs in some order; ``None`` if the search was given up."""
         return None if not self.proved else self.order is not None
 
 
 def used_up_run(problem: Problem, tree: Iterable[FunctionalUnit]) -> UsedUpRun:
-    """Return an order in which each step of a tree runs once, from the kitchen to the goals.
+    """Search for an order in which each step of a tree runs once, from the kitchen to the goals.
 
-    Items are used up as the problem says. In a problem whose items last, the rule of docs/plans.md says what
-    is used up, and kitchen items never run out. A unit that is listed several times is executed as many
-    times. Below level 3 nothing is searched, since consumption depends on contents.
+    The caller has checked that the tree makes its goals if items last (:func:`simulate_for`). If items last
+    in the problem, the rule of docs/plans.md says what is used up, and kitchen items never run out. A unit
+    that is listed several times runs as many times. Below level 3, consumption depends on contents, so
+    nothing is searched or proved.
 
     Parameters:
         problem: The problem that the tree is for.
@@ -47,37 +49,41 @@ def used_up_run(problem: Problem, tree: Iterable[FunctionalUnit]) -> UsedUpRun:
     if problem.network.level < 3:
         return UsedUpRun(None, proved=False)
     executions = Executions(problem)
-    whole_steps, wanted = [executions.of(unit) for unit in tree], executions.wanted()
-    nodes = set(wanted).union(*(copies for step in whole_steps for copies in (step.preconditions, step.adds)))
+    executed, wanted = [executions.of(unit) for unit in tree], executions.wanted_copies()
+    nodes = set(wanted).union(*(copies for step in executed for copies in (step.preconditions, step.adds)))
     endless = set(filter(executions.is_endless, nodes))
 
-    def finite(copies: Mapping[ObjectNode, int]) -> Mapping[ObjectNode, int]:
+    def without_endless(copies: Mapping[ObjectNode, int]) -> Mapping[ObjectNode, int]:
+        """Return the numbers of copies without nodes that never run out."""
         if endless.isdisjoint(copies):
             return copies
         return {node: n for node, n in copies.items() if node not in endless}
 
-    steps = [Execution(*map(finite, step)) for step in whole_steps]
-    stock, goals = executions.stock(), finite(wanted)
-    listed = _shortage_as_listed(steps, stock, goals)
-    if listed is None:
+    steps = [Execution(*map(without_endless, step)) for step in executed]
+    stock, goals = executions.initial_copies(), without_endless(wanted)
+    first_shortage = _shortage_as_listed(steps, stock, goals)
+    if first_shortage is None:
         return UsedUpRun(tuple(range(len(steps))))
-    overdrawn = _overdrawn(steps, stock, goals)
+    overdrawn = _total_shortage(steps, stock, goals)
     if overdrawn is not None:
         return UsedUpRun(None, overdrawn)
     search = _OrderSearch(steps, stock, goals)
-    order = search.order()
-    shortage = None if order else search.dead_end or listed
+    order = search.find_order()
+    shortage = None if order else search.dead_end or first_shortage
     return UsedUpRun(order, shortage, order is not None or search.looks_left > 0)
 
 
 def _shortage_as_listed(
     steps: Sequence[Execution], stock: Mapping[ObjectNode, int], goals: Mapping[ObjectNode, int]
 ) -> Shortage | None:
-    """Return the copy that is missing when the steps are done as listed; ``None`` where they run."""
+    """Execute the steps as listed; return the first shortage of a step or a goal, ``None`` without one."""
     copies, consumers = dict(stock), dict[ObjectNode, list[int]]()
 
     def missing(step: int | None, required: Mapping[ObjectNode, int]) -> Shortage | None:
-        """Return the shortage of a step or, for ``None``, of the goals; ``None`` if nothing is missing."""
+        """Return the shortage of required copies at a step; ``None`` if nothing is missing.
+
+        The step ``None`` stands for the goals at the end.
+        """
         for node, amount in required.items():
             if copies.get(node, 0) < amount:
                 return Shortage(step, node, tuple(consumers.get(node, ())), amount)
@@ -95,10 +101,13 @@ def _shortage_as_listed(
     return missing(None, goals)
 
 
-def _overdrawn(
+def _total_shortage(
     steps: Sequence[Execution], stock: Mapping[ObjectNode, int], goals: Mapping[ObjectNode, int]
 ) -> Shortage | None:
-    """Return the first copy that is missing in every order: more copies are used up than exist in total."""
+    """Return a shortage that every order has: more copies of a node are used up than exist in total.
+
+    The total is the stock and the copies that all steps add. ``None`` if there is no such node.
+    """
     copies = dict(stock)
     for step in steps:
         for node, amount in step.adds.items():
@@ -117,10 +126,10 @@ def _overdrawn(
 
 
 class _OrderSearch:
-    """A depth-first search for an order of steps, the earliest listed step first.
+    """A depth-first search for an order of steps, which tries steps in the order listed.
 
-    ``looks_left`` is the number of steps that the search may still examine; at 0, the search is given up.
-    ``dead_end`` is the copy that was missing after the longest partial order.
+    ``looks_left``: the number of steps that the search may still examine; at 0, it is given up.
+    ``dead_end``: the shortage after the longest partial order; ``None`` if there is none so far.
     """
 
     def __init__(
@@ -130,48 +139,52 @@ class _OrderSearch:
         self._steps, self._copies, self._goals = steps, copies, goals
         self.looks_left = 100_000  # some 50 ms; no tree of the corpus takes 1,000
         self.dead_end: Shortage | None = None
-        # the steps that wait, as a ring in the order listed, which ends in a step that there is not
+        # the waiting steps in the order listed, as a ring; its sentinel is the number after the last step
         self._next = [*range(1, len(steps) + 1), 0]
         self._previous = [len(steps), *range(len(steps))]
-        self._done = 0  # a bit for each step that was done
-        self._consumers: Counter[ObjectNode] = Counter()  # copies that the steps that wait use up
-        self._readers: Counter[ObjectNode] = Counter()  # of the steps that wait
-        self._most_read: Counter[ObjectNode] = Counter()  # copies that one of its readers leaves there
+        self._done = 0  # a bit for each done step
+        self._consumers: Counter[ObjectNode] = Counter()  # copies that waiting steps use up
+        self._readers: Counter[ObjectNode] = Counter()  # waiting steps that read a node
+        self._most_read: Counter[ObjectNode] = Counter()  # most copies that one step reads
         for waiting in steps:
             self._consumers.update(waiting.consumes)
-            for node, read in _reads(waiting):
+            for node, read in _copies_read(waiting):
                 self._readers[node] += 1
                 self._most_read[node] = max(self._most_read[node], read)
 
-    def order(self) -> tuple[int, ...] | None:
-        """Return an order that runs; ``None`` where none is found. No node may be overdrawn."""
+    def find_order(self) -> tuple[int, ...] | None:
+        """Return the steps in an order that runs; ``None`` if none is found.
+
+        The caller has made sure that no node is overdrawn. The copies of goals then suffice at the end.
+        """
         done: list[int] = []
-        dead: set[int] = set()  # what was done where no order of the others was found
-        choices, longest = [self._ready(dead)], -1
+        dead: set[int] = set()  # sets of done steps that no order continues
+        choices, longest = [self._next_steps(dead)], -1
         while choices:
             step = next(choices[-1], None)
             if step is not None:
-                self._do(step)
+                self._do_step(step)
                 done.append(step)
                 if len(done) == len(self._steps):
                     return tuple(done)
-                choices.append(self._ready(dead))
+                choices.append(self._next_steps(dead))
                 continue
             if len(done) > longest:
-                longest, self.dead_end = len(done), self._missing(done)
+                longest, self.dead_end = len(done), self._missing_copies(done)
             if self.looks_left <= 0:
                 return None
             dead.add(self._done)
             choices.pop()
             if done:
-                self._undo(done.pop())
+                self._undo_step(done.pop())
         return None
 
-    def _ready(self, dead: set[int]) -> Iterator[int]:
+    def _next_steps(self, dead: set[int]) -> Iterator[int]:
         """Yield the waiting steps that can be next.
 
-        Stop after a step that leaves enough copies for all waiting steps: if no order continues with this
-        step, none continues with another one.
+        The search may end at a step that leaves enough copies for all waiting steps. If no order continues
+        with it, none continues with another. ``dead`` has sets of done steps, as bit masks, from which no
+        order continues: then nothing is yielded.
         """
         end = len(self._steps)
         step = end if self._done in dead else self._next[end]
@@ -180,14 +193,15 @@ class _OrderSearch:
             execution = self._steps[step]
             if all(self._copies[node] >= n for node, n in execution.preconditions.items()):
                 yield step
-                if all(
-                    map(self._plentiful, execution.consumes)
-                ):  # if no order goes on with this step, none does
+                if all(map(self._is_plentiful, execution.consumes)):
                     return
             step = self._next[step]
 
-    def _missing(self, done: Sequence[int]) -> Shortage | None:
-        """Return the copy that a waiting step is missing because earlier steps used it up."""
+    def _missing_copies(self, done: Sequence[int]) -> Shortage | None:
+        """Return the shortage of a waiting step that lacks a node which some step in ``done`` used up.
+
+        ``None`` if there is no such step.
+        """
         step = self._next[-1]
         while step != len(self._steps):
             for node, amount in self._steps[step].preconditions.items():
@@ -199,25 +213,27 @@ class _OrderSearch:
             step = self._next[step]
         return None
 
-    def _plentiful(self, node: ObjectNode) -> bool:
-        """Return whether there are copies of a node for all waiting steps, and for the goals."""
+    def _is_plentiful(self, node: ObjectNode) -> bool:
+        """Return whether a node has copies for all waiting steps and for the goals."""
         reserved = max(self._goals.get(node, 0), self._most_read[node] if self._readers[node] else 0)
         return self._copies[node] >= self._consumers[node] + reserved
 
-    def _do(self, step: int) -> None:
+    def _do_step(self, step: int) -> None:
+        """Execute a step that waits, and take it out of the ring of waiting steps."""
         before, after = self._previous[step], self._next[step]
         self._next[before], self._previous[after] = after, before
-        self._shift(step, 1)
+        self._execute(step, 1)
 
-    def _undo(self, step: int) -> None:
-        self._shift(step, -1)
+    def _undo_step(self, step: int) -> None:
+        """Undo the step that was done last, and put it back into the ring of waiting steps."""
+        self._execute(step, -1)
         self._next[self._previous[step]] = self._previous[self._next[step]] = step
 
-    def _shift(self, step: int, sign: int) -> None:
-        """Execute a step that waits, or undo it with a ``sign`` of -1."""
+    def _execute(self, step: int, sign: int) -> None:
+        """Execute a waiting step on the numbers of copies, or undo it with a ``sign`` of -1."""
         self._done ^= 1 << step
         _, consumes, adds = self._steps[step]
-        for node, _ in _reads(self._steps[step]):
+        for node, _ in _copies_read(self._steps[step]):
             self._readers[node] -= sign
         for node, amount in consumes.items():
             self._consumers[node] -= sign * amount
@@ -226,8 +242,8 @@ class _OrderSearch:
             self._copies[node] += sign * amount
 
 
-def _reads(step: Execution) -> Iterator[tuple[ObjectNode, int]]:
-    """Yield each node of which a step needs more copies than it uses up, with the difference."""
+def _copies_read(step: Execution) -> Iterator[tuple[ObjectNode, int]]:
+    """Yield each node of which a step needs more copies than it uses up, and the surplus."""
     for node, amount in step.preconditions.items():
         if amount > step.consumes.get(node, 0):
             yield node, amount - step.consumes.get(node, 0)

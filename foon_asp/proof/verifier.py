@@ -2,15 +2,17 @@
 
 docs/dev/certificates.md describes certificates and proves that what passes here is true. In short: take a set
 T of object nodes with a goal in it (a *cut*). The first unit of a tree that makes a node of T needs no node
-of T. So every tree uses one of the *members* of T: the units that make a node of T and need no node of T. Now
-give each cut a positive weight such that for every unit, the weights of the cuts that it is a member of add
-up to at most its cost. Then the sum of all weights is a lower bound on every tree's cost. A cut without
-members shows that there is no tree.
+of T. So every tree uses one of the *members* of T: the units that make a node of T and need no node of T. A
+cut without members shows that there is no tree.
 
-Weights and costs have one part for each objective and are compared objective by objective, like words. The
-part for ``success`` is a sum of ``e * -log(rate)`` with rational ``e``. Its sign is found by bounds of the
-logarithms. Where these are too close, the product of ``rate ** e`` is compared with 1 in whole numbers. This
-module imports the standard library and the plain network, and nothing of the rest of the package.
+Now give each cut a positive weight. For every unit, the weights of the cuts that it is a member of may add up
+to at most its cost. Then the sum of all weights is a lower bound on every tree's cost.
+
+Weights and costs have one part for each objective, and are compared lexicographically. The part for
+``success`` is a sum of ``e * -log(rate)`` with rational ``e``. Bounds of the logarithms decide its sign. If
+they are too close, the product of ``rate ** e`` is compared with 1 in whole numbers.
+
+This module imports the standard library and the plain network, and nothing of the rest of the package.
 """
 
 import hashlib
@@ -29,12 +31,20 @@ from types import MappingProxyType
 from typing import Any, NamedTuple, TypeAlias
 
 from foon_asp.network import STAND_IN, Amounts, Network, StandInTable, UnitPrices, node_at_level
-from foon_asp.proof.rule_meaning import ALL_STEPS, LIBRARY, OWN, Meaning, Question, Rule, looked_at, meaning
-from foon_asp.proof.ruled import Limit, Ruled
-from foon_asp.proof.stand_ins import Claim as StandInClaim
-from foon_asp.proof.stand_ins import Makes, price_of, stand_in_fault, stand_in_prices
+from foon_asp.proof.compiled_rules import CompiledRules, Limit
+from foon_asp.proof.rule_meaning import (
+    ALL_STEPS,
+    LIBRARY,
+    OWN,
+    Meaning,
+    Question,
+    Rule,
+    meaning_of_rule,
+    sources_read,
+)
+from foon_asp.proof.stand_ins import Actions, StandInClaim, price_of, stand_in_fault, stand_in_price_data
 
-_UNMEASURED = "nothing"  # what a tree that is not there is measured by
+_UNMEASURED = "nothing"  # in place of objectives, if the claim is that there is no tree
 OBJECTIVES = (
     "units",
     "inputs",
@@ -63,14 +73,14 @@ class CertificateLimits(NamedTuple):
     Attributes:
         letters: Characters of the file.
         brackets: Lists and objects in the file.
-        steps: Steps of the check. A look at a unit is one step; arithmetic takes more.
+        steps: Steps of the check. To look at a unit is one step; arithmetic takes more.
         steps_each: Additional steps for each unit and object node of the network.
         rules: Rules of a claim.
-        rule_steps: Steps for each unit and object node that a rule is checked against.
-        digits: Digits of a fraction that is read.
+        rule_steps: Steps that are counted for a rule, for each unit and object node of the network.
+        digits: Digits of a fraction in the file.
         sum_bits: Bits of a sum of fractions.
         product_bits: Bits of a product of rates.
-        written_bits: Bits of the cost of a tree; Python writes numbers of up to 4,300 digits.
+        written_bits: Bits of the cost of a tree, since Python writes numbers of up to 4,300 digits.
     """
 
     letters: int = 16_000_000
@@ -87,12 +97,12 @@ class CertificateLimits(NamedTuple):
 
 ALLOWED = CertificateLimits()
 
-# A cost or weight: by objective (its place in the list) and rate (``None`` but for success), an exact number.
+# A cost or weight: exact numbers by objective (its index) and rate (``None`` except by success).
 Amount: TypeAlias = dict[tuple[int, Fraction | None], Fraction]
 
 
 class Form(NamedTuple):
-    """A form of certificates: its name, its version, and the keys that each of them has."""
+    """A form of certificates: its name, its version, and the keys that every certificate of the form has."""
 
     name: str
     version: int
@@ -103,11 +113,17 @@ TREE_FORM = Form("foon-asp certificate", 5, CERTIFICATE_KEYS)
 
 
 class Subject(NamedTuple):
-    """The data that a certificate is about; ``kitchen`` are object node ids.
+    """The data that a certificate is about.
 
-    ``stated`` has digests by name that replace those computed from the other fields. ``trusted`` names those
-    stated digests that nobody computed. ``stand_ins`` is the table by which stand-ins were added to the
-    network, ``None`` without stand-ins. ``amounts`` matter only for plans.
+    ``network``: the network; units and nodes are given by id.
+    ``kitchen``: the nodes that are available at first.
+    ``rates``: the success rate of each motion; ``None`` if unknown.
+    ``utensils``: the labels of utensils.
+    ``prices``: the prices of motions and units; ``None`` if unknown.
+    ``stated``: digests by name that are used as they are, in place of computed ones.
+    ``trusted``: the names of those stated digests that nobody computed from the data.
+    ``amounts``: the amounts of inputs and outputs, which only plans read.
+    ``stand_ins``: the table by which stand-ins were added to the network; ``None`` without stand-ins.
     """
 
     network: Network
@@ -121,35 +137,39 @@ class Subject(NamedTuple):
     stand_ins: StandInTable | None = None
 
     def digests(self, rules: Iterable[Rule] = ()) -> dict[str, str]:
-        """Return the SHA-256 digests of the data, by name, as a certificate states them.
+        """Return the SHA-256 digests of the data, by name, as a certificate with these rules states them.
 
-        A digest in ``stated`` is returned as it is. The digest of sources covers only the parts of sources
-        that the rules read.
+        A digest in ``stated`` is returned as it is. The digest of sources covers only what the rules read of
+        them.
         """
         return {
-            name: self.stated.get(name) or _digest(value()) for name, value in self._described(rules).items()
+            name: self.stated.get(name) or _digest(value())
+            for name, value in self._digest_data(rules).items()
         }
 
-    def described(self, rules: Iterable[Rule] = (), goals: Iterable[int] = ()) -> str:
-        """Return all that a certificate with these goals depends on, as canonical JSON.
+    def canonical_data(self, rules: Iterable[Rule] = (), goals: Iterable[int] = ()) -> str:
+        """Return all data that a certificate with these rules and goals depends on, as canonical JSON.
 
-        These are the values of the digests by name and, as ``goals``, the text of each goal with its id.
+        It is an object with the data of each digest, by name, and under ``goals`` the id and text of each
+        goal.
         """
-        values = {name: value() for name, value in self._described(rules).items()}
-        return canonical({**values, "goals": [(goal, str(self.network.objects[goal])) for goal in goals]})
+        values = {name: value() for name, value in self._digest_data(rules).items()}
+        return canonical_json(
+            {**values, "goals": [(goal, str(self.network.objects[goal])) for goal in goals]}
+        )
 
-    def _described(self, rules: Iterable[Rule]) -> dict[str, Callable[[], object]]:
-        """Return the name of each digest, with a function that returns the data of the digest."""
+    def _digest_data(self, rules: Iterable[Rule]) -> dict[str, Callable[[], object]]:
+        """Return for each digest, by name, a function that returns the data to be digested."""
         network, rates, prices = self.network, self.rates, self.prices
-        places = [looked for rule in rules if (looked := looked_at(rule, network)) is not None]
+        places = [looked for rule in rules if (looked := sources_read(rule, network)) is not None]
         table = self.stand_ins
         return {
-            **({} if table is None else {"stand-ins": lambda: stand_in_prices(table)}),
-            "network": lambda: _described(network),
+            **({} if table is None else {"stand-ins": lambda: stand_in_price_data(table)}),
+            "network": lambda: _network_data(network),
             "kitchen": lambda: sorted(self.kitchen),
             "rates": lambda: rates and sorted([motion, str(rate)] for motion, rate in rates.items()),
             "utensils": lambda: sorted(self.utensils),
-            "prices": lambda: prices and _stated(prices, network.detailed or network),
+            "prices": lambda: prices and _price_data(prices, network.detailed or network),
             "sources": lambda: places or None,
         }
 
@@ -168,14 +188,16 @@ class RefusedError(Exception):
 
 
 class LimitError(RefusedError):
-    """The certificate may be right, but to check it takes more than is reasonable."""
+    """The certificate may be right, but it exceeds a limit of :class:`CertificateLimits`."""
 
 
 class Trusted(NamedTuple):
-    """A statement taken on trust: the costs of units by a user measure.
+    """A statement taken on trust: what units cost by a measure of the user.
 
-    The statement is that the ``rules`` give the units these ``costs``, by id, and no unit a negative cost.
-    ``sha256`` is the digest of the rules.
+    ``name``: the name of the measure.
+    ``rules``: the text of the rules that define the measure.
+    ``sha256``: the digest of this text.
+    ``costs``: the costs by unit id, as stated. No unit has a negative cost; this is taken on trust, too.
     """
 
     name: str
@@ -184,12 +206,12 @@ class Trusted(NamedTuple):
     costs: Mapping[int, Fraction]
 
 
-class UsedUp(NamedTuple):
-    """The statements about consumable items in a claim about plans.
+class ItemClaims(NamedTuple):
+    """The statements about consumable items that a claim about plans rests on.
 
-    ``stock`` maps consumable kitchen items, by id, to their copies. ``stays`` maps labels, and object nodes
-    by id, to whether they stay when used, which overrides the rule. ``wanted`` maps goals to the number of
-    copies wanted, if above 1.
+    ``stock``: the copies of kitchen items, by id of the node. Other kitchen items never run out.
+    ``stays``: for labels, and for nodes by id, whether they stay when used, whatever the rule says.
+    ``wanted``: the number of copies wanted of a goal, by id, if it is not 1.
     """
 
     stock: Mapping[int, int]
@@ -200,12 +222,21 @@ class UsedUp(NamedTuple):
 class Verified(NamedTuple):
     """What a certificate proves about the data it was checked with.
 
-    ``claim`` is ``optimal``: no tree is better than ``tree`` by the ``objectives``, most important first;
-    ``bound``: no tree costs less than the certificate's bound; or ``infeasible``: there is no tree.
-    The claim is about the trees that keep to the ``rules``: ready-made constraints, each by its name
-    (``rule``) and its values. ``costs`` are those of the tree, one for each objective. ``trusted`` are the
-    statements that the claim rests on and that are not in the data. Where items are used up, the claim is
-    about plans in place of trees, and ``used_up`` are its statements about items.
+    ``claim`` is one of three. ``optimal``: no tree is better than ``tree`` by the ``objectives``, most
+    important first. ``bound``: no tree costs less than the certificate's bound. ``infeasible``: there is no
+    tree.
+
+    ``goals``: the goal nodes, by id.
+    ``containers``: the container rule, ``strict`` or ``implied``.
+    ``level``: the level of the network.
+    ``rules``: the constraints that all these trees satisfy, each with its name (``rule``) and its values.
+    ``not_covered``: names of constraints that the claim does not take into account.
+    ``tree``: the units by id, in an order that executes; ``None`` without a tree.
+    ``costs``: the costs of the tree, one for each objective; ``None`` without a tree.
+    ``cuts``: the number of cuts.
+    ``trusted``: statements that the claim rests on and that are not in the data.
+    ``used_up``: statements about items, if items are used up. All claims are then about plans in place of
+    trees.
     """
 
     claim: str
@@ -219,14 +250,14 @@ class Verified(NamedTuple):
     costs: tuple[int | Fraction, ...] | None
     cuts: int
     trusted: tuple[Trusted, ...] = ()
-    used_up: UsedUp | None = None
+    used_up: ItemClaims | None = None
 
 
 def load_certificate(file: Path) -> Any:
-    """Return the content of a certificate file; no more than the greatest length of certificates is read.
+    """Return the parsed JSON of a certificate file.
 
-    Raises ``OSError`` and ``UnicodeDecodeError`` where the file cannot be read, and otherwise as
-    :func:`read_certificate`.
+    The file is read up to the greatest length of certificates. Raises ``OSError`` and ``UnicodeDecodeError``
+    if it cannot be read, and :class:`RefusedError` if it is too long, invalid, or has a key twice.
     """
     with file.open("rb") as stream:
         raw = stream.read(ALLOWED.letters)
@@ -236,57 +267,70 @@ def load_certificate(file: Path) -> Any:
 
 
 def read_certificate(text: str) -> Any:
-    """Return the parsed JSON of a certificate; raises :class:`RefusedError` if invalid or a key is double."""
+    """Return the parsed JSON of a certificate.
 
-    def once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    Raises :class:`RefusedError` if the text is too long or no JSON, or has a key twice or a float.
+    """
+
+    def unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        """Return a JSON object as a dictionary; refuse a key that occurs twice."""
         content = dict(pairs)
         require(len(content) == len(pairs), "a key stands twice in one object")
         return content
 
-    def no_float(number: str) -> None:
+    def refuse_float(number: str) -> None:
+        """Refuse a number that is no whole number."""
         raise RefusedError(f"found the number {number[:50]}, expected whole numbers, and fractions in quotes")
 
     if len(text) > ALLOWED.letters or text.count("[") + text.count("{") > ALLOWED.brackets:
         raise LimitError(f"it has more than {ALLOWED.letters:,} letters or {ALLOWED.brackets:,} brackets")
     try:
-        return json.loads(text, object_pairs_hook=once, parse_float=no_float, parse_constant=no_float)
+        return json.loads(
+            text, object_pairs_hook=unique_keys, parse_float=refuse_float, parse_constant=refuse_float
+        )
     except (ValueError, RecursionError) as error:
         raise RefusedError(f"not JSON: {error}") from None
 
 
 def seal(certificate: Mapping[str, Any]) -> str:
-    """Return the seal of a certificate: the digest of all other content."""
+    """Return the seal of a certificate: the SHA-256 digest of all its content except its key ``seal``."""
     return _digest({key: value for key, value in certificate.items() if key != "seal"})
 
 
-def trusted(certificate: Mapping[str, Any]) -> Rule | None:
-    """Return the statements about user rules that a certificate takes on trust, ``None`` without any."""
+def trusted_claims(certificate: Mapping[str, Any]) -> Rule | None:
+    """Return the claims about user rules that a certificate takes on trust, as one of its rules.
+
+    ``None`` if there are none.
+    """
     return next((rule for rule in certificate.get("rules", ()) if rule["rule"] == OWN), None)
 
 
 @contextmanager
-def refusing_depth() -> Iterator[None]:
-    """Refuse a certificate that is nested too deeply."""
+def refuse_deep_nesting() -> Iterator[None]:
+    """Turn a ``RecursionError`` of the decorated check into :class:`RefusedError`."""
     try:
         yield
     except RecursionError:
         raise RefusedError("branches nested too deeply") from None
 
 
-@refusing_depth()
+@refuse_deep_nesting()
 def verify(certificate: Any, subject: Subject) -> Verified:
-    """Check a certificate of a tree against its data.
+    """Check a certificate of a tree against its data; return what it proves.
 
-    The time is linear in the number of cuts times the size of the network. Raises :class:`LimitError` where
-    the check would take more than a few seconds beyond the time for the digest of the network. Raises
-    :class:`RefusedError` with the first fault that is found.
+    The time is linear in the number of cuts times the size of the network. Raises :class:`RefusedError` with
+    the first fault that is found. Raises :class:`LimitError` if the check takes more steps than
+    :class:`CertificateLimits` allows, which is a few seconds.
     """
-    rules = read_frame(certificate, TREE_FORM, subject)
-    return Check(certificate, rules, subject).claim()
+    rules = check_header(certificate, TREE_FORM, subject)
+    return Check(certificate, rules, subject).verify_claim()
 
 
-def read_frame(certificate: Any, form: Form, subject: Subject) -> tuple[Rule, ...]:
-    """Check the form, the seal and the digests of a certificate; return its rules."""
+def check_header(certificate: Any, form: Form, subject: Subject) -> tuple[Rule, ...]:
+    """Check all of a certificate that depends neither on its tree nor on its proof; return its rules.
+
+    These are the form, the version, the keys, the seal, the level and the digests.
+    """
     require(isinstance(certificate, dict), "expected an object with the keys of a certificate")
     require(certificate.get("format") == form.name, f"expected the format {form.name!r}")
     version = certificate.get("version")
@@ -307,42 +351,44 @@ def read_frame(certificate: Any, form: Form, subject: Subject) -> tuple[Rule, ..
 class Check:
     """One certificate, checked against its network.
 
-    A *member* is a unit, a kitchen item or a step of a constraint. A unit has its id as number; item ``k``
-    has the number of units plus ``k``; steps are numbered from the number of units and nodes on. Items are
-    members only where the objective ``kitchen`` counts them.
+    To *refuse* is to raise :class:`RefusedError`. A *member* of a cut is a unit, a kitchen item, or a step of
+    a constraint (:class:`CompiledRules`). Items are members only if the objective ``kitchen`` counts them.
+
+    All members are numbered together. A unit has its id as number. Kitchen item ``k`` has the number of units
+    plus ``k``. Steps are numbered from the number of units and nodes on.
     """
 
     def __init__(self, certificate: dict[str, Any], rules: tuple[Rule, ...], subject: Subject) -> None:
-        """Read objectives, costs, goals, rules and cuts of a certificate; its proof is read later."""
+        """Read objectives, costs, goals, rules and cuts of a certificate; tree and proof are read later."""
         network, kitchen, rates, utensils, prices = subject[:5]
-        self.allowed = ALLOWED.steps + ALLOWED.steps_each * (len(network) + len(network.objects))
-        self.steps = self.allowed  # that are left
+        self.max_steps = ALLOWED.steps + ALLOWED.steps_each * (len(network) + len(network.objects))
+        self.steps_left = self.max_steps
         self.minus_log = cache(self._minus_log)  # of a rate
-        self.all_multiples = cache(self._all_multiples)  # of a number, by an objective
-        self.looked_at: dict[str, dict[int, Fraction]] = {}  # costs by measures that the proof uses
+        self.are_multiples = cache(self._are_multiples)  # of a number, by an objective
+        self.trusted_costs: dict[str, dict[int, Fraction]] = {}  # costs by measures that the proof uses
         self.certificate, self.network, self.kitchen = certificate, network, kitchen
         self.utensils = utensils
         self.containers = certificate["containers"]
         require(self.containers in ("strict", "implied"), "expected the containers strict or implied")
         self.objectives = tuple(read_list(certificate["objective"]))
         measures = read_object(certificate.get("measures", {}))
-        self.measures = {name: self._measure(name, stated) for name, stated in measures.items()}
+        self.measures = {name: self._read_measure(name, stated) for name, stated in measures.items()}
         require(
             all(objective in (*OBJECTIVES, *self.measures) for objective in self.objectives),
             "an objective is unknown",
         )
         require(len(set(self.objectives)) == len(self.objectives), "an objective stands twice")
         by_rates = {"success", "attempts"} & set(self.objectives)
-        self.rates = self._rates(rates) if by_rates else {}
-        self.costly = frozenset(self.rates.values()) - {0, 1}
-        self.prices = self._prices(prices) if "price" in self.objectives else []
-        self.goals = tuple(_goal(goal, network) for goal in read_list(certificate["goals"]))
+        self.rates = self._required_rates(rates) if by_rates else {}
+        self.fractional_rates = frozenset(self.rates.values()) - {0, 1}
+        self.prices = self._required_prices(prices) if "price" in self.objectives else []
+        self.goals = tuple(_read_goal(goal, network) for goal in read_list(certificate["goals"]))
         require(len(set(self.goals)) == len(self.goals) > 0, "expected goals, each of them once")
         self.needs, self.gives = cache(self._needs), cache(self._gives)  # of a unit, without its rules
         self.preconditions, self.cost = cache(self._preconditions), cache(self._cost)  # of a member
         self.stand_ins = subject.stand_ins
-        self.rules, self.claimed = rules, 0
-        each_price = cache(lambda: self._each_price(prices))
+        self.rules, self.claim_size = rules, 0
+        each_price = cache(lambda: self._unit_prices(prices))
         question = Question(
             network,
             kitchen,
@@ -353,23 +399,23 @@ class Check:
             self.needs,
             self.gives,
         )
-        self.ruled = Ruled(
-            [self._meaning(rule, question) for rule in rules],
+        self.ruled = CompiledRules(
+            [self._rule_meaning(rule, question) for rule in rules],
             len(network.objects),
             len(network) + len(network.objects),
         )
-        self.not_covered = _names(certificate["not_covered"])
-        # these are nobody's labels, and could say anything in lines of their own
+        self.not_covered = _read_names(certificate["not_covered"])
+        # other names could print misleading lines of their own
         require(all(name.isprintable() for name in self.not_covered), "a constraint has no printable name")
         nodes = len(network.objects) + len(self.ruled.makers)
         self.cuts = [frozenset(read_numbers(cut, nodes)) for cut in read_list(certificate["cuts"])]
-        self.members = [frozenset(self._members(cut)) for cut in self.cuts]
-        self.met: set[int] = set()  # the cuts that the proof uses
+        self.members = [frozenset(self._landmark(cut)) for cut in self.cuts]
+        self.used_cuts: set[int] = set()  # the cuts that the proof uses
 
     def _check_stand_ins(self, least: Fraction | None) -> None:
-        """Check the stand-ins of the network against their table.
+        """Refuse a network whose stand-ins do not agree with their table, if it has a table.
 
-        ``least`` is the claimed lower bound on the dissimilarity of trees, ``None`` where no tree exists.
+        ``least`` is the claimed lower bound on the dissimilarity of trees, ``None`` if no tree exists.
         """
         if self.stand_ins is None:
             return
@@ -377,14 +423,14 @@ class Check:
         ruled = any(rule["rule"] != ALL_STEPS for rule in self.rules)
         by_dissimilarity = self.objectives[:1] in {(), ("dissimilarity",)} and not ruled
         claim = StandInClaim(by_dissimilarity, least if by_dissimilarity else None)
-        makes = Makes(self.kitchen, self.needs, self.gives)
+        actions = Actions(self.kitchen, self.needs, self.gives)
         inputs = (o for unit in steps for o in self.needs(unit) if o is not None)
-        wanted = [*dict.fromkeys((*self.goals, *inputs))]  # what every tree makes or takes
-        wrong = stand_in_fault(self.network, self.stand_ins, makes, wanted, claim)
+        wanted = [*dict.fromkeys((*self.goals, *inputs))]  # made or taken by every tree
+        wrong = stand_in_fault(self.network, self.stand_ins, actions, wanted, claim)
         require(wrong is None, f"{wrong}")
 
-    def _measure(self, name: str, stated: Any) -> Trusted:
-        """Read the stated costs of units by a measure."""
+    def _read_measure(self, name: str, stated: Any) -> Trusted:
+        """Return the statement of a certificate about what units cost by a measure; check its digest."""
         require(
             bool(_MEASURE_NAME.fullmatch(name)) and name not in OBJECTIVES, "a measure has no name of its own"
         )
@@ -400,18 +446,24 @@ class Check:
             for unit in read_numbers(units, len(self.network)):
                 require(unit not in costs, "a unit has two costs by a measure")
                 costs[unit] = cost
-        self.looked_at[name] = {}
+        self.trusted_costs[name] = {}
         return Trusted(name, rules, digest, costs)
 
-    def _measured(self, name: str, unit: int) -> Fraction:
-        """Return the stated cost of a unit by a measure, and note that it is taken on trust."""
+    def _stated_cost(self, name: str, unit: int) -> Fraction:
+        """Return the stated cost of a unit by a measure, and record that it is taken on trust.
+
+        Refuse a unit without stated cost.
+        """
         costs = self.measures[name].costs
         require(unit in costs, "the cost of a unit by a measure is not stated")
-        self.looked_at[name][unit] = costs[unit]
+        self.trusted_costs[name][unit] = costs[unit]
         return costs[unit]
 
-    def _rates(self, given_rates: Mapping[str, Fraction] | None) -> dict[str, Fraction]:
-        """Return the success rate of each motion."""
+    def _required_rates(self, given_rates: Mapping[str, Fraction] | None) -> dict[str, Fraction]:
+        """Return the success rate of each motion of the network; refuse missing rates and rates not in 0..1.
+
+        With the objective ``attempts``, a rate of 0 is refused, too.
+        """
         motions = self.network.different_motions
         rates = {
             motion: given_rates[motion]
@@ -419,7 +471,7 @@ class Check:
             if given_rates is not None and motion in given_rates
         }
         values = None if given_rates is None else [*rates.values()]
-        values_found = self._complete(values, len(motions), "success rates")
+        values_found = self._require_complete(values, len(motions), "success rates")
         require(all(rate <= 1 for rate in values_found), "a rate is above 1")
         require(
             "attempts" not in self.objectives or 0 not in values_found,
@@ -431,50 +483,60 @@ class Check:
         """Return the success rate of a unit."""
         return self.rates[self.network.motions[unit]]
 
-    def _prices(self, unit_prices: UnitPrices | None) -> list[Fraction]:
-        """Return the price of each unit."""
-        prices = None if unit_prices is None else self._each_price(unit_prices)
-        return self._complete(prices, len(self.network), "prices")
+    def _required_prices(self, unit_prices: UnitPrices | None) -> list[Fraction]:
+        """Return the price of each unit, by id; refuse missing prices, and prices below 0."""
+        prices = None if unit_prices is None else self._unit_prices(unit_prices)
+        return self._require_complete(prices, len(self.network), "prices")
 
-    def _each_price(self, unit_prices: UnitPrices | None) -> Sequence[Fraction | None]:
-        """Return the price of each unit: its own, or else that of its motion; ``None`` without a price.
+    def _unit_prices(self, unit_prices: UnitPrices | None) -> Sequence[Fraction | None]:
+        """Return the price of each unit, by id: its own, or else that of its motion; ``None`` if unknown.
 
-        Below level 3, it is the least price of the units of level 3 that the unit stands for; ``None`` if one
-        of them has no price.
+        Below level 3, it is the least price of the units of level 3 that the unit stands for. It is ``None``
+        if one of them has no price.
         """
         network = self.network
         if unit_prices is None:
             return [None] * len(network)
-        whole = network.detailed or network
-        own = {whole.unit_id(unit): price for unit, price in unit_prices.units.items()}
-        prices = [own.get(unit, unit_prices.motions.get(motion)) for unit, motion in enumerate(whole.motions)]
+        detailed = network.detailed or network
+        own = {detailed.unit_id(unit): price for unit, price in unit_prices.units.items()}
+        prices = [
+            own.get(unit, unit_prices.motions.get(motion)) for unit, motion in enumerate(detailed.motions)
+        ]
         if network.detailed is not None:
             details_prices = [[prices[detail] for detail in details] for details in network.stands_for]
             known_prices = [
                 [price for price in detail_prices if price is not None] for detail_prices in details_prices
             ]
             prices = [
-                min(k) if len(k) == len(e) else None
-                for k, e in zip(known_prices, details_prices, strict=True)
+                min(stated) if len(stated) == len(detail_prices) else None
+                for stated, detail_prices in zip(known_prices, details_prices, strict=True)
             ]
         return prices
 
-    def _complete(self, values: Sequence[Fraction | None] | None, count: int, what: str) -> list[Fraction]:
-        """Return the values of ``count`` units; refuse missing values and values below 0."""
+    def _require_complete(
+        self, values: Sequence[Fraction | None] | None, count: int, what: str
+    ) -> list[Fraction]:
+        """Return values from which none is missing; ``what`` names them in errors.
+
+        Refuse ``None`` in place of values, fewer than ``count`` that are not ``None``, and values below 0.
+        """
         require(values is not None, f"a claim needs {what}, but none are given")
         present = [value for value in values or () if value is not None]
         require(len(present) == count, f"a unit has none of the {what} that a claim needs")
         require(all(value >= 0 for value in present), f"one of the {what} is below 0")
         return present
 
-    def claim(self) -> Verified:
-        """Check tree, costs and proof."""
+    def verify_claim(self) -> Verified:
+        """Check the tree, its costs and the proof; return what is proved.
+
+        Refuse the certificate at the first fault.
+        """
         claim, listed, proof = (self.certificate[key] for key in ("claim", "tree", "proof"))
         costs: list[int | Fraction] | None = None
         amount: Amount = {}
         if listed is not None:
             require(bool(self.objectives), "a tree is given, but no objective")
-            amount, costs = self._tree(read_list(listed))
+            amount, costs = self._execute(read_list(listed))
             computed = json.dumps([str(c) if isinstance(c, Fraction) else c for c in costs])
             stated = json.dumps(self.certificate["costs"])  # which tells 1 from True and from 1.0
             require(stated == computed, f"the tree costs {computed}, not what is stated")
@@ -488,16 +550,14 @@ class Check:
             require(self.certificate["bound"] is None, "the bound of an optimal tree is what it costs")
         elif claim == "bound":
             require(bool(self.objectives), "expected objectives")
-            bound = self._read(self.certificate["bound"])
-            require(
-                listed is None or self.sign(self.sum([amount, negative(bound)])) >= 0, "the bound is false"
-            )
+            bound = self._read_amount(self.certificate["bound"])
+            require(listed is None or self.sign(self.sum([amount, negate(bound)])) >= 0, "the bound is false")
             amount = bound
         else:
             raise RefusedError("expected the claim optimal, bound or infeasible")
         self._check_stand_ins(None if claim == "infeasible" else amount.get((0, None), Fraction(0)))
-        self._prove(proof, None if claim == "infeasible" else amount)
-        require(len(self.met) == len(self.cuts), "a cut is not used by the proof")
+        self._check_proof(proof, None if claim == "infeasible" else amount)
+        require(len(self.used_cuts) == len(self.cuts), "a cut is not used by the proof")
         return Verified(
             claim,
             self.goals,
@@ -510,14 +570,17 @@ class Check:
             None if costs is None else tuple(costs),
             len(self.cuts),
             tuple(
-                measure._replace(costs=self.looked_at[name])
+                measure._replace(costs=self.trusted_costs[name])
                 for name, measure in self.measures.items()
                 if name in self.objectives
             ),
         )
 
-    def _tree(self, units: list[Any]) -> tuple[Amount, list[int | Fraction]]:
-        """Execute the tree as listed; return its cost as an amount and as figures."""
+    def _execute(self, units: list[Any]) -> tuple[Amount, list[int | Fraction]]:
+        """Execute the tree as listed; return its cost twice, as an amount and as written in a certificate.
+
+        Refuse a tree that does not execute, misses a goal, or breaks a rule.
+        """
         made: set[int | None] = set()
         for unit in read_numbers(units, len(self.network), ascending=False):
             lacking = (o for o in self.needs(unit) if o not in made and o not in self.kitchen)
@@ -527,14 +590,18 @@ class Check:
             made.update(self.gives(unit))
         unmade = [goal for goal in self.goals if goal not in made and goal not in self.kitchen]
         require(not unmade, "the tree does not make every goal")
-        self._keep(frozenset(units))
+        self._require_kept_rules(frozenset(units))
         items = {o for unit in units for o in self.needs(unit) if o is not None and o in self.kitchen}
         members = [*units, *(len(self.network) + o for o in sorted(items))]
         total = self.sum(map(self.cost, members))
-        return total, self._figures(units, total)
+        return total, self._written_costs(units, total)
 
-    def _figures(self, units: list[int], total: Amount) -> list[int | Fraction]:
-        """Return the costs of a tree of the units by each objective, as figures."""
+    def _written_costs(self, units: list[int], total: Amount) -> list[int | Fraction]:
+        """Return the cost of a tree by each objective, as written in a certificate.
+
+        ``units`` are the units of the tree, and ``total`` is its cost as an amount. By ``success``, the cost
+        is the product of the rates. Costs that are too long to be written are refused.
+        """
         costs: list[int | Fraction] = []
         for level, objective in enumerate(self.objectives):
             if objective == "success":
@@ -551,34 +618,37 @@ class Check:
                 costs.append(figure if objective in sums else int(figure))
         return costs
 
-    def _keep(self, units: frozenset[int]) -> None:
-        """Refuse a tree that does not keep to the rules."""
+    def _require_kept_rules(self, units: frozenset[int]) -> None:
+        """Refuse a tree of ``units`` that does not keep to the rules."""
         self._spend(len(self.ruled.makers) + len(self.network) * len(self.ruled.barred))
         self._spend(len(units) * len(self.ruled.limits))
         others = frozenset(range(len(self.network))) - units if self.rules else frozenset[int]()
         fault = self.ruled.fault(units, others)
         require(fault is None, f"the tree {fault}")
 
-    def _barred(self, number: int, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
-        """Return the units barred by a rule: no tree with all ``used`` and none of ``without`` has them."""
-        self._spend(len(self.network) + 5 * self.claimed)
+    def _barred_units(self, number: int, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
+        """Return the units that the constraint ``number`` bars on a branch.
+
+        No tree of the branch has such a unit: it has all members ``used``, and none of ``without``.
+        """
+        self._spend(len(self.network) + 5 * self.claim_size)
         units = frozenset(member for member in used if member < len(self.network))
         return self.ruled.barred[number](units, without)
 
-    def _prove(self, proof: Any, least: Amount | None) -> None:
+    def _check_proof(self, proof: Any, least: Amount | None) -> None:
         """Check a proof, with its branches, that every tree costs at least ``least``.
 
         If ``least`` is ``None``, the proof is that no tree exists. All costs are then 0, so weights that add
         up to more than 0 are a contradiction.
         """
-        nobody: frozenset[int] = frozenset()
-        waiting: list[tuple[Any, frozenset[int], frozenset[int]]] = [(proof, nobody, self.ruled.removed)]
+        no_members: frozenset[int] = frozenset()
+        waiting: list[tuple[Any, frozenset[int], frozenset[int]]] = [(proof, no_members, self.ruled.removed)]
         while waiting:
             node, used, without = waiting.pop()
             self._spend(1 + len(used) + len(without))
             keys = set(read_object(node))
             if keys == {"branch", "without", "using"}:
-                member = self._branch(node["branch"])
+                member = self._read_branch_member(node["branch"])
                 require(member not in used | without, "a branch is taken twice")
                 waiting.append((node["without"], used, without | {member}))
                 waiting.append((node["using"], used | {member}, without))
@@ -586,12 +656,12 @@ class Check:
             if keys == {"broken"}:
                 number = read_number(node["broken"], range(len(self.rules)), "the number of a rule")
                 never, barring = number in self.ruled.never, number in self.ruled.barred
-                broken = never or (barring and not used.isdisjoint(self._barred(number, used, without)))
+                broken = never or (barring and not used.isdisjoint(self._barred_units(number, used, without)))
                 require(broken, "a rule called broken is kept")
                 continue
-            barred = without.union(*(self._barred(number, used, without) for number in self.ruled.barred))
+            excluded = without.union(*(self._barred_units(n, used, without) for n in self.ruled.barred))
             if keys == {"hopeless"}:
-                crossing = self._crossing(node["hopeless"], used, barred)
+                crossing = self._crossing_members(node["hopeless"], used, excluded)
                 require(not crossing, "a cut called hopeless is crossed")
                 continue
             above_cutoff: list[int] | None = None
@@ -604,56 +674,65 @@ class Check:
                 {"weights"} <= keys <= {"weights", "limits", "multiples"},
                 "expected weights, a hopeless cut, a broken rule or a branch",
             )
-            packed, reduced_cost = self._packed(node["weights"], node.get("limits", []), used, barred)
-            paid = self.sum(map(self.cost, used))
+            partition_sum, reduced_cost = self._check_cost_partition(
+                node["weights"], node.get("limits", []), used, excluded
+            )
+            used_cost = self.sum(map(self.cost, used))
             for addition in [{}] if above_cutoff is None else map(reduced_cost, above_cutoff):
-                total = self._rounded(self.sum([packed, addition]), node.get("multiples", {}))
-                require(self._enough([total, paid], least), "the weights do not add up to enough")
+                total = self._round_up(self.sum([partition_sum, addition]), node.get("multiples", {}))
+                require(self._is_enough([total, used_cost], least), "the weights do not add up to enough")
 
     def _above_cutoff(self, choices: Any, decided: frozenset[int]) -> list[int]:
-        """Read the members of a reduced-cost fixing, which are claimed to be above the cutoff."""
-        actions = [self._branch(choice) for choice in read_list(choices)]
+        """Return the members that a reduced-cost fixing claims to be above the cutoff.
+
+        Refuse an empty list, double members, and members in ``decided``, which are used or excluded already.
+        """
+        actions = [self._read_branch_member(choice) for choice in read_list(choices)]
         require(len(actions) > 0, "nothing is too dear")
         require(
             decided.isdisjoint(actions) and len(set(actions)) == len(actions), "what is dear is decided twice"
         )
         return actions
 
-    def _enough(self, bound: Iterable[Amount], least: Amount | None) -> bool:
-        """Return whether a bound is at least ``least``; if ``least`` is ``None``, whether it is above 0."""
+    def _is_enough(self, bound: Iterable[Amount], least: Amount | None) -> bool:
+        """Return whether the sum of ``bound`` is at least ``least`` or, if ``least`` is ``None``, above 0."""
         if least is None:
             return self.sign(self.sum(bound)) > 0
-        return self.sign(self.sum([*bound, negative(least)])) >= 0
+        return self.sign(self.sum([*bound, negate(least)])) >= 0
 
-    def _packed(
+    def _check_cost_partition(
         self, weights: Any, limits: Any, used: frozenset[int], without: frozenset[int]
     ) -> tuple[Amount, Callable[[int], Amount]]:
-        """Check a cost partition; return its sum and a function that returns the reduced cost of a member.
+        """Check a cost partition on a branch; return its sum, and a function that returns reduced costs.
 
-        A tree with a member costs at least the sum plus the reduced cost of the member. A limit may have a
-        weight, too. A member then carries this weight for each unit that it consumes from the limit. In
-        return, the weight of the remaining limit, after the used members, is subtracted from the sum.
+        The sum is a lower bound on the cost of all members that a tree of the branch has in addition to
+        ``used``. With a certain member, the cost is higher by at least the reduced cost of the member.
+        Members in ``without`` are excluded.
+
+        ``weights`` and ``limits`` are rows of a proof: the weights of cuts and of limits. A member may carry
+        more than its cost: the weight of a limit for each unit that it consumes of the limit. In return, this
+        weight is subtracted from the sum for each unit of the limit that ``used`` leaves.
         """
         total: Amount = {}
         carried: list[tuple[Amount, Mapping[int, Fraction]]] = []
-        for (limit_number,), weight in self.read_weights("limits", limits, self._read):
+        for (limit_number,), weight in self.read_weights("limits", limits, self._read_amount):
             limit = self.limit_at(limit_number)
             self._spend(len(used))
-            self._add(total, self.times(weight, -limit.remaining(used)))
+            self._add_to(total, self.times(weight, -limit.remaining(used)))
             carried.append((weight, limit.amounts))
-        rows = [*self.read_weights("weights", weights, self._read)]
+        rows = [*self.read_weights("weights", weights, self._read_amount)]
         scales = self._common_denominators([weight for _, weight in rows])
         # by part of a weight and member, over the common denominator: whole numbers are added quickly
         loads: dict[tuple[int, Fraction | None], defaultdict[int, int]] = {
             key: defaultdict(int) for key in scales
         }
         for (number,), weight in rows:
-            self._add(total, weight)
-            crossing = self._crossing(number, used, without)
+            self._add_to(total, weight)
+            crossing = self._crossing_members(number, used, without)
             for key, value in weight.items():
                 if not value:
                     continue
-                self._spend_on(bit_length(value) + scales[key].bit_length(), len(crossing))
+                self._spend_on_fractions(bit_length(value) + scales[key].bit_length(), len(crossing))
                 scaled, load = value.numerator * (scales[key] // value.denominator), loads[key]
                 for member in crossing:
                     load[member] += scaled
@@ -663,8 +742,11 @@ class Check:
             return {key: Fraction(load.get(member, 0), scales[key]) for key, load in loads.items()}
 
         def allowed(member: int) -> Amount:
-            """Return the greatest load of a member: its cost, and the weights of limits that it carries."""
-            # a member that is used anyway was paid for, and can carry nothing more
+            """Return the greatest load of a member: its cost, and the weights of limits that it consumes.
+
+            It is 0 for a used member, whose cost was paid before.
+            """
+            # the cost of a used member was paid before
             capacity = {} if member in used else self.cost(member)
             if carried and member not in used:
                 extra = (self.times(w, amounts[member]) for w, amounts in carried if member in amounts)
@@ -672,7 +754,8 @@ class Check:
             return capacity
 
         def reduced_cost(member: int) -> Amount:
-            return self.sum([allowed(member), negative(load_of(member))])
+            """Return the part of a member's greatest load that its cuts do not take."""
+            return self.sum([allowed(member), negate(load_of(member))])
 
         for member in dict.fromkeys(chain.from_iterable(loads.values())):
             if allowed(member) != load_of(member):
@@ -682,22 +765,23 @@ class Check:
         return total, reduced_cost
 
     def _common_denominators(self, amounts: Sequence[Amount]) -> dict[tuple[int, Fraction | None], int]:
-        """Return the least common denominator of each part of some amounts."""
+        """Return, for each part of amounts (objective and rate), the least common denominator."""
         scales: dict[tuple[int, Fraction | None], int] = {}
         for amount in amounts:
             for key, value in amount.items():
                 scale = scales.get(key, 1)
                 if scale % value.denominator:
                     scale = math.lcm(scale, value.denominator)
-                    self._spend_on(scale.bit_length())
+                    self._spend_on_fractions(scale.bit_length())
                 scales[key] = scale
         return scales
 
-    def _rounded(self, amount: Amount, stated: Any) -> Amount:
-        """Round up a bound to a stated common divisor of all costs.
+    def _round_up(self, amount: Amount, stated: Any) -> Amount:
+        """Return a bound, rounded up to a stated common divisor of all costs by an objective.
 
-        It is rounded at the first objective whose part is no multiple of the stated divisor. The parts after
-        this objective become 0, since no cost is below 0.
+        ``stated`` is an object with divisors by objective. The bound is rounded at the first objective whose
+        part is no multiple of its divisor. The parts after this objective become 0, since no cost is below 0.
+        A divisor that does not divide all costs is refused.
         """
         multiples = {name: read_rational(multiple) for name, multiple in read_object(stated).items()}
         require(multiples.keys() <= set(self.objectives), "a multiple is stated for another objective")
@@ -705,32 +789,38 @@ class Check:
             if objective in multiples:
                 multiple = multiples[objective]
                 require(multiple > 0, "a multiple is not above zero")
-                require(self.all_multiples(level, multiple), "a cost is not a multiple of what is stated")
+                require(self.are_multiples(level, multiple), "a cost is not a multiple of what is stated")
                 times = amount.get((level, None), Fraction(0)) / multiple
                 if times.denominator > 1:
                     before = {key: value for key, value in amount.items() if key[0] < level}
                     return {**before, (level, None): math.ceil(times) * multiple}
         return amount
 
-    def _all_multiples(self, level: int, multiple: Fraction) -> bool:
-        """Return whether the costs of all units and items by an objective are multiples of a number."""
+    def _are_multiples(self, level: int, multiple: Fraction) -> bool:
+        """Return whether the costs of all units and items by an objective are multiples of a number.
+
+        ``level`` is the index of the objective. By ``success``, return ``False``.
+        """
         if self.objectives[level] == "success":
             return False
         members = (*range(len(self.network)), *(len(self.network) + o for o in self.kitchen))
         self._spend(len(members))
-        costs = (self._cost_by(level, member) or Fraction(0) for member in members)
+        costs = (self._cost_by_objective(level, member) or Fraction(0) for member in members)
         for ratio in dict.fromkeys(cost.as_integer_ratio() for cost in costs):
             cost = Fraction(*ratio)
-            self._spend_on(bit_length(cost) + bit_length(multiple))
+            self._spend_on_fractions(bit_length(cost) + bit_length(multiple))
             if cost % multiple:
                 return False
         return True
 
-    def _crossing(self, number: Any, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
-        """Return the members of a cut that are not excluded, after checking that the cut is a landmark."""
+    def _crossing_members(self, number: Any, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
+        """Return the members of the cut ``number`` that are not in ``without``, and record that it is used.
+
+        Refuse a cut that contains neither a goal nor a precondition of a member in ``used``.
+        """
         index = read_number(number, range(len(self.cuts)), "the number of a cut")
         self._spend(1 + len(self.goals) + len(used) + len(self.members[index]))
-        self.met.add(index)
+        self.used_cuts.add(index)
         cut = self.cuts[index]
         before = (
             any(goal in cut and goal not in self.kitchen for goal in self.goals)
@@ -740,8 +830,12 @@ class Check:
         require(before, f"cut {number} holds neither a goal nor what a used unit needs")
         return self.members[index] - without
 
-    def _members(self, cut: frozenset[int]) -> Iterator[int]:
-        """Yield the landmark of a cut: the units that make one of its nodes and need none, and its items."""
+    def _landmark(self, cut: frozenset[int]) -> Iterator[int]:
+        """Yield the members of a cut.
+
+        They are the units and steps that make one of its nodes and need none, and its kitchen items. Refuse a
+        cut with a kitchen item unless the objective ``kitchen`` counts items.
+        """
         network, own = self.network, self.ruled.makers
         self._spend(sum(1 + len(own[o] if o in own else network.producers[o]) for o in cut))
         for o in cut:
@@ -756,7 +850,7 @@ class Check:
                         yield unit
 
     def _preconditions(self, member: int) -> frozenset[int | None]:
-        """Return the preconditions of a unit or a step, including those by rules; an item has none."""
+        """Return the preconditions of a unit or a step, with nodes that constraints add; none for an item."""
         if member in self.ruled.steps:
             return frozenset(self.ruled.steps[member][0])
         if member >= len(self.network):
@@ -765,38 +859,42 @@ class Check:
         return self.needs(member).union(own) if own else self.needs(member)
 
     def _needs(self, unit: int) -> frozenset[int | None]:
-        """Return the preconditions of a unit.
+        """Return the preconditions of a unit, without nodes that constraints add.
 
         Below level 3, they are the common preconditions of all units of level 3 that the unit stands for.
         """
-        return frozenset.intersection(*(needed for needed, _ in self._details(unit)))
+        return frozenset.intersection(*(needed for needed, _ in self._detailed_effects(unit)))
 
     def _gives(self, unit: int) -> frozenset[int | None]:
-        """Return the add effects of a unit.
+        """Return the add effects of a unit, without nodes that constraints add.
 
         Below level 3, they are the add effects of all units of level 3 that the unit stands for.
         """
-        return frozenset.union(*(made for _, made in self._details(unit)))
+        return frozenset.union(*(made for _, made in self._detailed_effects(unit)))
 
-    def _details(self, unit: int) -> Iterator[tuple[frozenset[int | None], frozenset[int | None]]]:
+    def _detailed_effects(self, unit: int) -> Iterator[tuple[frozenset[int | None], frozenset[int | None]]]:
         """Yield preconditions and add effects of each unit of level 3 that a unit stands for.
 
-        A unit of level 3 stands for itself. Containers that a unit may skip are omitted.
+        Nodes are ids at the network's level. A unit of level 3 stands for itself. Containers that the
+        container rule skips are omitted.
         """
         network = self.network
-        whole = network.detailed or network
+        detailed = network.detailed or network
         for detail in (unit,) if network.detailed is None else network.stands_for[unit]:
-            inputs = set(whole.inputs[detail])
-            skipped = self._skipped(whole, inputs) if self.containers == "implied" else set()
-            yield self._at_level(inputs - skipped), self._at_level(set(whole.outputs[detail]) - skipped)
+            inputs = set(detailed.inputs[detail])
+            skipped = self._skipped_containers(detailed, inputs) if self.containers == "implied" else set()
+            yield (
+                self._ids_at_level(inputs - skipped),
+                self._ids_at_level(set(detailed.outputs[detail]) - skipped),
+            )
 
-    def _skipped(self, whole: Network, inputs: set[int]) -> set[int]:
-        """Return the inputs of a unit that the rule ``implied`` takes as given.
+    def _skipped_containers(self, detailed: Network, inputs: set[int]) -> set[int]:
+        """Return the inputs of a unit that the container rule ``implied`` takes as given.
 
-        An input is taken as given if it is a utensil with exactly one ingredient, and this ingredient,
-        located in the utensil, is another input.
+        Such an input is a utensil with exactly one ingredient. This ingredient, located in the utensil, is
+        another input.
         """
-        nodes = [(o, whole.objects[o]) for o in inputs]
+        nodes = [(o, detailed.objects[o]) for o in inputs]
         return {
             o
             for o, vessel in nodes
@@ -808,35 +906,38 @@ class Check:
             )
         }
 
-    def _at_level(self, nodes: set[int]) -> frozenset[int | None]:
-        """Return the ids at the network's level of nodes of level 3."""
+    def _ids_at_level(self, nodes: set[int]) -> frozenset[int | None]:
+        """Return nodes of level 3 as ids at the network's level; ``None`` for nodes that it does not have."""
         network = self.network
         if network.detailed is None:
             return frozenset(nodes)
         nodes_at_level = (node_at_level(network.detailed.objects[o], network.level) for o in nodes)
         return frozenset(map(network.object_id, nodes_at_level))
 
-    def _meaning(self, rule: Rule, question: Question) -> Meaning:
-        """Return the meaning of a rule for the network."""
+    def _rule_meaning(self, rule: Rule, question: Question) -> Meaning:
+        """Return the meaning of a rule for the network; the work counts as steps of the check."""
         self._spend(ALLOWED.rule_steps * (len(self.network) + len(self.network.objects)))
-        self.claimed += sum(1 + len(used) + len(without) for used, without in rule.get("claims", ()))
-        return meaning(rule, question)
+        self.claim_size += sum(1 + len(used) + len(without) for used, without in rule.get("claims", ()))
+        return meaning_of_rule(rule, question)
 
     def _cost(self, member: int) -> Amount:
-        """Return the cost of a unit or an item, one part for each objective."""
+        """Return the cost of a unit or an item, with a part for each objective that counts it.
+
+        A step of constraints costs nothing.
+        """
         cost: Amount = {}
         if member in self.ruled.steps:
             return cost
         for level, objective in enumerate(self.objectives):
-            figure = self._cost_by(level, member)
+            figure = self._cost_by_objective(level, member)
             if figure is not None:
                 cost[level, self.rate(member) if objective == "success" else None] = figure
         return cost
 
-    def _cost_by(self, level: int, member: int) -> Fraction | None:
-        """Return the cost of a unit or an item by an objective, ``None`` if the objective does not count it.
+    def _cost_by_objective(self, level: int, member: int) -> Fraction | None:
+        """Return the cost of a unit or an item by an objective; ``None`` if the objective does not count it.
 
-        By ``success``, it is the exponent of the unit's rate.
+        ``level`` is the index of the objective. By ``success``, it is 1, the exponent of the unit's rate.
         """
         network, objective = self.network, self.objectives[level]
         item = member >= len(network)
@@ -849,7 +950,7 @@ class Check:
         if objective in {"price", "dissimilarity"}:
             return self.prices[member] if objective == "price" else self._dissimilarity(member)
         if objective in self.measures:
-            return self._measured(objective, member)
+            return self._stated_cost(objective, member)
         require(objective in {"inputs", "inputs+ingredients"}, "an objective is unknown")
         inputs = network.inputs[member]
         count = len(inputs)
@@ -858,16 +959,16 @@ class Check:
         return Fraction(count)
 
     def _dissimilarity(self, unit: int) -> Fraction:
-        """Return what a stand-in costs by the table, 0 for other units."""
+        """Return the price of a stand-in by the table; 0 for other units."""
         network = self.network
         if self.stand_ins is None or network.motions[unit] != STAND_IN:
             return Fraction(0)
         (serving,), (served,) = network.inputs[unit], network.outputs[unit]
-        # each has a price: they were held against the table
+        # each has a price, since they agree with the table
         return price_of(self.stand_ins, network.objects[serving], network.objects[served]) or Fraction(0)
 
     def sign(self, amount: Amount) -> Fraction | int:
-        """Return a number with the sign of an amount; the first objective that is not 0 decides."""
+        """Return a number with the sign of an amount, exactly; the first objective that is not 0 decides."""
         for level, objective in enumerate(self.objectives or (_UNMEASURED,)):
             if objective == "success":
                 sign = self._minus_log_sign({r: e for (_, r), e in amount.items() if r is not None})
@@ -877,8 +978,12 @@ class Check:
                 return sign
         return 0
 
-    def _branch(self, choice: Any) -> int:
-        """Read the member that a branch is about: a unit, an item or a step."""
+    def _read_branch_member(self, choice: Any) -> int:
+        """Return the member that a branch is about, from an object such as ``{"unit": 3}``.
+
+        A kitchen item has the key ``item`` and its id as node; a step of constraints has ``step`` and its
+        number from 0.
+        """
         network, kinds = self.network, [*read_object(choice)]
         kind = kinds[0] if kinds in (["item"], ["step"]) else "unit"
         number = read_object(choice, (kind,))[kind]
@@ -894,17 +999,21 @@ class Check:
     def read_weights(
         self, key: str, stated: Any, read: Callable[[Any], Amount], numbers: int = 1
     ) -> Iterator[tuple[list[int], Amount]]:
-        """Read the weights under a key of a proof.
+        """Yield the weighted conditions under a key of a proof; refuse weights that are not above 0.
 
-        The first ``numbers`` entries of each row are the numbers of the weighted condition.
+        A row names its condition by its first ``numbers`` entries, which are yielded as a list, and has the
+        weight last. ``read`` turns the stated weight into an amount.
         """
-        for name, value in self.read_named(key, stated, numbers):
+        for name, value in self.read_rows(key, stated, numbers):
             weight = read(value)
             require(self.sign(weight) > 0, f"{key}: a weight is not above zero")
             yield name, weight
 
-    def read_named(self, key: str, stated: Any, numbers: int = 1) -> Iterator[tuple[list[int], Any]]:
-        """Yield the rows under a key, in order: the first ``numbers`` entries of a row, and its value."""
+    def read_rows(self, key: str, stated: Any, numbers: int = 1) -> Iterator[tuple[list[int], Any]]:
+        """Yield rows under a key: their first ``numbers`` entries as a list, and the last entry.
+
+        The first entries have to be whole numbers, and to ascend from row to row.
+        """
         rows = [read_list(row) for row in read_list(stated)]
         names = [row[:numbers] for row in rows]
         require(
@@ -917,38 +1026,44 @@ class Check:
         yield from ((name, row[numbers]) for name, row in zip(names, rows, strict=True))
 
     def limit_at(self, number: int) -> Limit:
-        """Return the limit that a weight is for, by the limit's number."""
+        """Return the limit with a number; refuse a number that is of no limit."""
         require(number in self.ruled.limits, "a rule that limits nothing is given a weight")
         return self.ruled.limits[number]
 
-    def _read(self, stated: Any) -> Amount:
-        """Read a weight or bound: for each objective a number, for success the exponent of each rate."""
+    def _read_amount(self, stated: Any) -> Amount:
+        """Return a weight or bound as an amount, from a list with one entry for each objective.
+
+        An entry is a fraction or, for ``success``, an object from rate to exponent.
+        """
         amount: Amount = {}
-        parts = read_list(stated)
+        entries = read_list(stated)
         objectives = self.objectives or (_UNMEASURED,)
-        require(len(parts) == len(objectives), "expected one part of a weight for each objective")
+        require(len(entries) == len(objectives), "expected one part of a weight for each objective")
         for level, objective in enumerate(objectives):
             if objective == "success":
-                for name, exponent in read_object(parts[level]).items():
+                for name, exponent in read_object(entries[level]).items():
                     rate = read_rational(name)
-                    require(rate in self.costly, "expected rates of motions in a weight, and none of 0 or 1")
+                    require(
+                        rate in self.fractional_rates,
+                        "expected rates of motions in a weight, and none of 0 or 1",
+                    )
                     amount[level, rate] = read_rational(exponent)
             else:
-                amount[level, None] = read_rational(parts[level])
+                amount[level, None] = read_rational(entries[level])
         return amount
 
     def _minus_log_sign(self, exponents: Mapping[Fraction, Fraction]) -> Fraction | int:
-        """Return a number with the sign of the sum of ``e * -log(rate)``: is the product below or above 1?
+        """Return a number with the sign of the sum of ``e * -log(rate)`` over ``exponents``, exactly.
 
-        Bounds of the logarithms decide where they can. Otherwise the product of ``rate ** e`` is raised to
-        the common denominator of the exponents. The power is a quotient of whole numbers, and below 1 exactly
-        when the product is. A rate of 0 costs more than any weight.
+        Bounds of the logarithms decide if they can. Otherwise, exponents are multiplied by their common
+        denominator. The product of all ``rate ** e`` is then a quotient of whole numbers, and is compared
+        with 1. The sign is positive if it is below 1. A rate of 0 costs more than any weight.
         """
         if never := exponents.get(Fraction(0)):
             return never
         exponents = {rate: e for rate, e in exponents.items() if e and rate != 1}
         for size in accumulate(map(bit_length, exponents.values())):
-            self._spend_on(4000 + size)  # bounds of logarithms have hundreds of bits themselves
+            self._spend_on_fractions(4000 + size)  # bounds of logarithms have hundreds of bits themselves
         bounds = [[e * bound for bound in self.minus_log(rate)] for rate, e in exponents.items()]
         low, high = sum(map(min, bounds)), sum(map(max, bounds))
         if low > 0 or high < 0:
@@ -984,32 +1099,38 @@ class Check:
             high += sign * Fraction(logarithm) + unit
         return low, high
 
-    def _add(self, total: Amount, amount: Amount) -> None:
+    def _add_to(self, total: Amount, amount: Amount) -> None:
+        """Add ``amount`` to ``total`` in place, and count the additions as steps of the check."""
         for key, value in amount.items():
             total[key] = total[key] + value if key in total else value
-            self._spend_on(bit_length(total[key]))
+            self._spend_on_fractions(bit_length(total[key]))
 
     def times(self, amount: Amount, factor: Fraction) -> Amount:
-        """Return an amount times a factor."""
+        """Return an amount times a factor; the work counts as steps of the check."""
         return self.sum([{key: value * factor for key, value in amount.items()}])
 
     def sum(self, amounts: Iterable[Amount]) -> Amount:
-        """Return the sum of amounts."""
+        """Return the sum of amounts; the work counts as steps of the check."""
         total: Amount = {}
         for amount in amounts:
-            self._add(total, amount)
+            self._add_to(total, amount)
         return total
 
-    def _spend_on(self, bits: int, times: int = 1) -> None:
-        """Count the steps of operations on fractions of ``bits`` bits, whose time grows with the square."""
+    def _spend_on_fractions(self, bits: int, times: int = 1) -> None:
+        """Count the steps of ``times`` operations on fractions of ``bits`` bits.
+
+        The steps grow with the square of the bits. Raises :class:`LimitError` if the fractions or the check
+        are too long.
+        """
         if bits > ALLOWED.sum_bits:
             raise LimitError("its fractions add up to numbers that are too long")
         self._spend(times * (5 + (bits // 512) ** 2))
 
     def _spend(self, steps: int) -> None:
-        self.steps -= steps
-        if self.steps < 0:
-            raise LimitError(f"to check it takes more than {self.allowed:,} steps")
+        """Count steps of the check; raises :class:`LimitError` if there are too many."""
+        self.steps_left -= steps
+        if self.steps_left < 0:
+            raise LimitError(f"to check it takes more than {self.max_steps:,} steps")
 
 
 def bit_length(value: Fraction) -> int:
@@ -1017,45 +1138,55 @@ def bit_length(value: Fraction) -> int:
     return value.numerator.bit_length() + value.denominator.bit_length()
 
 
-def negative(amount: Amount) -> Amount:
+def negate(amount: Amount) -> Amount:
     """Return an amount with the opposite sign."""
     return {key: -value for key, value in amount.items()}
 
 
-def _described(network: Network) -> list[Any]:
-    """Return all that a claim about a network can depend on; below level 3 with the network of level 3."""
+def _network_data(network: Network) -> list[Any]:
+    """Return all that a claim about a network can depend on, as lists that JSON can write.
+
+    Below level 3, this includes the network of level 3.
+    """
     nodes = [
         (label, sorted(states), sorted(relations), contents)
         for label, states, relations, contents in network.objects
     ]
-    below = [] if network.detailed is None else [_described(network.detailed), network.stands_for]
+    below = [] if network.detailed is None else [_network_data(network.detailed), network.stands_for]
     return [network.level, nodes, network.motions, network.inputs, network.outputs, *below]
 
 
-def _stated(prices: UnitPrices, network: Network) -> list[list[Any]]:
-    """Return the prices by motion, and the prices of single units by their id at level 3."""
+def _price_data(prices: UnitPrices, network: Network) -> list[list[Any]]:
+    """Return two sorted lists of pairs: motions and their prices, and unit ids and their prices.
+
+    Ids are those of ``network``; units that it does not have are omitted.
+    """
     ids = ((network.unit_id(unit), price) for unit, price in prices.units.items())
     single = sorted([unit, str(price)] for unit, price in ids if unit is not None)
     return [sorted([motion, str(price)] for motion, price in prices.motions.items()), single]
 
 
 def _digest(value: object) -> str:
-    return hashlib.sha256(canonical(value).encode()).hexdigest()
+    """Return the SHA-256 digest of plain values, written as canonical JSON."""
+    return hashlib.sha256(canonical_json(value).encode()).hexdigest()
 
 
-def canonical(value: object) -> str:
-    """Return plain values as canonical JSON, for digests."""
+def canonical_json(value: object) -> str:
+    """Return plain values as canonical JSON: keys in order, without spaces."""
     return json.dumps(value, sort_keys=True, separators=(",", ":"), check_circular=False)
 
 
 def require(holds: bool, otherwise: str) -> None:
-    """Raise :class:`RefusedError` with a message unless something holds."""
+    """Raise :class:`RefusedError` with the message ``otherwise`` unless ``holds`` is true."""
     if not holds:
         raise RefusedError(otherwise)
 
 
 def read_object(value: Any, keys: Sequence[str] | None = None) -> dict[str, Any]:
-    """Read a JSON object; with ``keys``, it must have exactly these keys."""
+    """Return a value; refuse it unless it is a JSON object with exactly these keys.
+
+    If ``keys`` is ``None``, the object may have any keys.
+    """
     require(isinstance(value, dict), "expected an object")
     content: dict[str, Any] = value
     require(keys is None or set(content) == set(keys), f"expected the keys {', '.join(keys or ())}")
@@ -1063,27 +1194,33 @@ def read_object(value: Any, keys: Sequence[str] | None = None) -> dict[str, Any]
 
 
 def read_list(value: Any) -> list[Any]:
-    """Read a JSON list."""
+    """Return a value; refuse it unless it is a JSON list."""
     require(isinstance(value, list), "expected a list")
     items: list[Any] = value
     return items
 
 
 def read_pair(value: Any, what: str) -> tuple[Any, Any]:
-    """Read a list of two entries; ``what`` names it in the error."""
+    """Return the two entries of a list; refuse other values; ``what`` names the list in the error."""
     require(isinstance(value, list) and len(value) == 2, f"expected {what}")
     first, second = value
     return first, second
 
 
 def read_number(value: Any, allowed: Container[int], what: str) -> int:
-    """Read an id or number from the allowed ones, for ``what`` in errors; JSON's true is no number."""
+    """Return a whole number; refuse values that are not ``allowed``; ``what`` names it in the error.
+
+    JSON's ``true`` is no number.
+    """
     require(type(value) is int and value in allowed, f"expected {what}")
     return int(value)
 
 
-def _names(value: Any) -> tuple[str, ...]:
-    """Read a list of different names, in order and without half letters."""
+def _read_names(value: Any) -> tuple[str, ...]:
+    """Return a list of texts as a tuple; refuse it unless they are sorted and different.
+
+    Texts with surrogates (half letters) are refused, too.
+    """
     names = read_list(value)
     require(all(isinstance(name, str) for name in names), "expected names")
     require(names == sorted(set(names)), "expected names in order, each of them once")
@@ -1092,7 +1229,10 @@ def _names(value: Any) -> tuple[str, ...]:
 
 
 def read_numbers(value: Any, below: int, ascending: bool = True) -> list[int]:
-    """Read distinct ids; with ``ascending``, at least one, in ascending order."""
+    """Return a list of numbers; refuse it unless they are distinct and from 0 to ``below - 1``.
+
+    With ``ascending``, refuse a list that is empty or not ascending, too.
+    """
     numbers = read_list(value)
     require(all(type(n) is int and 0 <= n < below for n in numbers), "expected ids of the network")
     require(len(set(numbers)) == len(numbers), "an id stands twice")
@@ -1100,8 +1240,8 @@ def read_numbers(value: Any, below: int, ascending: bool = True) -> list[int]:
     return numbers
 
 
-def _goal(value: Any, network: Network) -> int:
-    """Read a goal, given as id and text; return its id."""
+def _read_goal(value: Any, network: Network) -> int:
+    """Return the id of a goal from an object with its id and text; refuse it unless these agree."""
     goal = read_object(value, ("id", "node"))
     (node,) = read_numbers([goal["id"]], len(network.objects))
     require(str(network.objects[node]) == goal["node"], "a goal is not the node of its id")
@@ -1109,14 +1249,17 @@ def _goal(value: Any, network: Network) -> int:
 
 
 def read_rules(value: Any, units: int) -> tuple[Rule, ...]:
-    """Read the constraints of a claim, and its statements about user rules that are taken on trust."""
+    """Return the rules of a claim; refuse rules that are unknown, malformed, repeated or not sorted.
+
+    ``units`` is the number of units. Claims about user rules are rules, too; only their form is checked.
+    """
     rules = [read_object(rule) for rule in read_list(value)]
     if len(rules) > ALLOWED.rules:
         raise LimitError(f"it has more than {ALLOWED.rules} rules")
     for rule in rules:
         name = rule.get("rule")
         if name == OWN:
-            _own(rule, units)
+            _check_user_rules(rule, units)
             continue
         if name == ALL_STEPS:
             read_object(rule, ("rule", "units"))
@@ -1127,25 +1270,25 @@ def read_rules(value: Any, units: int) -> tuple[Rule, ...]:
         read_object(rule, ("rule", *values))
         for key, kind in values.items():
             require(type(rule[key]) is kind, "a value of a rule is of another kind")
-            _names(rule[key] if kind is list else [rule[key]] if kind is str else [])
+            _read_names(rule[key] if kind is list else [rule[key]] if kind is str else [])
     require(sum(rule["rule"] == OWN for rule in rules) <= 1, "rules of the user's own stand twice")
-    texts = [canonical(rule) for rule in rules]
+    texts = [canonical_json(rule) for rule in rules]
     require(texts == sorted(set(texts)), "expected rules in order, each of them once")
     return tuple(rules)
 
 
-def _own(rule: Rule, units: int) -> None:
-    """Check the form of claims about user rules; the claims themselves are taken on trust.
+def _check_user_rules(rule: Rule, units: int) -> None:
+    """Check the form of claims about user rules; their truth is taken on trust.
 
-    The claims consist of the texts of the rules, their digests, and sets of units.
+    They consist of the texts of the rules with their digests, pairs of sets of units, and limits on sums.
     """
     read_object(rule, ("rule", "claims", "constants", "files", "library", "limits"))
     for key in ("constants", "library"):
-        _names(rule[key])
+        _read_names(rule[key])
     for file in read_list(rule["files"]):
         read_object(file, ("name", "sha256", "text"))
-        _names([file["name"]])
-        _names([file["text"]])
+        _read_names([file["name"]])
+        _read_names([file["text"]])
         require(file["name"].isprintable(), "a file of rules has no printable name")
         sha = hashlib.sha256(file["text"].encode()).hexdigest()
         require(file["sha256"] == sha, "a text of rules does not have its digest")
@@ -1158,14 +1301,17 @@ def _own(rule: Rule, units: int) -> None:
         counted: list[int] = []
         for amount, counted_units in read_object(amounts).items():
             number = read_rational(amount)
-            whole = number > 0 and number.denominator == 1
-            require(whole, "a limit counts what is no whole number above zero")
+            is_count = number > 0 and number.denominator == 1
+            require(is_count, "a limit counts what is no whole number above zero")
             counted += read_numbers(counted_units, units)
         require(len(set(counted)) == len(counted), "a limit counts a unit twice")
 
 
 def read_rational(value: Any) -> Fraction:
-    """Read a fraction in lowest terms."""
+    """Return the fraction that a text such as ``3/2`` or ``-7`` stands for; refuse other values.
+
+    The text has to be in lowest terms.
+    """
     require(isinstance(value, str) and bool(_RATIONAL.fullmatch(value)), "expected a number such as 3/2")
     if len(value) > ALLOWED.digits:
         raise LimitError(f"a fraction has more than {ALLOWED.digits:,} digits")

@@ -1,14 +1,16 @@
 """Is a certificate of a plan right, where items are used up? Without a solver, a linear program or floats.
 
-docs/dev/certificates.md describes these certificates and proves that what passes here is true. In short: how
-often a plan executes each unit satisfies conditions that can be read from the network. No more copies of a
-node are used up than are initial or added (the *balance* of the node). For each cut before a goal, or before
-a unit that is executed, a member is executed. Counts are integers, so sums of balances can be rounded. A
-Farkas combination of the conditions, with weights from 0, bounds the cost of every plan. The bound is the
-sum of the right-hand sides plus, for each unit, the least of its reduced cost over all the counts that it may
-have.
+docs/dev/certificates.md describes these certificates and proves that what passes here is true. In short: the
+*count* of a unit says how often a plan executes it. Counts satisfy linear conditions that can be read from
+the network. One is the *balance* of a node: no more copies are used up than are initial or added. Another is
+a cut before a goal, or before a unit that is executed: a member of the cut is executed. Counts are integers,
+so sums of balances can be rounded.
 
-Which inputs a unit uses up, and whether a plan runs, is computed here anew from the plain network.
+A Farkas combination of the conditions, with weights from 0, bounds the cost of every plan. The bound is the
+sum of the right-hand sides and of one number for each unit. This number is the least reduced cost over all
+counts that the unit may have.
+
+The inputs that a unit uses up are computed here anew from the plain network, and so is whether the plan runs.
 """
 
 import math
@@ -26,19 +28,19 @@ from foon_asp.proof.verifier import (
     Amount,
     Check,
     Form,
+    ItemClaims,
     Subject,
-    UsedUp,
     Verified,
     bit_length,
-    negative,
-    read_frame,
+    check_header,
+    negate,
     read_list,
     read_number,
     read_numbers,
     read_object,
     read_pair,
     read_rational,
-    refusing_depth,
+    refuse_deep_nesting,
     require,
     verify,
 )
@@ -51,13 +53,13 @@ COUNTING = ("at_most_units", "at_most_motion", "at_most_utensil_uses", "at_most_
 WANTING = ("forbid_ingredient", "require_motion", "require_object", "require_ingredient")
 PLAN_RULES = frozenset({*COUNTING, *WANTING, *(name for name, rule in LIBRARY.items() if rule.removes)})
 
-LOGARITHM_SCALE = 10**9  # scale of logarithms, where plans have to be as good by success as the incumbent
+LOGARITHM_SCALE = 10**9  # of logarithms in conditions on earlier objectives
 _MAX_COUNT = 10**9  # of copies in stock, and of executions in a branch
 _LEAF = {"weights", "before", "supply", "balance", "limits", "levels", "rounded"}
 
 
 class Flow(NamedTuple):
-    """The object nodes that a unit needs, consumes and adds, each with the number of copies."""
+    """The copies of object nodes that a unit needs (``asks``), consumes (``uses``) and adds, by node id."""
 
     asks: Mapping[int, int]
     uses: Mapping[int, int]
@@ -65,13 +67,15 @@ class Flow(NamedTuple):
 
 
 Row: TypeAlias = tuple[Mapping[int, int | Fraction], int | Fraction]
-"""A condition on counts: the coefficient of each unit, and the least of the sum."""
+"""A condition on counts: the coefficient of each unit, and a lower bound on the weighted sum."""
 
 
 class Node(NamedTuple):
-    """A node of the branching: its proof, and the least and greatest counts of its members, by member.
+    """A node of the branching over counts.
 
-    The count of an item is the number of its copies that are taken.
+    ``proof``: the proof of the node, as JSON.
+    ``min_counts``, ``max_counts``: the bounds of counts by member, if branches set them. The count of an item
+    is the number of its copies that are taken.
     """
 
     proof: Any
@@ -80,47 +84,57 @@ class Node(NamedTuple):
 
 
 def is_of_plan(certificate: Any) -> bool:
-    """Return whether a certificate claims to be one of a plan."""
+    """Return whether a certificate claims, by its format, to be one of a plan."""
     return isinstance(certificate, dict) and certificate.get("format") == PLAN.name
 
 
 def verify_any(certificate: Any, subject: Subject) -> Verified:
-    """Check a certificate of a tree or of a plan; raises :class:`RefusedError`."""
+    """Check a certificate of a tree or of a plan; return what it proves.
+
+    Raises :class:`RefusedError` with the first fault that is found.
+    """
     check = verify_plan if is_of_plan(certificate) else verify
     return check(certificate, subject)
 
 
-@refusing_depth()
+@refuse_deep_nesting()
 def verify_plan(certificate: Any, subject: Subject) -> Verified:
-    """Check a certificate of a plan against the data it speaks about.
+    """Check a certificate of a plan against its data; return what it proves.
 
-    Raises :class:`RefusedError` with the first fault that is found.
+    Raises :class:`RefusedError` with the first fault that is found. Below level 3, every certificate is
+    refused, since consumption depends on contents.
     """
-    rules = read_frame(certificate, PLAN, subject)
+    rules = check_header(certificate, PLAN, subject)
     require(subject.network.level == 3, "below level 3 nothing says what is used up: contents decide")
     require(PLAN_RULES.issuperset(rule["rule"] for rule in rules), "a rule that plans are not held against")
     check = PlanCheck(certificate, rules, subject)
-    return check.claim()._replace(used_up=UsedUp(check.stock, check.stays_stated, check.wanted_stated))
+    return check.verify_claim()._replace(
+        used_up=ItemClaims(check.stock, check.stays_stated, check.wanted_stated)
+    )
 
 
 class PlanCheck(Check):
     """One certificate of a plan, checked against its network.
 
-    Where the objective ``kitchen`` counts items, a *member* is also an item: its count is 0 or 1 for an item
-    that is not consumable, else the number of copies taken from the stock.
+    If the objective ``kitchen`` counts items, they are members of cuts, too. The count of an endless item is
+    0 or 1. The count of another item is the number of copies taken from the stock.
     """
 
     def __init__(self, certificate: dict[str, Any], rules: tuple[Rule, ...], subject: Subject) -> None:
-        """Read the items of a certificate, and the parts that :class:`Check` reads; then its rounded sums."""
+        """Read the items of a certificate, then all that :class:`Check` reads, and then the rounded sums."""
         items = read_object(certificate["items"], ("stock", "stays", "wanted", "amounts"))
-        self.stock = _stock(items["stock"], subject.kitchen)
-        self.stays_stated = _stays_stated(items["stays"], len(subject.network.objects))
-        self.wanted_stated = _copies(items["wanted"], "goals and how many of each are wanted")
+        self.stock = _read_stock(items["stock"], subject.kitchen)
+        self.stays_stated = _read_stays(items["stays"], len(subject.network.objects))
+        self.wanted_stated = _read_copies(items["wanted"], "goals and how many of each are wanted")
         require(all(n > 1 for n in self.wanted_stated.values()), "an amount of a goal is not above 1")
-        self.amounts = _amounts(items["amounts"], subject)
+        self.amounts = _read_amounts(items["amounts"], subject)
         self.endless = frozenset(subject.kitchen) - self.stock.keys()
-        self.flow, self.cap, self.whole = cache(self._flow), cache(self._cap), cache(self._whole)
-        self.lacks = cache(self._lacks)
+        self.flow, self.max_count_by_cost, self.cost_denominator = (
+            cache(self._flow),
+            cache(self._max_count_by_cost),
+            cache(self._cost_denominator),
+        )
+        self.unmet_preconditions = cache(self._unmet_preconditions)
         super().__init__(certificate, rules, subject)
         require(set(self.goals).issuperset(self.wanted_stated), "an amount is wanted of what is no goal")
         self.rounded = self._read_rounded()
@@ -128,43 +142,51 @@ class PlanCheck(Check):
     # --- what units do
 
     def _flow(self, unit: int) -> Flow:
-        """Return preconditions, consumption and add effects of a unit; an input adds only its surplus."""
+        """Return the copies that one execution of a unit needs, consumes and adds.
+
+        Of an output that is also an input, only the surplus over the input is added.
+        """
         network, inputs = self.network, self.network.inputs[unit]
         input_amounts, output_amounts = self.amounts.get(unit, ({}, {}))
         asks = {o: input_amounts.get(o, 1) for o in self.needs(unit) if o is not None}
         gives = {o: output_amounts.get(o, 1) for o in self.gives(unit) if o is not None}
         self._spend(len(inputs) * (1 + len(network.outputs[unit])))
-        kept = {o: self._kept(unit, o, amount, output_amounts.get(o, 1)) for o, amount in asks.items()}
+        remaining = {
+            o: self._remaining_copies(unit, o, amount, output_amounts.get(o, 1)) for o, amount in asks.items()
+        }
         adds = {o: n - (input_amounts.get(o, 1) if o in inputs else 0) for o, n in gives.items()}
         return Flow(
             asks,
-            {o: amount - kept[o] for o, amount in asks.items() if amount > kept[o]},
+            {o: amount - remaining[o] for o, amount in asks.items() if amount > remaining[o]},
             {o: surplus for o, surplus in adds.items() if surplus > 0},
         )
 
-    def _lacks(self, unit: int) -> frozenset[int]:
+    def _unmet_preconditions(self, unit: int) -> frozenset[int]:
         """Return the preconditions of a unit that initial copies do not satisfy.
 
-        With the objective ``kitchen``, initial copies satisfy none: they are members of cuts instead.
+        With the objective ``kitchen``, these are all preconditions, since initial copies are members of cuts.
         """
         return frozenset(o for o, n in self.flow(unit).asks.items() if self._is_lacking(o, n))
 
     def _is_lacking(self, o: int, copies: int) -> bool:
-        """Return whether initial copies do not satisfy the need for a number of copies of a node."""
+        """Return whether initial copies of a node are fewer than ``copies``.
+
+        With the objective ``kitchen``, return ``True``, since initial copies are members of cuts.
+        """
         if "kitchen" in self.objectives:
             return True
         return o not in self.endless and copies > self.stock.get(o, 0)
 
-    def wanted(self, goal: int) -> int:
-        """Return how many copies of a goal are wanted."""
+    def copies_wanted(self, goal: int) -> int:
+        """Return how many copies of a goal have to exist in the end."""
         return self.wanted_stated.get(goal, 1)
 
-    def _kept(self, unit: int, o: int, amount: int, made: int) -> int:
+    def _remaining_copies(self, unit: int, o: int, amount: int, made: int) -> int:
         """Return how many of the ``amount`` copies of an input remain after a unit has run.
 
-        The certificate may state this. Otherwise, an output with the label of the input decides: the copies
-        that the unit makes of the same node remain, at most ``amount``. Without such an output, the rule for
-        utensils and places decides.
+        The certificate may state that all or none remain. Otherwise, an output with the label of the input
+        decides: the ``made`` copies of the same node remain, at most ``amount``. Without such an output, the
+        rule for utensils and places decides (:meth:`_stays_by_rule`).
         """
         objects, network = self.network.objects, self.network
         node = objects[o]
@@ -174,10 +196,14 @@ class PlanCheck(Check):
         outputs = [objects[output] for output in network.outputs[unit]]
         if any(output.label == node.label for output in outputs):
             return min(amount, made) if o in network.outputs[unit] else 0
-        return amount if self._stays(unit, node, outputs) else 0
+        return amount if self._stays_by_rule(unit, node, outputs) else 0
 
-    def _stays(self, unit: int, node: ObjectNode, outputs: Sequence[ObjectNode]) -> bool:
-        """Return whether an input stays by the rule for utensils and places; no output has its label."""
+    def _stays_by_rule(self, unit: int, node: ObjectNode, outputs: Sequence[ObjectNode]) -> bool:
+        """Return whether an input stays although no output has its label.
+
+        A utensil stays if it is empty, or if an output is in, on or at it. An input that is in another input
+        stays if an output with that one's label still contains it.
+        """
         objects, network = self.network.objects, self.network
         if node.label in self.utensils:
             holds = any(contents.ingredients for contents in node.contents)
@@ -191,8 +217,8 @@ class PlanCheck(Check):
     def idle(self) -> frozenset[int]:
         """The units that no plan executes: removed by a rule, or with an unreachable precondition.
 
-        This holds because no node of ``unreached`` is initial, and each achiever of such a node is removed or
-        has a node of ``unreached`` as a precondition.
+        The certificate lists the unreachable nodes under ``unreached``. Refuse the list if a node of it is
+        initial. Refuse it, too, if some unit adds such a node, needs none of them and is not removed.
         """
         network = self.network
         stated = self.certificate["unreached"]
@@ -208,10 +234,16 @@ class PlanCheck(Check):
         return removed | asking
 
     def _is_initial(self, o: int) -> bool:
+        """Return whether a node is endless or has copies in the stock."""
         return o in self.endless or self.stock.get(o, 0) > 0
 
-    def _members(self, cut: frozenset[int]) -> Iterator[int]:
-        """Yield the landmark of a cut: units that add one of its nodes and need none, and its items."""
+    def _landmark(self, cut: frozenset[int]) -> Iterator[int]:
+        """Yield the members of a cut.
+
+        They are the units that add one of its nodes and need none, except units that no plan executes. The
+        cut may have nodes that rules add. If the objective ``kitchen`` counts items, initial nodes of the cut
+        are members, too. Otherwise, a cut with an endless node is refused.
+        """
         network, own = self.network, self.ruled.makers
         self._spend(sum(1 + len(own[o] if o in own else network.producers[o]) for o in cut))
         units: list[int] = []
@@ -225,12 +257,15 @@ class PlanCheck(Check):
                 yield from [len(network) + o] * counted
             if o not in self.endless:
                 units += (unit for unit in network.producers[o] if o in self.flow(unit).adds)
-        yield from (u for u in units if u not in self.idle and cut.isdisjoint(self.lacks(u)))
+        yield from (u for u in units if u not in self.idle and cut.isdisjoint(self.unmet_preconditions(u)))
 
     # --- conditions on counts alone
 
     def balance(self, o: int) -> tuple[dict[int, int], int]:
-        """Return each unit's net effect on the copies of a node, and the copies wanted in the end."""
+        """Return the net effect of each unit on the copies of a node, and the copies wanted in the end.
+
+        Units without effect on the node are omitted.
+        """
         network = self.network
         read_number(o, range(len(network.objects)), "the id of a node in a balance")
         require(o not in self.endless, "what never runs out has no balance")
@@ -239,10 +274,14 @@ class PlanCheck(Check):
             flow = self.flow(unit)
             if change := flow.adds.get(o, 0) - flow.uses.get(o, 0):
                 changes[unit] = change
-        return changes, self.wanted(o) if o in self.goals else 0
+        return changes, self.copies_wanted(o) if o in self.goals else 0
 
     def _read_rounded(self) -> list[Row]:
-        """Read the rounded sums: of balances, limits and earlier rounded sums, with positive weights."""
+        """Return the rounded sums of the certificate as rows.
+
+        Each is a sum of balances, limits and earlier rounded sums, with weights above 0, which is then
+        rounded.
+        """
         rows: list[Row] = []
         for stated in read_list(self.certificate["rounded"]):
             require(
@@ -250,19 +289,22 @@ class PlanCheck(Check):
             )
             coefficients, least = dict[int, Fraction](), Fraction(0)
             for key, weights in stated.items():
-                for (number,), text in self.read_named(key, weights):
+                for (number,), text in self.read_rows(key, weights):
                     weight = read_rational(text)
                     require(weight > 0, "what is rounded has a weight that is not above zero")
-                    row, wanted = self._of_counts(key, number, rows)
+                    row, wanted = self._condition_on_counts(key, number, rows)
                     least += weight * wanted
                     for unit, n in row.items():
                         coefficients[unit] = coefficients.get(unit, Fraction(0)) + weight * n
-                        self._spend_on(bit_length(coefficients[unit]))
-            rows.append(_round(coefficients, least))
+                        self._spend_on_fractions(bit_length(coefficients[unit]))
+            rows.append(_round_row(coefficients, least))
         return rows
 
-    def _of_counts(self, key: str, number: int, earlier: Sequence[Row]) -> Row:
-        """Return a condition on counts alone: the coefficients of units, and a lower bound on their sum."""
+    def _condition_on_counts(self, key: str, number: int, earlier: Sequence[Row]) -> Row:
+        """Return the condition of a certificate that ``key`` and ``number`` name, as a row.
+
+        ``key`` is ``balance``, ``limits`` or ``rounded``. ``earlier`` has the rounded sums before this one.
+        """
         if key == "rounded":
             return earlier[read_number(number, range(len(earlier)), "the number of an earlier rounded sum")]
         if key == "limits":
@@ -273,11 +315,14 @@ class PlanCheck(Check):
 
     # --- the plan
 
-    def _tree(self, units: list[Any]) -> tuple[Amount, list[int | Fraction]]:
-        """Execute the plan copy by copy; return its cost as an amount and as figures."""
+    def _execute(self, units: list[Any]) -> tuple[Amount, list[int | Fraction]]:
+        """Execute the plan copy by copy; return its cost twice, as an amount and as written in a certificate.
+
+        Refuse a plan that does not run, does not make the wanted copies of goals, or breaks a rule.
+        """
         network = self.network
         copies, items_taken = Counter(self.stock), set[int]()
-        least: Counter[int] = Counter()  # copies of the stock that the plan cannot do without
+        least: Counter[int] = Counter()  # initial copies that the plan needs
         for step, stated in enumerate(units):
             unit = read_number(stated, range(len(network)), "ids of units in a plan")
             asks, uses, adds = self.flow(unit)
@@ -292,11 +337,11 @@ class PlanCheck(Check):
             copies.subtract({o: n for o, n in uses.items() if o not in self.endless})
             copies.update({o: n for o, n in adds.items() if o not in self.endless})
         for goal in set(self.goals) - self.endless:
-            wanted = self.wanted(goal)
+            wanted = self.copies_wanted(goal)
             require(copies[goal] >= wanted, "a copy of a goal is not there in the end")
             if goal in self.stock:
                 least[goal] = max(least[goal], wanted + self.stock[goal] - copies[goal])
-        self._keep_counts(Counter(units))
+        self._require_kept_rules_by_counts(Counter(units))
         first = len(network)
         members = [
             *units,
@@ -304,10 +349,10 @@ class PlanCheck(Check):
             *(first + o for o in sorted(least.elements())),
         ]
         total = self.sum(map(self._cost, members))
-        return total, self._figures(units, total)
+        return total, self._written_costs(units, total)
 
-    def _keep_counts(self, counts: Counter[int]) -> None:
-        """Check the counts of a plan against the rules; limits count each execution."""
+    def _require_kept_rules_by_counts(self, counts: Counter[int]) -> None:
+        """Refuse a plan with these counts of units if it breaks a rule; limits count each execution."""
         ruled, units = self.ruled, frozenset(counts)
         require(not units & ruled.removed, "the plan has a unit that a rule removes")
         wanted = all(not units.isdisjoint(ruled.makers[goal]) for goal in ruled.goals)
@@ -318,8 +363,8 @@ class PlanCheck(Check):
 
     # --- the proof
 
-    def _prove(self, proof: Any, least: Amount | None) -> None:
-        """Check for each objective that plans as good by earlier objectives cost at least ``least``.
+    def _check_proof(self, proof: Any, least: Amount | None) -> None:
+        """Check for each objective that no plan as good by the earlier objectives costs less than ``least``.
 
         If ``least`` is ``None``, the proof is that no plan exists. All costs are then 0, and bounds have to
         be above 0.
@@ -338,43 +383,55 @@ class PlanCheck(Check):
                 node = waiting.pop()
                 self._spend(1 + len(node.min_counts) + len(node.max_counts))
                 if "branch" in read_object(node.proof):
-                    waiting += self._divided(node)
+                    waiting += self._children(node)
                 else:
-                    self._prove_node(node, level)
+                    self._check_leaf(node, level)
 
-    def _divided(self, node: Node) -> Iterator[Node]:
-        """Yield the children of a node: counts of a member up to a number, and above it."""
+    def _children(self, node: Node) -> Iterator[Node]:
+        """Yield the two children of a node: counts of a member up to a number, and counts above it."""
         proof = read_object(node.proof, ("branch", "most", "up_to", "above"))
-        member = self._branch(proof["branch"])
+        member = self._read_branch_member(proof["branch"])
         max_count = read_number(proof["most"], range(_MAX_COUNT), "the most executions of a branch")
         up_to = min(max_count, node.max_counts.get(member, max_count))
         yield Node(proof["up_to"], node.min_counts, {**node.max_counts, member: up_to})
         above = max(max_count + 1, node.min_counts.get(member, 0))
         yield Node(proof["above"], {**node.min_counts, member: above}, node.max_counts)
 
-    def _prove_node(self, node: Node, level: int) -> None:
-        """Check that the Farkas combination of a leaf proves the bound for its plans."""
+    def _check_leaf(self, node: Node, level: int) -> None:
+        """Check that the Farkas combination of a leaf proves the bound for the counts of this node.
+
+        Nothing has to be proved if the node leaves no count for a member.
+        """
         require(set(node.proof) <= _LEAF, "expected weights of conditions or a branch")
-        conditions = _Conditions(self, level, node.proof)
+        conditions = _FarkasCombination(self, level, node.proof)
         bound = conditions.constant
         for member in sorted({*conditions.executed, *conditions.used, *node.min_counts, *node.max_counts}):
-            cheapest = self._cheapest(member, level, node, conditions)
+            cheapest = self._least_reduced_cost(member, level, node, conditions)
             if cheapest is None:
                 return  # there are no such counts
-            self._add(bound, cheapest)
+            self._add_to(bound, cheapest)
         self._require_enough(bound, level)
 
-    def _cheapest(self, member: int, level: int, node: Node, conditions: "_Conditions") -> Amount | None:
-        """Return the least reduced cost of a member over all counts that are possible; ``None`` without any.
+    def _least_reduced_cost(
+        self, member: int, level: int, node: Node, conditions: "_FarkasCombination"
+    ) -> Amount | None:
+        """Return the least reduced cost of a member over all its possible counts at a node.
 
-        From 1 on, the cost is linear in the count, so only 0 and the ends of the range from 1 on matter.
+        ``None`` if no count is possible. ``level`` is the index of the objective. From 1 on, the cost is
+        linear in the count, so it is enough to compare 0 and the ends of the range from 1 on. Refuse costs
+        that fall without end.
         """
         low, high = node.min_counts.get(member, 0), self._max_count(member, level, node)
         if high is not None and high < low:
             return None
-        per_execution = self.sum([self.cost_by(member, level), conditions.executed.get(member, {})])
         per_execution = self.sum(
-            [per_execution, *(self.times(w, self.kept(member, at)) for at, w in conditions.levels)]
+            [self.amount_by_objective(member, level), conditions.executed.get(member, {})]
+        )
+        per_execution = self.sum(
+            [
+                per_execution,
+                *(self.times(w, self.cost_lower_bound(member, earlier)) for earlier, w in conditions.levels),
+            ]
         )
         once = conditions.used.get(member, {})
         ends: list[Amount] = [{}] if low == 0 else []
@@ -384,236 +441,269 @@ class PlanCheck(Check):
                 require(high is not None, f"member {member} brings more than it costs, without end")
                 ends.append(self.sum([self.times(per_execution, Fraction(high or 0)), once]))
         cheapest = ends[0]
-        for other in ends[1:]:
-            if self.sign(self.sum([other, negative(cheapest)])) < 0:
-                cheapest = other
+        for cost in ends[1:]:
+            if self.sign(self.sum([cost, negate(cheapest)])) < 0:
+                cheapest = cost
         return cheapest
 
     def _max_count(self, member: int, level: int, node: Node) -> int | None:
-        """Return an upper bound on the count of a member; ``None`` where there is no bound."""
+        """Return an upper bound on the count of a member at a node; ``None`` if there is none.
+
+        Bounds come from branches, the stock, limits, and the claimed cost by this and earlier objectives.
+        """
         bounds = [node.max_counts[member]] if member in node.max_counts else []
         if member >= len(self.network):
             o = member - len(self.network)
             return min([*bounds, self.stock.get(o, 1)])
         if member in self.idle:
             return 0
-        bounds += self._allowed(member)
+        bounds += self._max_counts_by_limits(member)
         if self.least is not None:
             bounds += (
-                cap for at in range(level + 1) if (cap := self.cap(member, at, at == level)) is not None
+                cap
+                for index in range(level + 1)
+                if (cap := self.max_count_by_cost(member, index, index == level)) is not None
             )
         return min(bounds, default=None)
 
-    def _allowed(self, unit: int) -> Iterator[int]:
-        """Yield an upper bound on the count of a unit for each limit without negative amounts."""
+    def _max_counts_by_limits(self, unit: int) -> Iterator[int]:
+        """Yield an upper bound on the count of a unit for each limit that counts it.
+
+        Limits with negative amounts are skipped.
+        """
         for limit in self.ruled.limits.values():
             amount = limit.amounts.get(unit, 0)
             if amount > 0 and min(limit.amounts.values()) >= 0:
                 yield max(0, math.floor(limit.max_sum / amount))
 
-    def _cap(self, unit: int, level: int, less: bool) -> int | None:
-        """Return an upper bound on the count of a unit in plans that cost at most the incumbent.
+    def _max_count_by_cost(self, unit: int, level: int, less: bool) -> int | None:
+        """Return an upper bound on the count of a unit in plans of at most the claimed cost by an objective.
 
-        With ``less``, in plans that cost less. ``None`` if an execution costs nothing, so that there is no
-        bound.
+        With ``less``, the bound is for plans that cost less. ``None`` if an execution costs nothing.
         """
-        per_execution, max_cost = self.kept(unit, level), self.limit(level)
+        per_execution, max_cost = self.cost_lower_bound(unit, level), self.claimed_cost(level)
         if per_execution == 0:
             return None
         exact = less and self.objectives[level] != "success"
         return math.ceil(max_cost / per_execution) - 1 if exact else math.floor(max_cost / per_execution)
 
-    def cost_by(self, member: int, level: int) -> Amount:
-        """Return the cost of a member by one objective."""
+    def amount_by_objective(self, member: int, level: int) -> Amount:
+        """Return the cost of a member by the objective with the index ``level``, as an amount."""
         return {key: value for key, value in self._cost(member).items() if key[0] == level}
 
-    def kept(self, member: int, level: int) -> Fraction:
+    def cost_lower_bound(self, member: int, level: int) -> Fraction:
         """Return a lower bound on the cost of a member by an objective, as one number.
 
-        It is the exact cost, except for ``success``: there -log of the rate is rounded down.
+        It is the exact cost, except by ``success``: there, ``-log`` of the rate is rounded down.
         """
         if self.objectives[level] != "success":
-            return self.cost_by(member, level).get((level, None), Fraction(0))
+            return self.amount_by_objective(member, level).get((level, None), Fraction(0))
         if member >= len(self.network):
             return Fraction(0)
         require(self.rate(member) > 0, "a unit that never succeeds is not compared")
         return Fraction(math.floor(LOGARITHM_SCALE * self.minus_log(self.rate(member))[0]), LOGARITHM_SCALE)
 
-    def limit(self, level: int) -> Fraction:
-        """Return the claimed least cost of plans by an objective as one number; by ``success`` rounded up."""
+    def claimed_cost(self, level: int) -> Fraction:
+        """Return the claimed least cost of plans by an objective, as one number.
+
+        By ``success``, it is ``-log`` of the product, rounded up.
+        """
         assert self.least is not None
-        stated = {rate: value for (at, rate), value in self.least.items() if at == level}
+        stated = {rate: value for (index, rate), value in self.least.items() if index == level}
         if self.objectives[level] != "success":
             return stated.get(None, Fraction(0))
         bounds = ([e * bound for bound in self.minus_log(rate)] for rate, e in stated.items() if rate)
         return Fraction(math.ceil(LOGARITHM_SCALE * sum(map(max, bounds), Fraction(0))), LOGARITHM_SCALE)
 
-    def cut(self, number: int) -> frozenset[int]:
-        """Return a cut by its number."""
+    def cut_nodes(self, number: int) -> frozenset[int]:
+        """Return the nodes of the cut with a number."""
         return self.cuts[read_number(number, range(len(self.cuts)), "the number of a cut")]
 
     def holds_goal(self, nodes: frozenset[int]) -> bool:
-        """Return whether a cut holds a goal that is consumable or made, or a goal of a rule."""
+        """Return whether a cut has a goal of a rule, or a goal that initial copies do not satisfy."""
         wanted = any(
-            goal in nodes and goal not in self.endless and self._is_lacking(goal, self.wanted(goal))
+            goal in nodes and goal not in self.endless and self._is_lacking(goal, self.copies_wanted(goal))
             for goal in self.goals
         )
         return wanted or not nodes.isdisjoint(self.ruled.goals)
 
-    def weight(self, stated: Any, level: int) -> Amount:
-        """Read a weight: a number, or by success the exponent of each rate."""
+    def read_weight(self, stated: Any, level: int) -> Amount:
+        """Return a stated weight for one objective as an amount.
+
+        It is a fraction or, by ``success``, an object from rate to exponent.
+        """
         parts = [*({} if objective == "success" else "0" for objective in self.objectives)] or ["0"]
         parts[level] = stated
-        return {key: value for key, value in self._read(parts).items() if key[0] == level}
+        return {key: value for key, value in self._read_amount(parts).items() if key[0] == level}
 
     def _require_enough(self, bound: Amount, level: int) -> None:
-        """Require that a bound, rounded up to the next possible cost, is at least the claimed one."""
+        """Refuse a bound that is below the claimed cost by an objective.
+
+        The bound is first rounded up to the next cost that a plan can have.
+        """
         if self.least is None:
             enough = self.sign(bound) > 0
         else:
-            parts = self.whole(level)
-            if parts is not None:
-                (at,) = bound or [(level, None)]
-                bound = {at: Fraction(math.ceil(bound.get(at, Fraction(0)) * parts), parts)}
+            denominator = self.cost_denominator(level)
+            if denominator is not None:
+                (key,) = bound or [(level, None)]
+                bound = {key: Fraction(math.ceil(bound.get(key, Fraction(0)) * denominator), denominator)}
             claimed = {key: value for key, value in self.least.items() if key[0] == level}
-            enough = self.sign(self.sum([bound, negative(claimed)])) >= 0
+            enough = self.sign(self.sum([bound, negate(claimed)])) >= 0
         require(enough, "the weights do not add up to enough")
 
-    def _whole(self, level: int) -> int | None:
+    def _cost_denominator(self, level: int) -> int | None:
         """Return the common denominator of unit costs by an objective; ``None`` by success or measures."""
         objective = self.objectives[level]
         if objective == "success" or objective in self.measures:
             return None
-        every = self.prices if objective == "price" else []
-        every = (
-            [1 / self.rate(unit) for unit in range(len(self.network))] if objective == "attempts" else every
-        )
-        return math.lcm(*(cost.denominator for cost in every))
+        if objective == "price":
+            unit_costs = self.prices
+        elif objective == "attempts":
+            unit_costs = [1 / self.rate(unit) for unit in range(len(self.network))]
+        else:
+            unit_costs = []
+        return math.lcm(*(cost.denominator for cost in unit_costs))
 
 
-class _Conditions:
-    """A Farkas combination: conditions with weights from 0, added up.
+class _FarkasCombination:
+    """A Farkas combination: conditions on counts with weights from 0, added up.
 
-    ``executed`` maps each member to its coefficient per execution (or per copy taken). ``used`` maps each
-    member to its coefficient for being used at all. Both have the sign reversed. ``constant`` is the
-    right-hand side, and ``levels`` has the weights of earlier objectives, each after the objective's number.
+    ``executed``: the coefficient of each member for each execution, or for each copy taken.
+    ``used``: the coefficient of each member for being executed at all.
+    ``constant``: the right-hand side of the sum.
+    ``levels``: the weights of earlier objectives, as pairs of the objective's index and the weight.
+
+    Coefficients have the sign reversed, so that they can be added to costs.
     """
 
     def __init__(self, check: PlanCheck, level: int, proof: Mapping[str, Any]) -> None:
-        """Read the weighted conditions of a proof for one objective, and add them up."""
+        """Read the weighted conditions of a proof for the objective with the index ``level``; add them up."""
         self.check, self.level, self.proof = check, level, proof
         self.constant: Amount = {}
         self.executed: dict[int, Amount] = {}
         self.used: dict[int, Amount] = {}
         self.levels: list[tuple[int, Amount]] = []
         units = len(check.network)
-        for (cut,), weight in self._read("weights"):
-            self._cross(cut, weight, check.holds_goal(check.cut(cut)))
-        for (cut, stated), weight in self._read("before", 2):
+        for (cut,), weight in self._weighted_rows("weights"):
+            self._add_cut(cut, weight, check.holds_goal(check.cut_nodes(cut)))
+        for (cut, stated), weight in self._weighted_rows("before", 2):
             unit = read_number(stated, range(units), "the id of a unit that a cut is before")
-            self._cross(cut, weight, not check.cut(cut).isdisjoint(check.lacks(unit)))
-            self._bring(self.used, unit, weight, 1)
-            self._demand(weight, -1)
-        for (o, stated), weight in self._read("supply", 2):
-            self._supply(o, read_number(stated, range(units), "the id of a unit that is supplied"), weight)
-        for (o,), weight in self._read("balance"):
-            self._balance(o, weight)
-        for (number,), weight in self._read("limits"):
+            self._add_cut(cut, weight, not check.cut_nodes(cut).isdisjoint(check.unmet_preconditions(unit)))
+            self._add_coefficient(self.used, unit, weight, 1)
+            self._add_to_constant(weight, -1)
+        for (o, stated), weight in self._weighted_rows("supply", 2):
+            self._add_supply(
+                o, read_number(stated, range(units), "the id of a unit that is supplied"), weight
+            )
+        for (o,), weight in self._weighted_rows("balance"):
+            self._add_balance(o, weight)
+        for (number,), weight in self._weighted_rows("limits"):
             limit = check.limit_at(number)
-            self._demand(weight, -limit.max_sum)
+            self._add_to_constant(weight, -limit.max_sum)
             for member, amount in limit.amounts.items():
-                self._bring(self.executed, member, weight, amount)
-        for (number,), weight in self._read("rounded"):
+                self._add_coefficient(self.executed, member, weight, amount)
+        for (number,), weight in self._weighted_rows("rounded"):
             rows = check.rounded
             row, least = rows[read_number(number, range(len(rows)), "the number of a rounded sum")]
-            self._demand(weight, least)
+            self._add_to_constant(weight, least)
             for unit, coefficient in row.items():
-                self._bring(self.executed, unit, weight, -coefficient)
-        for (number,), weight in self._read("levels"):
+                self._add_coefficient(self.executed, unit, weight, -coefficient)
+        for (number,), weight in self._weighted_rows("levels"):
             require(0 <= number < level, "an objective that is not before this one is given a weight")
-            self._demand(weight, -check.limit(number))
+            self._add_to_constant(weight, -check.claimed_cost(number))
             self.levels.append((number, weight))
 
-    def _read(self, key: str, numbers: int = 1) -> Iterator[tuple[list[int], Amount]]:
-        """Yield the weighted conditions under a key, each named by a tuple of ``numbers`` numbers."""
-        read = partial(self.check.weight, level=self.level)
+    def _weighted_rows(self, key: str, numbers: int = 1) -> Iterator[tuple[list[int], Amount]]:
+        """Yield the weighted conditions under a key: the numbers that name each, and its weight.
+
+        ``numbers`` says how many numbers name a condition.
+        """
+        read = partial(self.check.read_weight, level=self.level)
         return self.check.read_weights(key, self.proof.get(key, []), read, numbers)
 
-    def _cross(self, cut: int, weight: Amount, holds: bool) -> None:
-        """Add the condition of a cut: a member is used, or a copy of an item in it is taken.
+    def _add_cut(self, cut: int, weight: Amount, holds: bool) -> None:
+        """Add the condition of a cut: a member is executed, or a copy of an item in it is taken.
 
-        Refuse the cut unless it ``holds`` a goal, or a precondition of the unit that it is before.
+        Refuse the cut unless ``holds`` is true: it has a goal, or a precondition of the unit that it is
+        before.
         """
         check = self.check
         require(holds, f"cut {cut} holds neither a goal nor what the unit asks for")
-        check.met.add(cut)
-        self._demand(weight, 1)
+        check.used_cuts.add(cut)
+        self._add_to_constant(weight, 1)
         for member in check.members[cut]:
-            self._bring(self.used if member < len(check.network) else self.executed, member, weight, -1)
+            coefficients = self.used if member < len(check.network) else self.executed
+            self._add_coefficient(coefficients, member, weight, -1)
 
-    def _balance(self, o: int, weight: Amount) -> None:
-        """Add the balance of a node: no more copies are consumed than exist, and the wanted ones are left."""
+    def _add_balance(self, o: int, weight: Amount) -> None:
+        """Add the balance of a node: its initial copies and net effects are at least the copies wanted."""
         changes, wanted = self.check.balance(o)
-        self._demand(weight, wanted - self._initial(o, weight))
+        self._add_to_constant(weight, wanted - self._initial_copies(o, weight))
         for unit, change in changes.items():
-            self._bring(self.executed, unit, weight, -change)
+            self._add_coefficient(self.executed, unit, weight, -change)
 
-    def _supply(self, o: int, supplied: int, weight: Amount) -> None:
-        """Add the supply of a unit: the copies of a node that it needs exist before it is executed.
+    def _add_supply(self, o: int, supplied: int, weight: Amount) -> None:
+        """Add the condition that the unit ``supplied`` gets the copies of a node that it needs.
 
-        These copies are initial, or other units add them, since the unit adds none before its first
-        execution.
+        These copies are initial or added by other units, since the unit adds none before its first execution.
         """
         check, network = self.check, self.check.network
         read_number(o, range(len(network.objects)), "the id of a node in a supply")
         require(o not in check.endless, "what never runs out needs no supply")
-        self._demand(weight, -self._initial(o, weight))
-        self._bring(self.used, supplied, weight, check.flow(supplied).asks.get(o, 0))
+        self._add_to_constant(weight, -self._initial_copies(o, weight))
+        self._add_coefficient(self.used, supplied, weight, check.flow(supplied).asks.get(o, 0))
         for unit in network.producers[o]:
             if unit != supplied and (added := check.flow(unit).adds.get(o, 0)):
-                self._bring(self.executed, unit, weight, -added)
+                self._add_coefficient(self.executed, unit, weight, -added)
 
-    def _initial(self, o: int, weight: Amount) -> int:
-        """Return the initial copies of a node, as a constant.
+    def _initial_copies(self, o: int, weight: Amount) -> int:
+        """Return the initial copies of a node, to be used as a constant.
 
-        With the objective ``kitchen``, taking them has a cost: then add the item as a member, and return 0.
+        With the objective ``kitchen``, taking them has a cost. Then add the item as a member instead, and
+        return 0.
         """
         check = self.check
         initial = check.stock.get(o, 0)
         if "kitchen" in check.objectives and initial:
-            self._bring(self.executed, len(check.network) + o, weight, -1)
+            self._add_coefficient(self.executed, len(check.network) + o, weight, -1)
             return 0
         return initial
 
-    def _demand(self, weight: Amount, factor: int | Fraction) -> None:
+    def _add_to_constant(self, weight: Amount, factor: int | Fraction) -> None:
         """Add ``factor`` times a weight to the right-hand side."""
-        self.constant = self._added(self.constant, weight, factor)
+        self.constant = self._plus_multiple(self.constant, weight, factor)
 
-    def _bring(self, to: dict[int, Amount], member: int, weight: Amount, factor: int | Fraction) -> None:
-        """Add ``factor`` times a weight to the coefficient of a member."""
-        to[member] = self._added(to.get(member, {}), weight, factor)
+    def _add_coefficient(
+        self, coefficients: dict[int, Amount], member: int, weight: Amount, factor: int | Fraction
+    ) -> None:
+        """Add ``factor`` times a weight to the coefficient of a member in ``coefficients``, in place."""
+        coefficients[member] = self._plus_multiple(coefficients.get(member, {}), weight, factor)
 
-    def _added(self, amount: Amount, weight: Amount, factor: int | Fraction) -> Amount:
+    def _plus_multiple(self, amount: Amount, weight: Amount, factor: int | Fraction) -> Amount:
+        """Return an amount plus ``factor`` times a weight."""
         return self.check.sum([amount, self.check.times(weight, Fraction(factor))])
 
 
-def _round(coefficients: Mapping[int, Fraction], least: Fraction) -> Row:
-    """Return a condition rounded for counts that are integers from 0 (mixed-integer rounding).
+def _round_row(coefficients: Mapping[int, Fraction], least: Fraction) -> Row:
+    """Return a row that whole counts from 0 satisfy if they satisfy the given one (mixed-integer rounding).
 
-    It is the new coefficient of each unit, and the new lower bound on the sum, which was ``least``.
+    The given row is its coefficients by unit, and ``least``, a lower bound on the sum. It has to be no whole
+    number.
     """
     fraction = least - math.floor(least)
     require(fraction > 0, "a sum is rounded that is whole")
 
     def rounded(coefficient: Fraction) -> Fraction:
+        """Return the coefficient of a unit in the rounded row."""
         below = math.floor(coefficient)
         return below + min(Fraction(1), (coefficient - below) / fraction)
 
     return {unit: rounded(n) for unit, n in coefficients.items()}, math.ceil(least)
 
 
-def _copies(value: Any, what: str) -> dict[int, int]:
-    """Read numbers of copies by id."""
+def _read_copies(value: Any, what: str) -> dict[int, int]:
+    """Return numbers of copies by id, from a list of pairs in order; ``what`` names them in errors."""
     pairs = [read_pair(pair, what) for pair in read_list(value)]
     for number in chain.from_iterable(pairs):
         read_number(number, range(_MAX_COUNT), what)
@@ -622,21 +712,24 @@ def _copies(value: Any, what: str) -> dict[int, int]:
     return dict(pairs)
 
 
-def _stock(value: Any, kitchen: Collection[int]) -> dict[int, int]:
-    """Read the copies in stock of kitchen items, by id."""
-    stock = _copies(value, "items and their copies in stock")
+def _read_stock(value: Any, kitchen: Collection[int]) -> dict[int, int]:
+    """Return the copies in stock by id; refuse nodes that are no kitchen items."""
+    stock = _read_copies(value, "items and their copies in stock")
     require(all(o in kitchen for o in stock), "expected kitchen items in stock")
     return stock
 
 
-def _amounts(value: Any, subject: Subject) -> dict[int, tuple[dict[int, int], dict[int, int]]]:
-    """Read the amounts of inputs and outputs by unit id; refuse amounts that differ from the data."""
+def _read_amounts(value: Any, subject: Subject) -> dict[int, tuple[dict[int, int], dict[int, int]]]:
+    """Return the stated amounts of inputs and of outputs by unit id.
+
+    Refuse amounts that differ from the data.
+    """
     what = "units and the amounts of their inputs and outputs"
     stated: dict[int, tuple[dict[int, int], dict[int, int]]] = {}
     for row in read_list(value):
         columns = read_list(row)
         require(len(columns) == 3 and type(columns[0]) is int, f"expected {what}")
-        stated[columns[0]] = _copies(columns[1], what), _copies(columns[2], what)
+        stated[columns[0]] = _read_copies(columns[1], what), _read_copies(columns[2], what)
     network = subject.network
     of_data: dict[int, tuple[dict[int, int], dict[int, int]]] = {}
     for unit, sides in subject.amounts.items():
@@ -651,8 +744,8 @@ def _amounts(value: Any, subject: Subject) -> dict[int, tuple[dict[int, int], di
     return stated
 
 
-def _stays_stated(value: Any, nodes: int) -> dict[str | int, bool]:
-    """Read which labels and nodes stay when they are used."""
+def _read_stays(value: Any, nodes: int) -> dict[str | int, bool]:
+    """Return for labels, and for nodes by id, whether they stay when used, as the certificate states it."""
     what = "labels and nodes, and whether they stay"
     pairs = [read_pair(pair, what) for pair in read_list(value)]
     well_formed = all(type(name) in (int, str) and type(stays) is bool for name, stays in pairs)

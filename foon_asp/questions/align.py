@@ -200,7 +200,7 @@ def _node_one_edit_away(
     """
     if network.object_id(node) is not None:
         return None
-    priced = sorted((price, o) for o, price in prices.of_node(node).items())
+    priced = sorted((price, o) for o, price in prices.servers_of_node(node).items())
     return next((o for _, o in priced if len(table.differences(network.objects[o], node) or ()) == 1), None)
 
 

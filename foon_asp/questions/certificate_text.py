@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from foon_asp.escapes import escaped
 from foon_asp.network import counted
 from foon_asp.proof.rule_meaning import Rule
-from foon_asp.proof.verifier import trusted
+from foon_asp.proof.verifier import trusted_claims
 
 if TYPE_CHECKING:  # takes clingo along, which `verify` must not load
     from foon_asp.asp import Outcome
@@ -66,7 +66,7 @@ def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", fil
         return [f"proof: {by} (no certificate was found, and nothing is written)"]
     content, claim = certificate.content, certificate.claim
     tree = "tree" if outcome.problem.items is None else "plan"
-    user_rules = trusted(content)
+    user_rules = trusted_claims(content)
     if claim == "bound":
         about = "all trees, without the constraints that it does not cover" if tree == "tree" else "all plans"
         return [f"proof: {by}; the certificate {file} proves a bound on {about}: {bound_text(content)}"]

@@ -186,7 +186,9 @@ def repair(
     shown_problem, units = needed.shown, outcome.units
     if units is None:
         lacking = (
-            nodes_of(shown_problem.network, needed.lacking()) if outcome.status is Status.INFEASIBLE else ()
+            nodes_of(shown_problem.network, needed.unmakeable_nodes())
+            if outcome.status is Status.INFEASIBLE
+            else ()
         )
     else:
         lacking = ()
@@ -198,7 +200,7 @@ def repair(
         proof=outcome.proof,
         costs=None if units is None else shown_problem.costs(units),
         stand_ins=() if units is None else stand_ins_in(shown_problem, units),
-        added=tuple(positions[unit] for unit in needed.added(units or ())),
+        added=tuple(positions[unit] for unit in needed.added_units(units or ())),
         order=tuple(positions[unit] for unit in needed.steps) if positions else (),
         lacking=lacking,
         units=None if units is None else steps_of(shown_problem, units),

@@ -17,9 +17,9 @@ from foon_asp.pictures.gantt import Gantt, time_text
 from foon_asp.planning.schedule_task import schedule_task
 from foon_asp.planning.scheduling import BestSchedule, shortest_schedule, timed_steps
 from foon_asp.problem import Number, Problem
-from foon_asp.proof.replay import Shortage, replay_for, replayable, waits
+from foon_asp.proof.replay import Shortage, predecessors, replay_for, replayable_problem
 from foon_asp.proof.simulation import Verdict, simulate_for
-from foon_asp.proof.timetable import Means, ToolName, timetable_fault
+from foon_asp.proof.timetable import ScheduleResources, ToolName, timetable_fault
 from foon_asp.proof.timetable import TimedStep as Timed
 from foon_asp.proof.used_up_run import used_up_run
 from foon_asp.questions.answer import ending_of_status
@@ -314,18 +314,20 @@ def schedule(
     require_at_least(agents, 1, "agents")
     problem = with_items(problem, items)
     tree = _executable_tree(as_tree(problem, plan))
-    replayed = replayable(tree.problem, tree)
+    replayed = replayable_problem(tree.problem, tree)
     replay = replay_for(replayed, tree)
     if replay.shortage is not None:
         raise NoTreeError(_shortage_text(tree, replay.shortage))
     known_durations = _durations_of_plan(tree, durations, from_video, default_duration)
-    means = Means(known_durations, agents, _tool_counts(tools))
-    task = schedule_task(replayed, tree.units, replay, means)
+    resources = ScheduleResources(known_durations, agents, _tool_counts(tools))
+    task = schedule_task(replayed, tree.units, replay, resources)
     solution = shortest_schedule(task, deadline)
     timed = () if solution.starts is None else tuple(timed_steps(task, solution.starts))
-    if solution.starts is not None and (fault := timetable_fault(replayed, tree.units, timed, means)):
+    if solution.starts is not None and (fault := timetable_fault(replayed, tree.units, timed, resources)):
         raise BugError(f"the schedule does not hold: {fault}")
-    after = [tuple(earlier + 1 for earlier in sorted(earlier_steps)) for earlier_steps in waits(replay)]
+    after = [
+        tuple(earlier + 1 for earlier in sorted(earlier_steps)) for earlier_steps in predecessors(replay)
+    ]
     return Schedule(
         **head_of(tree.problem),
         status=_status(solution),
@@ -335,11 +337,11 @@ def schedule(
         agents=agents,
         durations=tuple(
             MotionTime(motion, Fraction(duration.seconds), duration.passive)
-            for motion, duration in means.durations.items()
+            for motion, duration in resources.durations.items()
         ),
         timetable=tuple(_timed_step_values(tree, timed, after)),
         lacking=tuple(
-            LackingTool(str(name), means.number_of(tree.problem, name), needed)
+            LackingTool(str(name), resources.number_of(tree.problem, name), needed)
             for name, needed in solution.lacking.items()
         ),
     )

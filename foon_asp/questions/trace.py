@@ -13,7 +13,7 @@ from foon_asp.asp import Settings
 from foon_asp.errors import UserError
 from foon_asp.network import FunctionalUnit, ObjectNode
 from foon_asp.problem import Problem
-from foon_asp.proof.replay import Replay, replay_for, replayable
+from foon_asp.proof.replay import Replay, replay_for, replayable_problem
 from foon_asp.questions.answer import Answer, answer_problem
 from foon_asp.questions.common_options import Posed, start_deadline
 from foon_asp.questions.options import AMOUNT, CONTAINERS, GOAL_OF_PLAN, OBJECTIVES, PLAN_ITEMS
@@ -322,7 +322,7 @@ def trace(
     problem = with_items(problem, items)
     tree = as_tree(problem, plan)
     network = tree.problem.network
-    replay = replay_for(replayable(tree.problem, tree), tree)
+    replay = replay_for(replayable_problem(tree.problem, tree), tree)
     states = tuple(_copies_after_steps(tree.problem, replay))
     lack, answer = replay.shortage, None
     if failed is not None:

@@ -125,7 +125,7 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
             stated: The digests that were not computed, because a store states them.
             by_proved_checker: The answer of the proved checker, if it was asked.
         """
-        user_rules, items = proof.trusted(content), verified.used_up
+        user_rules, items = proof.trusted_claims(content), verified.used_up
         claims = [] if user_rules is None else [trusted_text(user_rules, verified.tree is not None)]
         for measure in verified.trusted:
             units = counted(len(measure.costs), "unit")
@@ -206,7 +206,7 @@ class Refused(Result, frozen=True, kw_only=True, tag=schema_name("refused")):
         yield f"refused: {self.reason}"
 
 
-def _items_lines(used_up: proof.UsedUp, network: Network) -> Iterator[str]:
+def _items_lines(used_up: proof.ItemClaims, network: Network) -> Iterator[str]:
     """Yield lines on the stock, the copies wanted, and the items that stay, as a certificate states them."""
     nodes = network.objects
     if used_up.stock:
@@ -394,7 +394,7 @@ def _verify_content(
         known_measure = dataset.measures.get(measure.name)
         if known_measure is not None and known_measure.text != measure.rules:
             raise proof.RefusedError(f"the rules of {measure.name} are not those that are given")
-    user_rules = proof.trusted(content)
+    user_rules = proof.trusted_claims(content)
     if with_clingo and (verified.trusted or user_rules is not None):
         problem = dataset.problem(verified.goals, verified.containers, everything=True)
         _check_measures_with_clingo(problem, verified)
@@ -402,7 +402,7 @@ def _verify_content(
             from foon_asp.certificate.own_rules import check_with_clingo  # noqa: PLC0415 (the solver)
 
             check_with_clingo(content, user_rules, problem, Deadline(CLINGO_SECONDS))
-    by_proved_checker = proved_checker.ask(content, subject) if proved else None
+    by_proved_checker = proved_checker.check_certificate(content, subject) if proved else None
     starting = None
     if not subject.trusted and dataset.data.starting:
         starting = kitchen_needed(dataset.problem(verified.goals, verified.containers, everything=True))

@@ -16,8 +16,8 @@ from foon_asp.encoding.fact_writer import prices_in_hundredths
 from foon_asp.encoding.own_encodings import is_own
 from foon_asp.errors import UserError
 from foon_asp.problem import Contradiction, LinearRow, Problem, Restriction
-from foon_asp.proof.rule_meaning import LIBRARY, Meaning, Question, Rule, meaning
-from foon_asp.proof.ruled import Ruled
+from foon_asp.proof.compiled_rules import CompiledRules
+from foon_asp.proof.rule_meaning import LIBRARY, Meaning, Question, Rule, meaning_of_rule
 from foon_asp.resources import encodings_folder
 from foon_asp.rules.passed_constraint import Constraint, LibraryUse, find_constraint
 
@@ -60,7 +60,7 @@ class ReadyMade:
         names = [rule["rule"] for rule in rules]
         self.unsettled = not _WITH_UNSETTLED.isdisjoint(names)
         self.shrinking = not any(name.startswith(_REQUIRING_PREFIX) for name in names)
-        self._last: tuple[Problem, tuple[Meaning, ...], Ruled] | None = None
+        self._last: tuple[Problem, tuple[Meaning, ...], CompiledRules] | None = None
 
     @property
     def looked_at(self) -> frozenset[tuple[str, int]]:
@@ -93,7 +93,7 @@ class ReadyMade:
         required = tuple(
             frozenset().union(*(sets[-1] for sets in alternatives))
             for meaning in meanings
-            for alternatives in meaning.wanted
+            for alternatives in meaning.requirements
         )
         if any(meaning.never for meaning in meanings) or not all(required):
             return Contradiction()
@@ -103,8 +103,10 @@ class ReadyMade:
     def upper_limits(self, problem: Problem, deadline: Deadline) -> Iterator[LinearRow]:
         """Yield the upper limits on sums of amounts of single units."""
         for rule_meaning in self._meanings(problem)[0]:
-            if rule_meaning.max_sum is not None and all(len(units) == 1 for units, _ in rule_meaning.things):
-                amounts = {unit: int(amount) for units, amount in rule_meaning.things for unit in units}
+            if rule_meaning.max_sum is not None and all(
+                len(units) == 1 for units, _ in rule_meaning.counted_sets
+            ):
+                amounts = {unit: int(amount) for units, amount in rule_meaning.counted_sets for unit in units}
                 yield LinearRow(amounts, int(rule_meaning.max_sum))
 
     def keeps(self, problem: Problem, units: Collection[int]) -> bool:
@@ -113,15 +115,15 @@ class ReadyMade:
         tree = frozenset(units)
         return ruled.fault(tree, frozenset(range(len(problem.network))) - tree) is None
 
-    def _meanings(self, problem: Problem) -> tuple[tuple[Meaning, ...], Ruled]:
+    def _meanings(self, problem: Problem) -> tuple[tuple[Meaning, ...], CompiledRules]:
         """Return the meanings of the constraints for a problem, and a checker of trees against these.
 
         The result for the last problem is cached.
         """
         if self._last is None or self._last[0] is not problem:
             question, nodes = question_of(problem), len(problem.network.objects)
-            meanings = tuple(meaning(rule, question) for rule in self.rules)
-            self._last = problem, meanings, Ruled(meanings, nodes, len(problem.network) + nodes)
+            meanings = tuple(meaning_of_rule(rule, question) for rule in self.rules)
+            self._last = problem, meanings, CompiledRules(meanings, nodes, len(problem.network) + nodes)
         return self._last[1:]
 
 

@@ -21,11 +21,12 @@ def with_stand_ins(problem: Problem, table: StandInTable, everything: bool = Fal
     """Return a problem whose network also has stand-ins, each a unit with one input and one output.
 
     A stand-in uses one node in place of another that cannot be made from the kitchen. With ``everything``,
-    each such pair of nodes with a price in the table has a stand-in. Otherwise, only the stand-ins that a
-    tree of least dissimilarity can have are added (proof in docs/stand-ins.md).
+    each such pair of nodes with a price in the table has a stand-in. Otherwise, only those are added that a
+    tree of least dissimilarity can have (proof in docs/stand-ins.md). Stand-ins have the rate 1 and, as
+    units, the price 0.
 
     Raises:
-        UserError: below level 3, where items are used up, or if a unit has the motion of stand-ins.
+        UserError: below level 3, if items are used up, or if a unit has the motion of stand-ins.
     """
     network = problem.network
     if network.level < 3:
@@ -37,23 +38,26 @@ def with_stand_ins(problem: Problem, table: StandInTable, everything: bool = Fal
     prices, available = NodePrices(network, table), reach(problem).available
     if everything:
         lacking = (o for o in range(len(network.objects)) if not available[o])
-        pairs = [(served, serving) for served in lacking for serving in prices.of(served)]
+        pairs = [(served, serving) for served in lacking for serving in prices.servers_of(served)]
     else:
-        pairs = _Nearest(problem, prices, available).pairs()
+        pairs = _NearestStandIns(problem, prices, available).pairs()
     unit_prices = problem.unit_prices
     if unit_prices is not None:
         unit_prices = UnitPrices({**unit_prices.motions, STAND_IN: Fraction(0)}, unit_prices.units)
     return replace(
         problem,
-        network=_extended(network, sorted(pairs)),
+        network=_append_stand_ins(network, sorted(pairs)),
         rates=None if problem.rates is None else {**problem.rates, STAND_IN: Fraction(1)},
         unit_prices=unit_prices,
         stand_ins=StandIns(table, nearest=not everything),
     )
 
 
-def _extended(network: Network, pairs: Sequence[Pair]) -> Network:
-    """Append a stand-in unit per pair (served, serving); it makes the served node of the serving one."""
+def _append_stand_ins(network: Network, pairs: Sequence[Pair]) -> Network:
+    """Return a network with a new unit for each pair of a served and a serving node.
+
+    The unit makes the served node of the serving one.
+    """
     keys = {
         (STAND_IN, frozenset((serving,)), frozenset((served,))): unit
         for unit, (served, serving) in enumerate(pairs, len(network))
@@ -68,81 +72,91 @@ def _extended(network: Network, pairs: Sequence[Pair]) -> Network:
     )
 
 
-class _Nearest:
+class _NearestStandIns:
     """Search for the stand-ins that a tree of least dissimilarity can have.
 
-    ``available`` has an entry for each node, by id: 1 if the node can be made without stand-ins, else 0.
+    In a stand-in, the *serving* node is used in place of the *served* one. Prices are whole numbers
+    (:class:`NodePrices`). ``available`` has an entry for each node, by id: 1 if it can be made without
+    stand-ins, else 0.
     """
 
     def __init__(self, problem: Problem, prices: NodePrices, available: bytearray) -> None:
+        """Keep problem, prices and available nodes; nothing is searched yet."""
         self._problem, self._prices, self._available = problem, prices, available
         self._servers: dict[int, dict[int, int]] = {}
 
     def pairs(self) -> list[Pair]:
-        """Return pairs of a served and a serving node; where no tree exists, enough pairs to prove that."""
+        """Return the pairs of a served and a serving node of these stand-ins.
+
+        If no tree exists, the pairs are enough to prove that.
+        """
         goals = [goal for goal in self._problem.goals if not self._available[goal]]
-        needed = self._needed(goals)
-        steps = self._cheapest(needed, sum)
+        needed = self._needed_nodes(goals)
+        steps = self._cheapest_steps(needed, sum)
         if steps.keys() >= {*goals}:
-            bound, least = self._dissimilarity(goals, steps), self._cheapest(needed, max)
+            bound, least = self._dissimilarity(goals, steps), self._cheapest_steps(needed, max)
             for served in needed:
                 self._servers[served] = {
                     serving: price
                     for serving, price in self._servers[served].items()
                     if self._available[serving] or (serving in least and least[serving].cost + price <= bound)
                 }
-            needed = self._needed(goals)
+            needed = self._needed_nodes(goals)
         return [(served, serving) for served in needed for serving in self._servers[served]]
 
-    def _of(self, served: int) -> dict[int, int]:
-        """Return the nodes that may serve for a node, with prices up to the cheapest available node's."""
+    def _servers_of(self, served: int) -> dict[int, int]:
+        """Return the nodes that may serve for a node, by id with their prices; cached.
+
+        Nodes that cost more than the cheapest available one are omitted.
+        """
         servers = self._servers.get(served)
         if servers is None:
-            priced = self._prices.of(served)
+            priced = self._prices.servers_of(served)
             least = min((price for o, price in priced.items() if self._available[o]), default=None)
             servers = {o: price for o, price in priced.items() if least is None or price <= least}
             self._servers[served] = servers
         return servers
 
-    def _ways(self, served: int) -> Iterator[tuple[int, ...]]:
+    def _unavailable_preconditions(self, served: int) -> Iterator[tuple[int, ...]]:
         """Yield for each achiever of a node its unavailable preconditions."""
         problem, available = self._problem, self._available
         for unit in problem.makers[served]:
             yield tuple([o for o in problem.needs[unit] if not available[o]])
 
-    def _needed(self, goals: Iterable[int]) -> set[int]:
-        """Return the nodes that a tree can need although they cannot be made without stand-ins."""
+    def _needed_nodes(self, goals: Iterable[int]) -> set[int]:
+        """Return the unavailable nodes that a tree can need, goals included."""
         needed = set(goals)
         stack = list(needed)
         while stack:
             served = stack.pop()
-            lacking = {o for o in self._of(served) if not self._available[o]}
-            lacking.update(o for way in self._ways(served) for o in way)
+            lacking = {o for o in self._servers_of(served) if not self._available[o]}
+            lacking.update(o for way in self._unavailable_preconditions(served) for o in way)
             lacking -= needed
             needed |= lacking
             stack.extend(lacking)
         return needed
 
-    def _cheapest(
+    def _cheapest_steps(
         self, needed: Iterable[int], combined: Callable[[Iterable[int]], int]
     ) -> "dict[int, _Step]":
-        """Return the cheapest last step to each node; a unit costs the ``combined`` costs of its inputs.
+        """Return the cheapest last step to each node that can be made; the others are omitted.
 
-        With ``max``, the cost of a node is a lower bound on the dissimilarity of making it (h_max; Bonet and
-        Geffner 2001). With ``sum``, the steps lead to a good tree (h_add). Computed by Knuth's generalization
-        of Dijkstra's algorithm (Information Processing Letters 6, 1977).
+        A unit costs the ``combined`` costs of its inputs. With ``max``, the cost of a node is a lower bound
+        on the dissimilarity of making it (h_max; Bonet and Geffner 2001). With ``sum``, the steps lead to a
+        good tree (h_add). Computed by Knuth's generalization of Dijkstra's algorithm (Information Processing
+        Letters 6, 1977).
         """
         served_by: defaultdict[int, list[tuple[int, int]]] = defaultdict(list)
         consumers: defaultdict[int, list[int]] = defaultdict(list)
-        ways: list[tuple[int, tuple[int, ...]]] = []  # what is made, and out of what
+        ways: list[tuple[int, tuple[int, ...]]] = []  # a made node and its unavailable inputs
         heap: list[tuple[int, int, tuple[int, ...], int]] = []
         for served in needed:
-            for serving, price in self._of(served).items():
+            for serving, price in self._servers_of(served).items():
                 if self._available[serving]:
                     heappush(heap, (price, served, (), price))
                 else:
                     served_by[serving].append((served, price))
-            for way in self._ways(served):
+            for way in self._unavailable_preconditions(served):
                 for o in way:
                     consumers[o].append(len(ways))
                 ways.append((served, way))
@@ -163,7 +177,10 @@ class _Nearest:
         return steps
 
     def _dissimilarity(self, goals: Iterable[int], steps: "Mapping[int, _Step]") -> int:
-        """Return the dissimilarity of the tree of the best last ``steps``; each stand-in counts once."""
+        """Return the dissimilarity of the tree that follows ``steps`` back from the goals.
+
+        Each stand-in counts once.
+        """
         total, met = 0, set(goals)
         stack = list(met)
         while stack:
@@ -175,10 +192,11 @@ class _Nearest:
 
 
 class _Step(NamedTuple):
-    """The last step to a node: a unit, or a stand-in with its ``price``.
+    """The last step to a node: a unit or a stand-in.
 
-    ``cost`` is the cost of this step and of all steps before it. ``made_of`` are the nodes that the step
-    needs and that are not available.
+    ``cost``: the cost of this step and of all steps before it.
+    ``made_of``: the unavailable nodes that the step needs.
+    ``price``: the price of a stand-in; 0 for a unit.
     """
 
     cost: int

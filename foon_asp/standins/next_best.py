@@ -1,4 +1,4 @@
-"""The next best stand-in: the node that would be used if the node used in a tree were not available."""
+"""The next best stand-in: the node to use if the serving node of a tree's stand-in were not available."""
 
 from collections.abc import Collection
 from fractions import Fraction
@@ -9,12 +9,12 @@ from foon_asp.problem import Problem
 from foon_asp.standins.node_prices import NodePrices
 
 
-class Used(NamedTuple):
+class UsedStandIn(NamedTuple):
     """A stand-in of a tree, by ids: the serving node is used in place of the served one.
 
-    ``next_best`` is the cheapest other node that may serve, with its dissimilarity. It is chosen among the
-    nodes that the kitchen has or that the tree makes without this stand-in; ``None`` if none of them may
-    serve.
+    ``unit``: the unit of the stand-in.
+    ``next_best``: the cheapest other node that may serve, with its dissimilarity. It is chosen among nodes of
+    the kitchen and nodes that the tree makes without this stand-in. ``None`` if none of them may serve.
     """
 
     unit: int
@@ -23,26 +23,28 @@ class Used(NamedTuple):
     next_best: tuple[int, Fraction] | None
 
 
-def stand_ins_of(problem: Problem, tree: Collection[int]) -> list[Used]:
-    """Return the stand-ins of a tree of unit ids, in order; empty for a problem without stand-ins."""
+def stand_ins_of(problem: Problem, tree: Collection[int]) -> list[UsedStandIn]:
+    """Return the stand-ins among the units of a tree, in their order; empty if the problem has none."""
     network = problem.network
     units = [unit for unit in tree if network.motions[unit] == STAND_IN]
     if problem.stand_ins is None or not units:
         return []
     prices = NodePrices(network, problem.stand_ins.table)
-    used: list[Used] = []
+    used: list[UsedStandIn] = []
     for unit in units:
         (serving,), (served,) = network.inputs[unit], network.outputs[unit]
-        available = _made(problem, [other for other in tree if other != unit])
-        others = ((price, o) for o, price in prices.of(served).items() if o in available and o != serving)
+        available = _nodes_made(problem, [other for other in tree if other != unit])
+        others = (
+            (price, o) for o, price in prices.servers_of(served).items() if o in available and o != serving
+        )
         cheapest = min(others, default=None)
         next_best = None if cheapest is None else (cheapest[1], Fraction(cheapest[0], prices.scale))
-        used.append(Used(unit, serving, served, next_best))
+        used.append(UsedStandIn(unit, serving, served, next_best))
     return used
 
 
-def _made(problem: Problem, tree: Collection[int]) -> set[int]:
-    """Return the nodes that units of a tree make from the kitchen, as far as they execute."""
+def _nodes_made(problem: Problem, tree: Collection[int]) -> set[int]:
+    """Return the nodes of the kitchen and those that units of a tree make from it, as far as they execute."""
     made, waiting = set(problem.kitchen), list(tree)
     while ready := [unit for unit in waiting if made.issuperset(problem.needs[unit])]:
         made.update(o for unit in ready for o in problem.gives[unit])

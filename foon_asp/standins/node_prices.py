@@ -8,9 +8,9 @@ from foon_asp.network import Edit, Network, ObjectNode, Relation, StandInTable, 
 
 
 class NodePrices:
-    """The nodes of a network that may stand in for others by a table, with their prices.
+    """The prices of nodes of a network that may stand in for others by a table.
 
-    Prices are whole numbers: the exact prices times ``scale``.
+    Prices are whole numbers: the exact prices times ``scale``, their common denominator.
     """
 
     def __init__(self, network: Network, table: StandInTable) -> None:
@@ -21,54 +21,61 @@ class NodePrices:
         self._edits = {edit: self._scaled(price) for edit, price in table.edits.items()}
         self._words = {word: self._scaled(price) for word, price in table.words.items()}
         self._pairs = {pair: self._scaled(price) for pair, price in table.pairs.items()}
-        self._labels: defaultdict[str, list[str]] = defaultdict(list)  # that serve a label
-        self._nodes: defaultdict[ObjectNode, list[int]] = defaultdict(list)  # that serve a node
+        self._labels_serving: defaultdict[str, list[str]] = defaultdict(list)  # that serve a label
+        self._nodes_serving: defaultdict[ObjectNode, list[int]] = defaultdict(list)  # that serve a node
         for serving, served in table.pairs:
             if isinstance(served, str) and isinstance(serving, str):
-                self._labels[served].append(serving)
+                self._labels_serving[served].append(serving)
             elif isinstance(served, ObjectNode) and isinstance(serving, ObjectNode):
                 number = network.object_id(serving)
                 if number is not None:
-                    self._nodes[served].append(number)
-        self._spelled: defaultdict[str, list[str]] = defaultdict(list)  # labels that are spelled alike
+                    self._nodes_serving[served].append(number)
+        self._labels_by_spelling: defaultdict[str, list[str]] = defaultdict(list)
         for label in network.by_label:
-            self._spelled[spelling_key(label)].append(label)
-        self._of: dict[int, dict[int, int]] = {}
+            self._labels_by_spelling[spelling_key(label)].append(label)
+        self._servers: dict[int, dict[int, int]] = {}
 
     def _scaled(self, price: Fraction | None) -> int | None:
+        """Return a price times ``scale``; ``None`` if it is ``None``."""
         return None if price is None else int(price * self.scale)
 
-    def of(self, served: int) -> dict[int, int]:
-        """Return the nodes that may stand in for a served node, by id, with their prices."""
-        servers = self._of.get(served)
+    def servers_of(self, served: int) -> dict[int, int]:
+        """Return the price of each node that may stand in for a node of the network, by id; cached."""
+        servers = self._servers.get(served)
         if servers is None:
-            servers = self._of[served] = self.of_node(self._objects[served])
+            servers = self._servers[served] = self.servers_of_node(self._objects[served])
         return servers
 
-    def of_node(self, node: ObjectNode) -> dict[int, int]:
-        """Return the nodes that may stand in for any node, by id, with prices."""
+    def servers_of_node(self, node: ObjectNode) -> dict[int, int]:
+        """Return the price of each node, by id, that may stand in for a node of any network."""
         objects, by_label = self._objects, self._by_label
-        labels = (*self._spelled.get(spelling_key(node.label), ()), *self._labels.get(node.label, ()))
+        labels = (
+            *self._labels_by_spelling.get(spelling_key(node.label), ()),
+            *self._labels_serving.get(node.label, ()),
+        )
         nodes = dict.fromkeys(o for label in labels for o in by_label.get(label, ()))
-        nodes |= dict.fromkeys(self._nodes.get(node, ()))
-        prices = ((o, self.between(objects[o], node)) for o in nodes if objects[o] != node)
+        nodes |= dict.fromkeys(self._nodes_serving.get(node, ()))
+        prices = ((o, self.price(objects[o], node)) for o in nodes if objects[o] != node)
         return {o: price for o, price in prices if price is not None}
 
-    def between(self, serving: ObjectNode, served: ObjectNode) -> int | None:
-        """Return the price of using one node in place of another, ``None`` where it never stands in."""
+    def price(self, serving: ObjectNode, served: ObjectNode) -> int | None:
+        """Return the price of using ``serving`` in place of ``served``; ``None`` if the table forbids it.
+
+        A price of the pair of nodes takes precedence. Otherwise the prices of all differences are added up.
+        """
         if self._pairs and (serving, served) in self._pairs:
             return self._pairs[serving, served]
         total = 0
         label, states, relations, contents = serving
         served_label, served_states, served_relations, served_contents = served
         if label != served_label:
-            listed = (label, served_label) in self._pairs or not spelled_alike(label, served_label)
-            price = self._pairs.get((label, served_label)) if listed else self._edits[Edit.SPELLING]
+            is_listed = (label, served_label) in self._pairs or not spelled_alike(label, served_label)
+            price = self._pairs.get((label, served_label)) if is_listed else self._edits[Edit.SPELLING]
             if price is None:
                 return None
             total += price
         if contents != served_contents:
-            price = self._of_contents(serving.ingredients, served.ingredients)
+            price = self._contents_price(serving.ingredients, served.ingredients)
             if price is None:
                 return None
             total += price
@@ -78,25 +85,30 @@ class NodePrices:
                 (Edit.MORE_STATE, states - served_states),
             ):
                 for name in names:
-                    price = self._word(edit, name)
+                    price = self._name_price(edit, name)
                     if price is None:
                         return None
                     total += price
         if relations != served_relations:
-            price = self._of_relations(relations, served_relations)
+            price = self._relations_price(relations, served_relations)
             if price is None:
                 return None
             total += price
         return total
 
-    def _word(self, edit: Edit, name: str) -> int | None:
+    def _name_price(self, edit: Edit, name: str) -> int | None:
+        """Return the price of an edit that adds or removes a name; ``None`` if the table forbids it.
+
+        The name is a state or an ingredient. Its own price takes precedence over that of the edit.
+        """
         price = self._words.get((edit, name), -1)
         return self._edits[edit] if price == -1 else price
 
-    def _of_contents(self, ours: tuple[str, ...], theirs: tuple[str, ...]) -> int | None:
-        """Return the price of the differences between two contents; ``None`` where the table forbids one.
+    def _contents_price(self, ours: tuple[str, ...], theirs: tuple[str, ...]) -> int | None:
+        """Return the price of the differences between two contents, given by their ingredients.
 
-        The differences are in ingredients, or else in the word that relates the contents.
+        If the ingredients are equal, the contents differ in a word such as *in*. Contents with little in
+        common also cost the price of :attr:`Edit.CONTENTS`. ``None`` if the table forbids a difference.
         """
         if ours == theirs:
             return self._edits[Edit.WORD]
@@ -119,16 +131,16 @@ class NodePrices:
             (Edit.FEWER_INGREDIENT, lacking - common),
         ):
             for name, count in items.items():
-                price = self._word(edit, name)
+                price = self._name_price(edit, name)
                 if price is None:
                     return None
                 total += price * count
         return total
 
-    def _of_relations(self, ours: frozenset[Relation], theirs: frozenset[Relation]) -> int | None:
+    def _relations_price(self, ours: frozenset[Relation], theirs: frozenset[Relation]) -> int | None:
         """Return the price of the differences between two sets of relations.
 
-        ``None`` where the table forbids one of them.
+        ``None`` if the table forbids a difference.
         """
         surplus = Counter(relation.object for relation in ours - theirs)
         lacking = Counter(relation.object for relation in theirs - ours)

@@ -20,9 +20,10 @@ from foon_asp.standins.extension import with_stand_ins
 class Repair:
     """The problem whose best tree is the cheapest repair of a tree.
 
-    ``posed`` is the problem to solve: in it, each step of the tree has one additional output, a node that
-    only this step makes and that is a goal. ``shown`` is the same problem without these nodes, with the same
-    ids of units. ``steps`` are the units of the tree, by id, in the order listed, each once.
+    ``posed``: the problem to solve. Each step of the tree has one additional output in it: a node that is a
+    goal and that only this step makes. So every solution has all steps.
+    ``shown``: the same problem without these nodes, with the same ids of units.
+    ``steps``: the units of the tree, by id, in the order listed, each once.
     """
 
     posed: Problem
@@ -38,27 +39,27 @@ class Repair:
         table: StandInTable,
         is_available: Callable[[ObjectNode], bool],
     ) -> "Repair":
-        """Make the problem of a repair, over the network of a problem and the units of a tree.
+        """Make the problem of a repair, over the units of a problem's network and of a tree.
 
-        Stand-ins in the network are left out. ``is_available`` returns whether the kitchen has a node that is
-        not in the network.
+        ``sources`` has the source of each unit of the tree. Stand-ins in the network are omitted.
+        ``is_available`` says of a node that is not in the network whether the kitchen has it.
         """
-        whole = problem.network
+        original = problem.network
         builder = NetworkBuilder()
-        for unit, places in zip(whole, whole.sources, strict=True):
+        for unit, places in zip(original, original.sources, strict=True):
             if unit.motion == STAND_IN:
                 continue
             builder.add(unit.motion, unit.inputs, unit.outputs, *places)
-        listed = [
+        unit_ids = [
             builder.add(unit.motion, unit.inputs, unit.outputs, source)
             for unit, source in zip(tree, sources, strict=True)
         ]
-        steps, network = tuple(dict.fromkeys(listed)), builder.build()
+        steps, network = tuple(dict.fromkeys(unit_ids)), builder.build()
         nodes = enumerate(network.objects)
         kitchen = frozenset(
             o
             for o, node in nodes
-            if (problem.at_hand(node) if whole.object_id(node) is not None else is_available(node))
+            if (problem.at_hand(node) if original.object_id(node) is not None else is_available(node))
         )
         goals = [network.object_id(node) for node in problem.goal_nodes]
         merged = replace(
@@ -74,25 +75,31 @@ class Repair:
 
     @classmethod
     def over(cls, problem: Problem, steps: tuple[int, ...], table: StandInTable) -> "Repair":
-        """Make the problem of a repair, for ``steps`` of a network that has no stand-ins."""
+        """Make the problem of a repair for a tree whose units, ``steps``, are in the problem's network.
+
+        The network must have no stand-ins.
+        """
         network = problem.network
         first = len(network.objects)
         marked = replace(
             problem,
-            network=_marked(network, steps),
+            network=_with_markers(network, steps),
             goals=(*problem.goals, *range(first, first + len(steps))),
         )
         posed = with_stand_ins(marked, table)
-        shown = replace(posed, network=_unmarked(posed.network, network), goals=problem.goals)
+        shown = replace(posed, network=_without_markers(posed.network, network), goals=problem.goals)
         return cls(posed, shown, steps)
 
-    def added(self, units: Sequence[int]) -> list[int]:
+    def added_units(self, units: Sequence[int]) -> list[int]:
         """Return the units of a repaired tree that are neither its own steps nor stand-ins, in order."""
         motions, steps = self.posed.network.motions, frozenset(self.steps)
         return [unit for unit in units if unit not in steps and motions[unit] != STAND_IN]
 
-    def lacking(self) -> list[int]:
-        """Return the nodes that steps or goals need and that cannot be made, even with stand-ins."""
+    def unmakeable_nodes(self) -> list[int]:
+        """Return the nodes that steps or goals need and that cannot be made, even with stand-ins, ascending.
+
+        Nodes that steps would make are omitted, unless there are no others.
+        """
         available = reach(self.posed).available
         made = {o for unit in self.steps for o in self.shown.gives[unit]}
         needed = {o for unit in self.steps for o in self.shown.needs[unit]}.union(self.shown.goals)
@@ -100,11 +107,11 @@ class Repair:
         return [o for o in lacking if o not in made] or lacking
 
 
-def _marked(network: Network, steps: Sequence[int]) -> Network:
+def _with_markers(network: Network, steps: Sequence[int]) -> Network:
     """Return a network in which each of the ``steps`` has one more output, which only this step makes."""
     first = len(network.objects)
     markers = {unit: o for o, unit in enumerate(steps, first)}
-    # no file has a label with a line end, so nothing stands in for these
+    # labels in files have no line break, so these nodes have no stand-in
     nodes = [ObjectNode(f"step\n{number}", frozenset({"done"})) for number in range(1, len(steps) + 1)]
     outputs = tuple(
         (*made, markers[unit]) if unit in markers else made for unit, made in enumerate(network.outputs)
@@ -123,8 +130,11 @@ def _marked(network: Network, steps: Sequence[int]) -> Network:
     )
 
 
-def _unmarked(extended: Network, plain: Network) -> Network:
-    """Return an extended network without the nodes that mark steps; its stand-ins stay."""
+def _without_markers(extended: Network, plain: Network) -> Network:
+    """Return an extended network without the nodes that :func:`_with_markers` added; stand-ins stay.
+
+    ``plain`` is the network before that.
+    """
     stand_ins = {key: unit for key, unit in extended._unit_ids.items() if unit >= len(plain)}
     return replace(
         extended,

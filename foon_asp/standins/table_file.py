@@ -15,34 +15,36 @@ _NUMBER = re.compile(r"\d{1,6}(\.\d{1,3})?", re.ASCII)
 _NAMED = (Edit.MORE_STATE, Edit.FEWER_STATE, Edit.MORE_INGREDIENT, Edit.FEWER_INGREDIENT)
 _KINDS = (Edit.SPELLING, Edit.WORD, Edit.CONTAINER, *_NAMED, Edit.CONTENTS)
 
-# a pair that serves and is served, an edit, or an edit of one state or ingredient
+# a pair of serving and served names, an edit, or an edit of one state or ingredient
 Entry = tuple[str | ObjectNode, str | ObjectNode] | Edit | tuple[Edit, str]
 
 
 def read_stand_ins(
     files: Iterable[Path], similar: Iterable[Path] = (), utensils: Collection[str] = ()
 ) -> StandInTable:
-    """Return the usual table with the changes of files; a later file takes precedence.
+    """Return the default table of prices, changed by files; a later file takes precedence.
 
-    The lexicons ``similar`` are read before all ``files``. Pairs with a label of ``utensils`` in lexicons are
-    ignored: a tool or vessel stands in only where one of the ``files`` lists it. Raises :class:`InputError`.
+    The lexicons ``similar`` are read before all ``files``. Of lexicons, only pairs are read, and those with a
+    label of ``utensils`` are ignored. So a tool or vessel stands in only if one of the ``files`` lists it.
+    Raises :class:`InputError`.
     """
     table = StandInTable.usual()
     for file in similar:
         pairs = (row for row in STAND_INS.rows(file) if isinstance(row.name, tuple))
-        table = _changed(table, [row for row in pairs if not _has_utensil(row.name, utensils)])
+        table = _update_table(table, [row for row in pairs if not _names_utensil(row.name, utensils)])
     for file in files:
-        table = _changed(table, STAND_INS.rows(file))
+        table = _update_table(table, STAND_INS.rows(file))
     return table
 
 
-def _has_utensil(entry: Entry, utensils: Collection[str]) -> bool:
+def _names_utensil(entry: Entry, utensils: Collection[str]) -> bool:
+    """Return whether one of the names of a pair is, or has as label, a label of ``utensils``."""
     labels = {name.label if isinstance(name, ObjectNode) else name for name in entry}
     return not labels.isdisjoint(utensils)
 
 
-def _changed(table: StandInTable, rows: Sequence[Row[Entry, Fraction | None]]) -> StandInTable:
-    """Return a table with the prices of rows."""
+def _update_table(table: StandInTable, rows: Sequence[Row[Entry, Fraction | None]]) -> StandInTable:
+    """Return a copy of a table with the prices of rows; later rows take precedence."""
     edits, words, pairs = dict(table.edits), dict(table.words), dict(table.pairs)
     for name, price, _ in rows:
         if isinstance(name, Edit):
@@ -54,12 +56,16 @@ def _changed(table: StandInTable, rows: Sequence[Row[Entry, Fraction | None]]) -
     return StandInTable(edits, words, pairs)
 
 
-def _row(name: str, value: str, column: int) -> tuple[Entry, Fraction | None]:
-    """Return the edit or pair of a row, and its price; ``None`` for the word ``never``."""
+def _read_row(name: str, value: str, column: int) -> tuple[Entry, Fraction | None]:
+    """Return the edit or pair of a row and its price; ``None`` for the word ``never``.
+
+    A pair has three columns: ``value`` then has the served name, a tab and the price. Raises
+    :class:`LineError` if the row is malformed.
+    """
     served, tab, written = value.rpartition("\t")
-    price = _price(written.strip(), column + len(value) - len(written))
+    price = _read_price(written.strip(), column + len(value) - len(written))
     if not tab:
-        return _edit(name), price
+        return _read_edit(name), price
     serving_name, served_name = stated_name(name), stated_name(served)
     if isinstance(serving_name, str) is not isinstance(served_name, str):
         raise LineError(column, "a label and an object node", ("two labels", "two object nodes"))
@@ -68,8 +74,11 @@ def _row(name: str, value: str, column: int) -> tuple[Entry, Fraction | None]:
     return (serving_name, served_name), price
 
 
-def _edit(name: str) -> Edit | tuple[Edit, str]:
-    """Return the edit that the name of a row means, with its state or ingredient if the name has one."""
+def _read_edit(name: str) -> Edit | tuple[Edit, str]:
+    """Return the edit that a name means, with its state or ingredient if the name has one after a colon.
+
+    Raises :class:`LineError` for other names.
+    """
     kind, colon, word = (text.strip() for text in name.partition(":"))
     if kind not in (_NAMED if colon else _KINDS) or (colon and not word):
         kinds = ", ".join(_KINDS)
@@ -77,8 +86,8 @@ def _edit(name: str) -> Edit | tuple[Edit, str]:
     return (Edit(kind), word) if colon else Edit(kind)
 
 
-def _price(written: str, column: int) -> Fraction | None:
-    """Return a price, ``None`` for ``never``; raises :class:`LineError` for other texts."""
+def _read_price(written: str, column: int) -> Fraction | None:
+    """Return a price above 0, ``None`` for ``never``; raises :class:`LineError` for other texts."""
     if written == _NEVER:
         return None
     price = Fraction(written) if _NUMBER.fullmatch(written) else Fraction(0)
@@ -88,6 +97,6 @@ def _price(written: str, column: int) -> Fraction | None:
 
 
 STAND_INS: Table[Entry, Fraction | None] = Table(
-    "stand-in", NameKind.OBJECT, "a number or never", _row, "a second price for {name!r}"
+    "stand-in", NameKind.OBJECT, "a number or never", _read_row, "a second price for {name!r}"
 )
-"""``USED⇥FOR⇥2`` of two labels or nodes; ``word⇥1`` of an edit, ``more state: dirty⇥never`` of a state."""
+"""The format of rows: ``serving⇥served⇥2``, ``word⇥1`` or ``more state: dirty⇥never`` (⇥ is a tab)."""

@@ -310,7 +310,11 @@ print(*sys.modules)
     loaded = run_python("-I", "-c", alone).split()
     ours = {name for name in loaded if name.split(".")[0] == "foon_asp"}
     names = {"foon_asp", "foon_asp.escapes"}  # public names, and how names are quoted
-    names |= {"foon_asp.proof", "foon_asp.proof.rule_meaning", "foon_asp.proof.ruled"}  # its own parts
+    names |= {
+        "foon_asp.proof",
+        "foon_asp.proof.rule_meaning",
+        "foon_asp.proof.compiled_rules",
+    }  # its own parts
     names.add("foon_asp.proof.stand_ins")
     assert ours == names | {name for name in ours if name.startswith("foon_asp.network")}
     assert not {"clingo", "highspy", "numpy", "lark", "click"} & {*loaded}

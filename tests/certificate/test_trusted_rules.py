@@ -15,7 +15,7 @@ from foon_asp.certificate.coverage import coverage
 from foon_asp.certificate.own_rules import check_with_clingo, with_own_rules
 from foon_asp.problem import ContainerRule, Objective
 from foon_asp.proof.rule_meaning import Rule
-from foon_asp.proof.verifier import LimitError, RefusedError, seal, trusted
+from foon_asp.proof.verifier import LimitError, RefusedError, seal, trusted_claims
 from foon_asp.resources import encodings_folder
 from foon_asp.rules.passed_constraint import given_constraint
 from tests.conftest import Cli
@@ -128,9 +128,9 @@ def test_answers_under_random_rules_of_the_users_own() -> None:
         settings = Settings(tuple(given))
         outcome, found = certify_outcome(solve(problem, (Objective.UNITS,), settings), settings)
         assert found is not None
-        met.add((found.claim, trusted(found.content) is not None))
+        met.add((found.claim, trusted_claims(found.content) is not None))
         claim = check(found.content, problem)
-        own = trusted(found.content)
+        own = trusted_claims(found.content)
         if own is not None:
             check_with_clingo(found.content, own, problem)
         if same:
@@ -249,7 +249,7 @@ def test_answers_under_random_shrinking_rules_of_the_users_own(
         outcome, found = certify_outcome(solve(problem, (Objective.UNITS,), settings), settings)
         assert found is not None
         assert found.claim == ("infeasible" if outcome.status is Status.INFEASIBLE else "optimal")
-        own = trusted(found.content)
+        own = trusted_claims(found.content)
         check(found.content, problem)
         met.add((SHRINKING[text], own is not None))
         if own is not None:
@@ -302,7 +302,7 @@ def test_what_a_proof_takes_on_trust(
     settings = Settings(tuple(map(given_constraint, rules)))
     outcome, found = certify_outcome(solve(BOILED, settings=settings), settings)
     assert (found and found.claim) == claim
-    own = None if found is None else trusted(found.content)
+    own = None if found is None else trusted_claims(found.content)
     assert (None if own is None else own["claims"]) == claims
     assert (None if own is None else own["limits"]) == limits
     assert (outcome.proof is Proof.CERTIFICATE) == (claim is not None and own is None)

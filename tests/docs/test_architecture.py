@@ -211,7 +211,7 @@ def test_libraries_are_the_declared_dependencies() -> None:
 
 
 def test_the_verifier_imports_the_standard_library_and_the_plain_network() -> None:
-    parts = {"foon_asp.proof.rule_meaning", "foon_asp.proof.ruled", "foon_asp.proof.stand_ins"}
+    parts = {"foon_asp.proof.rule_meaning", "foon_asp.proof.compiled_rules", "foon_asp.proof.stand_ins"}
     modules = {name.replace(".", "/") + ".py" for name in parts} | {"foon_asp/proof/verifier.py"}
     names = {name for module in modules for _, name in imports(module)}
     ours = {name for name in names if name.startswith("foon_asp")}

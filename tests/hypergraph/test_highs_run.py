@@ -114,7 +114,7 @@ def test_a_small_program_is_asked_for_some_steps_at_a_time() -> None:
 def test_large_programs_have_the_same_solutions(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(highs_run, "RUN", highs_run.RUN._replace(small_size=-1))
     program = WholeProgram(2)
-    program.row({0: 2, 1: 1}, 3)
+    program.add_row({0: 2, 1: 1}, 3)
     assert program.solve({0: 2, 1: 3}) == Solved([1.5, 0.0], Fraction(3))
     assert program.whole_optimum({0: 2, 1: 3}) == [2.0, 0.0]
     covering = Covering([1.0] * 3)

@@ -22,8 +22,8 @@ from foon_asp.planning.schedule_task import ScheduleTask, Use, schedule_task
 from foon_asp.planning.scheduling import shortest_schedule, timed_steps
 from foon_asp.problem import ContainerRule, UsedUp
 from foon_asp.processes.worker import Worker
-from foon_asp.proof.replay import replay_for, replayable
-from foon_asp.proof.timetable import Means, TimedStep, Tool, timetable_fault
+from foon_asp.proof.replay import replay_for, replayable_problem
+from foon_asp.proof.timetable import ScheduleResources, TimedStep, Tool, timetable_fault
 from foon_asp.text.clip_times import median_clips
 from foon_asp.text.diagnostics import InputError
 from foon_asp.text.tables import DURATIONS, TOOLS
@@ -47,9 +47,9 @@ def plan_of(problem: Problem) -> list[FunctionalUnit]:
     return [problem.network.unit(unit) for unit in range(len(problem.network))]
 
 
-def means_of(problem: Problem, seconds: int = 10, agents: int = 9, tools: Any = None) -> Means:
+def means_of(problem: Problem, seconds: int = 10, agents: int = 9, tools: Any = None) -> ScheduleResources:
     """Return means by which every motion takes the same time."""
-    return Means(dict.fromkeys(problem.network.motions, Duration(seconds)), agents, tools or {})
+    return ScheduleResources(dict.fromkeys(problem.network.motions, Duration(seconds)), agents, tools or {})
 
 
 def task_of(problem: Problem, *order: int, tools: Any = None) -> ScheduleTask:
@@ -148,7 +148,7 @@ def test_what_never_runs_out_is_not_waited_for() -> None:
 
 BOWLS = [Tool("bowl", 1), Tool("bowl", 2)]
 EGG_DURATIONS = {"salt": Duration(10), "crack": Duration(20), "pour": Duration(30, passive=True)}
-EGG_MEANS = Means(EGG_DURATIONS, 2, {"bowl": 2})
+EGG_MEANS = ScheduleResources(EGG_DURATIONS, 2, {"bowl": 2})
 
 
 def seconds(start: int, end: int, agent: int | None, *tools: Tool) -> TimedStep:
@@ -384,11 +384,11 @@ def test_schedules_of_random_plans_hold(seeds: range) -> None:
         choose = random.Random(seed)
         problem = random_problem(seed)
         if choose.random() < 0.3:
-            problem = replayable(replace(problem, items=None), plan_of(problem))
+            problem = replayable_problem(replace(problem, items=None), plan_of(problem))
         plan = random_plan(problem, choose)
         lengths = {motion: Duration(choose.randint(1, 4), choose.random() < 0.3) for motion in "abcd"}
         tools: dict[Any, int | None] = {"bowl": choose.choice((1, 2, None)), "knife": 2}
-        means = Means(lengths, choose.randint(1, 3), {} if choose.random() < 0.3 else tools)
+        means = ScheduleResources(lengths, choose.randint(1, 3), {} if choose.random() < 0.3 else tools)
         task = schedule_task(problem, plan, replay_for(problem, plan), means)
         found = shortest_schedule(task, Deadline())
         if found.starts is None:

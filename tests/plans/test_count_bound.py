@@ -181,8 +181,8 @@ def better(bound: CountBound, *levels: Level) -> Counts:
 def test_what_is_used_up_has_to_be_made_each_time() -> None:
     cutting = flows(">3", "3>0", "3>1", targets=(0, 1))
     bound = CountBound(cutting)
-    assert bound.counts([UNITS]) == {0: 2, 1: 1, 2: 1}
-    assert not bound.none()
+    assert bound.cheapest_counts([UNITS]) == {0: 2, 1: 1, 2: 1}
+    assert not bound.is_infeasible()
     assert proves(bound, whole(UNITS, 4)) == []
     assert better(bound, whole(UNITS, 5)) == {0: 2, 1: 1, 2: 1}
     assert bound.proved <= 4
@@ -190,7 +190,7 @@ def test_what_is_used_up_has_to_be_made_each_time() -> None:
     assert len(proves(bound, whole(UNITS, 6))) == 2  # and one with a knife too many, which no order has
     assert bound.proved == 5
     keeping = CountBound(flows(">3", "3*>0", "3*>1", targets=(0, 1)))
-    assert keeping.counts([UNITS], rounds=1) == {0: 1, 1: 1, 2: 1}
+    assert keeping.cheapest_counts([UNITS], rounds=1) == {0: 1, 1: 1, 2: 1}
     assert proves(keeping, whole(UNITS, 3)) == []
     assert better(keeping, whole(UNITS, 4)) == {0: 1, 1: 1, 2: 1}
 
@@ -198,11 +198,11 @@ def test_what_is_used_up_has_to_be_made_each_time() -> None:
 def test_what_is_there_at_first_need_not_be_made() -> None:
     for knives, counts in ((1, {0: 1, 1: 1, 2: 1}), (2, {1: 1, 2: 1}), (3, {1: 1, 2: 1})):
         bound = CountBound(flows(">3", "3>0", "3>1", start={3: knives}, targets=(0, 1)))
-        assert bound.counts([UNITS]) == counts
+        assert bound.cheapest_counts([UNITS]) == counts
         assert proves(bound, whole(UNITS, sum(counts.values()))) == []
         assert better(bound, whole(UNITS, sum(counts.values()) + 1)) == counts
     there = CountBound(flows(">0", "100>0", "101>0", start={0: 1}))
-    assert there.counts([UNITS]) == {}
+    assert there.cheapest_counts([UNITS]) == {}
     assert proves(there, whole(UNITS, 0)) == []
 
 
@@ -211,14 +211,14 @@ def test_copies_and_items_that_are_taken_are_paid_once_each() -> None:
     for item, counts, cost in ((1, {1: 1, 2: 1}, 5), (3, {0: 2, 1: 1, 2: 1}, 9)):
         measure = Measure([2, 1, 1], item)
         bound = CountBound(cutting)
-        assert bound.counts([measure]) == counts
+        assert bound.cheapest_counts([measure]) == counts
         assert proves(bound, whole(measure, cost)) == []
         assert better(bound, whole(measure, cost + 1)) == counts
     circle = flows("1*>0", "0*>1", start={1: 1})
     measure = Measure([1, 1], 3)
     bound = CountBound(circle)
-    assert bound.counts([measure]) == {0: 1}
-    assert not bound.none()  # also where copies are not counted
+    assert bound.cheapest_counts([measure]) == {0: 1}
+    assert not bound.is_infeasible()  # also where copies are not counted
     assert proves(CountBound(circle), whole(measure, 4)) == []
     assert better(CountBound(circle), whole(measure, 5)) == {0: 1}
     reading = flows("3*>0", "3*>1", start={3: 2}, targets=(0, 1))
@@ -229,33 +229,33 @@ def test_copies_and_items_that_are_taken_are_paid_once_each() -> None:
 
 def test_a_circle_does_not_make_itself() -> None:
     circle = CountBound(flows("1*>0", "0*>1"))
-    assert circle.none()
-    assert circle.counts([UNITS]) is None
+    assert circle.is_infeasible()
+    assert circle.cheapest_counts([UNITS]) is None
     costs = Measure([1, 1, 5])
     bound = CountBound(flows("1*>0", "0*>1", ">0"))
-    assert bound.none() is False
-    assert bound.counts([costs]) == {2: 1}
+    assert bound.is_infeasible() is False
+    assert bound.cheapest_counts([costs]) == {2: 1}
     assert proves(bound, whole(costs, 5)) == []
     assert better(bound, whole(costs, 6)) == {2: 1}
     used_up = CountBound(flows("1>0", "0>1"))
-    assert used_up.none()
+    assert used_up.is_infeasible()
 
 
 def test_some_action_of_each_set_is_asked_for() -> None:
     ways = flows(">0", "100>0", "101>0")
     costs = Measure([1, 3, 2])
-    assert CountBound(ways).counts([costs]) == {0: 1}
+    assert CountBound(ways).cheapest_counts([costs]) == {0: 1}
     bound = CountBound(ways, [[1, 2]])
-    assert bound.counts([costs]) == {2: 1}
+    assert bound.cheapest_counts([costs]) == {2: 1}
     assert proves(bound, whole(costs, 2)) == []
-    assert CountBound(ways, [[1], [2]]).counts([costs]) == {1: 1, 2: 1}
+    assert CountBound(ways, [[1], [2]]).cheapest_counts([costs]) == {1: 1, 2: 1}
 
 
 def test_a_level_counts_only_where_those_before_are_as_good() -> None:
     ways = flows(">0", "100>0", "101>0")
     first, second = Measure([1, 1, 2]), Measure([3, 2, 1])
     bound = CountBound(ways)
-    assert bound.counts([first, second]) == {1: 1}
+    assert bound.cheapest_counts([first, second]) == {1: 1}
     assert proves(bound, whole(first, 1), whole(second, 2)) == []
     assert proves(bound, whole(first, 1), whole(second, 4)) == [{1: 1}, {0: 1}]
     assert bound.proved <= 1  # what is proved of the second level is no bound on the first
@@ -282,32 +282,38 @@ def test_what_is_cheaper_and_too_much_as_it_is_hides_nothing() -> None:
         return Fraction(3, 2) * (counts.get(0, 0) + counts.get(1, 0))
 
     level, asked = Level(Measure([1, 1, 0], 0, total, [0, 0, -1]), Fraction(2), 2), list[Counts]()
-    CountBound(flows(">0", ">3", "3 3>0"), levels=[level]).every([whole(Measure([3, 1, 0]), 3)], asked.append)
+    CountBound(flows(">0", ">3", "3 3>0"), levels=[level]).visit_counts(
+        [whole(Measure([3, 1, 0]), 3)], asked.append
+    )
     assert asked == [{0: 1}]
 
 
 def test_what_costs_nothing_may_be_executed_as_often_as_wanted() -> None:
     bound = CountBound(flows(">3", "3>0", "3>1", targets=(0, 1)))
     free = Measure([0, 1, 1])
-    assert bound.counts([free, UNITS]) == {0: 2, 1: 1, 2: 1}
+    assert bound.cheapest_counts([free, UNITS]) == {0: 2, 1: 1, 2: 1}
     assert proves(bound, whole(free, 2)) == []
     assert better(bound, whole(free, 3), whole(UNITS, 4)).keys() == {0, 1, 2}
 
 
 def test_how_often_a_plan_as_good_can_execute_each_action() -> None:
     cutting = flows(">3", "3>0", "3>1", targets=(0, 1))
-    assert CountBound(cutting).caps(whole(UNITS, 4)) == [2, 1, 1]
-    assert CountBound(cutting).caps(whole(UNITS, 5)) == [3, 1, 1]
-    assert CountBound(cutting).caps(whole(Measure([0, 1, 1]), 3)) == [None, 2, 2]
+    assert CountBound(cutting).max_counts(whole(UNITS, 4)) == [2, 1, 1]
+    assert CountBound(cutting).max_counts(whole(UNITS, 5)) == [3, 1, 1]
+    assert CountBound(cutting).max_counts(whole(Measure([0, 1, 1]), 3)) == [None, 2, 2]
     reading = flows(">3", "3*>0", "3*>1", targets=(0, 1))
-    assert CountBound(reading).caps(whole(UNITS, 4)) == [2, 2, 2]  # one execution more, of any
+    assert CountBound(reading).max_counts(whole(UNITS, 4)) == [2, 2, 2]  # one execution more, of any
     with pytest.raises(Stopped):
-        CountBound(cutting, expired=lambda: True).caps(whole(UNITS, 4))
+        CountBound(cutting, expired=lambda: True).max_counts(whole(UNITS, 4))
 
 
 def test_it_stops_when_time_is_up() -> None:
     bound = CountBound(flows("1*>0", "0*>1", ">0"), expired=lambda: True)
-    for ask in (bound.none, lambda: bound.counts([UNITS]), lambda: bound.prove([whole(UNITS, 1)], bool)):
+    for ask in (
+        bound.is_infeasible,
+        lambda: bound.cheapest_counts([UNITS]),
+        lambda: bound.prove([whole(UNITS, 1)], bool),
+    ):
         with pytest.raises(Stopped):
             ask()
     asked: list[Counts] = []
@@ -329,31 +335,31 @@ def test_it_stops_after_many_parts_and_where_floats_lead_nowhere(monkeypatch: py
     with pytest.raises(Stopped):
         proves(CountBound(flows(">0")), whole(costs, 4))
     monkeypatch.setattr(WholeProgram, "solve", lambda *_: Solved(None, -math.inf))
-    assert not CountBound(flows("0*>0")).none()
+    assert not CountBound(flows("0*>0")).is_infeasible()
     with pytest.raises(Stopped):
         proves(CountBound(flows(">0")), whole(costs, 1))
 
 
 def test_how_many_executions_there_can_be_in_all() -> None:
     limited = flows("3>0", "3>1", start={3: 4})
-    assert CountBound(limited).most_executions() == 4
-    assert CountBound(limited, (), [({0: 2, 1: 2}, 5, False, False)]).most_executions() == 2
-    assert CountBound(flows(">0")).most_executions() is None
-    assert CountBound(limited, (), [({0: 1}, 5, True, False)]).most_executions() is None  # no plan at all
+    assert CountBound(limited).max_executions() == 4
+    assert CountBound(limited, (), [({0: 2, 1: 2}, 5, False, False)]).max_executions() == 2
+    assert CountBound(flows(">0")).max_executions() is None
+    assert CountBound(limited, (), [({0: 1}, 5, True, False)]).max_executions() is None  # no plan at all
 
 
 def test_more_than_a_few_executions_are_found_as_well() -> None:
     eggs = flows(">3", *(f"3>{n}" for n in range(10, 22)), targets=tuple(range(10, 22)))
     for actions in ((), range(13)):
         bound = CountBound(eggs, derivation=actions)
-        assert bound.counts([Measure([1] * 13)]) == {0: 12, **dict.fromkeys(range(1, 13), 1)}
+        assert bound.cheapest_counts([Measure([1] * 13)]) == {0: 12, **dict.fromkeys(range(1, 13), 1)}
 
 
 def test_counts_that_are_found_are_not_those_of_a_known_plan() -> None:
     ways = flows(">0", ">1", "100>0", targets=(0, 1))
     # that each is executed a little would do if it were not asked whether it is executed at all
-    assert CountBound(ways, excluded_counts=[{0: 1, 1: 1}]).counts([UNITS]) == {1: 1, 2: 1}
-    assert CountBound(ways).counts([Measure([1, 1, 2])]) == {0: 1, 1: 1}
+    assert CountBound(ways, excluded_counts=[{0: 1, 1: 1}]).cheapest_counts([UNITS]) == {1: 1, 2: 1}
+    assert CountBound(ways).cheapest_counts([Measure([1, 1, 2])]) == {0: 1, 1: 1}
 
 
 def test_it_is_proved_that_there_is_no_plan(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -364,7 +370,7 @@ def test_it_is_proved_that_there_is_no_plan(monkeypatch: pytest.MonkeyPatch) -> 
         return len(asked) == 9
 
     bound = CountBound(flows("3>0", "3>1", start={3: 2}))
-    bound.none_is_left(Measure([1, 1]), is_better)
+    bound.prove_infeasible(Measure([1, 1]), is_better)
     assert (asked[0], sorted(map(sorted, map(dict.items, asked)))) == (
         {0: 1},  # the fewest first
         [[(0, 1)], [(0, 1), (1, 1)], [(0, 2)]],
@@ -372,12 +378,12 @@ def test_it_is_proved_that_there_is_no_plan(monkeypatch: pytest.MonkeyPatch) -> 
     assert bound.proved == 0  # what is proved is of another measure
     for found in (bound, CountBound(flows(">0"))):  # as often as wanted
         with pytest.raises(BetterError):
-            found.none_is_left(Measure([1, 1]), lambda _: True)
-    CountBound(flows("1>0", ">2")).none_is_left(Measure([1, 1]), is_better)
+            found.prove_infeasible(Measure([1, 1]), lambda _: True)
+    CountBound(flows("1>0", ">2")).prove_infeasible(Measure([1, 1]), is_better)
     asked.clear()
     monkeypatch.setattr(count_bound, "PLANS", PLANS._replace(uncapped_nodes=5))
     with pytest.raises(Stopped):
-        CountBound(flows(">0", ">2", targets=(0, 2))).none_is_left(Measure([1, 1]), is_better)
+        CountBound(flows(">0", ">2", targets=(0, 2))).prove_infeasible(Measure([1, 1]), is_better)
     assert asked[0] == {0: 1, 1: 1}
 
 
@@ -394,7 +400,7 @@ def hold(made: Flows, first: Level, second: Level | None = None, limits: Sequenc
     """Hold what is asked for in the course of a proof against all that there is."""
     known = [(c, taken) for c, taken in possible(made) if within(limits, c)]
     as_good = [c for c, taken in known if cost_of(first.measure, c, taken) <= first.cost]
-    caps = CountBound(made, (), limits).caps(first) if as_good else []
+    caps = CountBound(made, (), limits).max_counts(first) if as_good else []
     for action, most in enumerate(caps):
         assert most is None or most >= max(counts.get(action, 0) for counts in as_good)
     better = [c for c, taken in known if cost_of(first.measure, c, taken) < first.cost]
@@ -410,7 +416,7 @@ def hold(made: Flows, first: Level, second: Level | None = None, limits: Sequenc
     for derivation in ((), runnable(made)):
         bound = CountBound(made, (), limits, derivation)
         if as_good:
-            found = bound.counts([first.measure])
+            found = bound.cheapest_counts([first.measure])
             assert found is not None
             assert sum(first.measure.costs[a] * n for a, n in found.items()) <= first.max_cost
         asked = proves(bound, *levels)
@@ -439,7 +445,7 @@ def test_all_counts_that_may_be_better_are_asked_for_and_no_others(seed: int) ->
         first, second = (random_measure(choose, len(made.asks)) for _ in range(2))
         some, other = Fraction(choose.randint(1, _LONGEST + 1)), Fraction(choose.randint(1, 9))
         limits = [random_limit(choose, len(made.asks)) for _ in range(choose.choice((0, 0, 1, 2)))]
-        if CountBound(made).none():
+        if CountBound(made).is_infeasible():
             assert not possible(made)
         elif some > _LONGEST:
             hold(made, level_of(first, some), None, limits)
@@ -473,7 +479,7 @@ def test_all_that_is_as_good_and_not_known_is_asked_for(seed: int) -> None:
         ]
         asked: list[Counts] = []
         derivation = choose.choice(((), runnable(made)))
-        CountBound(made, (), (), derivation, [limit], beside).every(levels, asked.append)
+        CountBound(made, (), (), derivation, [limit], beside).visit_counts(levels, asked.append)
         assert sorted(sorted(c.items()) for c in asked) == sorted(sorted(c.items()) for c in as_good)
 
 

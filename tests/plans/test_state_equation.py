@@ -35,7 +35,7 @@ def test_rounded_sums_hold_of_all_plans(seed: int) -> None:
     made = Flows(made.asks, made.uses, adds, made.items, made.start, made.targets)
     equation = strengthened(made, {a: choose.randint(1, 3) for a in range(len(made.asks))})
     for counts, _ in possible(made):
-        for _, row, least in equation.rounded:
+        for _, row, least in equation.rounded_rows:
             assert sum(n * counts.get(a, 0) for a, n in row.items()) >= least
 
 
@@ -53,7 +53,7 @@ def test_what_comes_by_threes_is_rounded_up_whichever_alternative_makes_it() -> 
 def test_a_level_that_is_kept_counts_in_rounded_sums() -> None:
     pairs = crafts(({}, {0: 2}), ({}, {0: 3}), wanted={0: 7})
     equation = StateEquation(pairs, (), (), lambda: False)
-    equation.keep(Level(Measure([0, 1]), Fraction(1), 1))
+    equation.add_level(Level(Measure([0, 1]), Fraction(1), 1))
     assert equation.strengthen({0: 1}, 1).bound == 2
 
 
@@ -61,4 +61,4 @@ def test_a_remainder_is_left_where_an_action_asks_for_more_than_it_uses_up() -> 
     # enriching asks for three, uses up one, and makes what is wanted
     enriching = Flows([{0: 3}, {}], [{0: 1}, {}], [{1: 1}, {0: 1}], [[], []], {}, {1: 4})
     assert [(r.object, r.action, r.copies) for r in enriching.remainders] == [(0, 0, 2)]
-    assert CountBound(enriching).plain_counts([Measure([1, 1])]) == {0: 4, 1: 6}
+    assert CountBound(enriching).cheapest_counts_by_equation([Measure([1, 1])]) == {0: 4, 1: 6}

@@ -23,7 +23,7 @@ NONE = Solved(None, math.inf)
 def program(columns: int, *rows: tuple[dict[int, int], int], upper: dict[int, int] | None = None) -> Any:
     made = WholeProgram(columns)
     for parts, least in rows:
-        made.row(parts, least)
+        made.add_row(parts, least)
     for column, most in (upper or {}).items():
         made.cap(column, most)
     return made
@@ -42,9 +42,9 @@ def test_a_relaxed_solution_and_the_bound_that_it_proves(capfd: pytest.CaptureFi
 
 def test_the_parts_of_an_open_row_are_told_later() -> None:
     later = program(2)
-    assert (later.open_row((1, 0), 2), later.row_of(0)) == (0, ({1: 0, 0: 0}, 2))
-    assert later.row({0: 1}, 0) == 1
-    later.change(0, {0: 4})
+    assert (later.add_open_row((1, 0), 2), later.row_of(0)) == (0, ({1: 0, 0: 0}, 2))
+    assert later.add_row({0: 1}, 0) == 1
+    later.change_row(0, {0: 4})
     assert later.solve({0: 1}) == Solved([0.5, 0.0], Fraction(1, 2))
 
 
@@ -74,19 +74,19 @@ def test_no_solution_is_proved_by_weights_and_never_taken_on_trust() -> None:
 def test_rows_and_columns_may_come_and_change_between_solutions() -> None:
     growing = program(2, ({0: 1, 1: 1}, 3))
     assert growing.solve({0: 2, 1: 3}).bound == 6
-    assert growing.row({0: -1}, -1) == 1
+    assert growing.add_row({0: -1}, -1) == 1
     assert growing.solve({0: 2, 1: 3}).bound == 8
-    growing.change(1, {0: -1})
-    growing.change(1, {})
+    growing.change_row(1, {0: -1})
+    growing.change_row(1, {})
     assert growing.solve({0: 2, 1: 3}) == Solved([3.0, 0.0], Fraction(6))
-    growing.change(0, {0: 1})
+    growing.change_row(0, {0: 1})
     assert growing.solve({0: 2, 1: 1}).bound == 6
-    growing.change(0, {0: 1, 1: 1})
-    growing.change(1, {0: -2, 5: 9})  # a row keeps its columns
+    growing.change_row(0, {0: 1, 1: 1})
+    growing.change_row(1, {0: -2, 5: 9})  # a row keeps its columns
     assert growing.solve({0: 2, 1: 3}) == Solved([0.5, 2.5], Fraction(17, 2))
-    assert growing.column(1, 4) == 2
+    assert growing.add_column(1, 4) == 2
     assert growing.columns == 3
-    assert growing.row({2: 1, 1: -1}, 0) == 2
+    assert growing.add_row({2: 1, 1: -1}, 0) == 2
     assert growing.solve({0: 2, 1: 3, 2: 1}) == Solved([0.5, 2.5, 2.5], Fraction(11))
     assert growing.solve({2: -1}).bound == -4
 
@@ -115,7 +115,7 @@ def test_whole_optima_and_relaxed_ones_after_them() -> None:
     assert best is not None
     assert sum(costs[c] * best[c] for c in costs) > 0
     late = WholeProgram(1, lambda: True)
-    late.row({0: 2}, 3)
+    late.add_row({0: 2}, 3)
     assert late.whole_optimum({0: 1}) is None
 
 
@@ -241,7 +241,7 @@ def test_a_relaxation_ends_when_time_is_up(monkeypatch: pytest.MonkeyPatch) -> N
     rows = [{n: 1, n + 1: 2, (7 * n) % 30: 1} for n in range(29)]
     made = [WholeProgram(30, asked) for asked in (lambda: False, expired)]
     for one, (number, parts) in product(made, enumerate(rows)):
-        one.row(parts, 1 + number % 3)
+        one.add_row(parts, 1 + number % 3)
     costs = {n: 1 + n % 5 for n in range(30)}
     bound = made[0].solve(costs).bound
     with pytest.raises(Stopped):

@@ -15,7 +15,7 @@ import pytest
 
 from foon_asp.network import StandInTable, UnitPrices
 from foon_asp.problem import Problem, StandIns
-from foon_asp.proof import rule_meaning, ruled, verifier
+from foon_asp.proof import compiled_rules, rule_meaning, verifier
 from tests.proof.by_hand import (
     BAKE,
     END,
@@ -155,54 +155,54 @@ FORGED: dict[str, Forged] = {
     "load_certificate: it has more than … letters": Forged(
         (text(not_covered=json.dumps(["é" * 100], ensure_ascii=False)) + " " * 16_000_000).encode(), PLAIN
     ),
-    "once: a key stands twice in one object": Forged(text(tree='null, "tree": null'), PLAIN),
-    "no_float: found the number …, expected whole numbers, and fractions in quotes": Forged(
+    "unique_keys: a key stands twice in one object": Forged(text(tree='null, "tree": null'), PLAIN),
+    "refuse_float: found the number …, expected whole numbers, and fractions in quotes": Forged(
         text(costs="1.5"), PLAIN
     ),
     "read_certificate: it has more than … letters or … brackets": Forged(
         json.dumps(certificate(not_covered=["[" * 1_000_001])), PLAIN
     ),
     # --- the frame
-    "read_frame: expected an object with the keys of a certificate": Forged([], PLAIN, KIND),
-    "read_frame: expected the format …": plain(format="a song"),
-    "read_frame: expected version … of the format": plain(version=99),
-    "read_frame: expected the keys …": plain(more=1),
-    "read_frame: the seal does not match: something was changed": Forged(
+    "check_header: expected an object with the keys of a certificate": Forged([], PLAIN, KIND),
+    "check_header: expected the format …": plain(format="a song"),
+    "check_header: expected version … of the format": plain(version=99),
+    "check_header: expected the keys …": plain(more=1),
+    "check_header: the seal does not match: something was changed": Forged(
         certificate() | {"seal": "0"}, PLAIN
     ),
-    "read_frame: not a claim about level …": plain(level=2),
-    "read_frame: …: not the one that the certificate is about": plain(digests={**DIGESTS, "kitchen": "0"}),
+    "check_header: not a claim about level …": plain(level=2),
+    "check_header: …: not the one that the certificate is about": plain(digests={**DIGESTS, "kitchen": "0"}),
     # --- kinds and order of values
     "read_object: expected an object": plain(proof=["weights"], stays=KIND),
     "read_object: expected the keys …": plain(digests={**DIGESTS, "more": ""}),
     "read_list: expected a list": plain(objective={"units": "units"}),
-    "_names: expected names": plain(not_covered=[1], stays=KIND),
-    "_names: expected names in order, each of them once": plain(not_covered=["b", "a"]),
-    "_names: a name has half of a letter (a surrogate)": plain(rules=forbid(["\ud800"])),
+    "_read_names: expected names": plain(not_covered=[1], stays=KIND),
+    "_read_names: expected names in order, each of them once": plain(not_covered=["b", "a"]),
+    "_read_names: a name has half of a letter (a surrogate)": plain(rules=forbid(["\ud800"])),
     "read_numbers: expected ids of the network": plain(tree=[False]),
     "read_numbers: an id stands twice": plain(**ANY, tree=[0, 0], costs=[2]),
     "read_numbers: expected ids in order": plain(cuts=[BOTH[::-1]]),
     "read_number: expected …": plain(at=LOST, **NO_TREE, cuts=[LOST_CUT], proof={"hopeless": False}),
-    "read_named: …: expected what has a weight by its number, and the weight": plain(
+    "read_rows: …: expected what has a weight by its number, and the weight": plain(
         proof={"weights": [[0, ["1"], 2]]}
     ),
-    "read_named: …: expected weights in order, each once": plain(proof={"weights": [[0, ["1/2"]]] * 2}),
+    "read_rows: …: expected weights in order, each once": plain(proof={"weights": [[0, ["1/2"]]] * 2}),
     "read_rules: it has more than … rules": plain(rules=forbid(f"sing {number:03}" for number in range(101))),
     "read_rules: a rule is unknown": plain(rules=[{"rule": "sing"}], stays=KIND),
     "read_rules: a value of a rule is of another kind": plain(rules=at_most(True)),
     "read_rules: expected rules in order, each of them once": plain(rules=forbid(["sing", "dance"])[::-1]),
     "read_rules: rules of the user's own stand twice": plain(rules=[own([[[3], []]]), own()]),
-    "_own: a file of rules has no printable name": plain(rules=[own(name="mine.lp\nverified")]),
-    "_own: a text of rules does not have its digest": plain(rules=[own(sha256="0" * 64)]),
+    "_check_user_rules: a file of rules has no printable name": plain(rules=[own(name="mine.lp\nverified")]),
+    "_check_user_rules: a text of rules does not have its digest": plain(rules=[own(sha256="0" * 64)]),
     "read_pair: expected …": plain(rules=[own([[[3]]])], stays=KIND),
-    "_own: a limit is no whole number": plain(rules=[own((), [[{"1": [3]}, True]])]),
-    "_own: a limit counts what is no whole number above zero": plain(
+    "_check_user_rules: a limit is no whole number": plain(rules=[own((), [[{"1": [3]}, True]])]),
+    "_check_user_rules: a limit counts what is no whole number above zero": plain(
         **bound("3", cuts=[]),
         rules=[own((), [[{"-1": [0, 2]}, -2]])],
         proof=weigh(limits=[[1, ["3/2"]]]),
     ),
-    "_own: a limit counts a unit twice": plain(rules=[own((), [[{"1": [3], "2": [3]}, 1]])]),
-    "_goal: a goal is not the node of its id": plain(goals=[{"id": END, "node": "another"}]),
+    "_check_user_rules: a limit counts a unit twice": plain(rules=[own((), [[{"1": [3], "2": [3]}, 1]])]),
+    "_read_goal: a goal is not the node of its id": plain(goals=[{"id": END, "node": "another"}]),
     "read_rational: expected a number such as 3/2": plain(proof=weigh("one"), stays=KIND),
     "read_rational: expected a fraction in lowest terms": plain(proof=weigh("2/2")),
     "read_rational: a fraction has more than … digits": plain(**ANY, proof=weigh("1/1" + "0" * 2500)),
@@ -212,68 +212,74 @@ FORGED: dict[str, Forged] = {
     "__init__: an objective stands twice": plain(
         objective=["units", "units"], costs=[1, 1], proof=weigh(["1", "1"])
     ),
-    "_complete: a claim needs …, but none are given": plain(WORDS, UNRATED, **LIKELY, **UNPROVED),
-    "_complete: a unit has none of the … that a claim needs": plain(
+    "_require_complete: a claim needs …, but none are given": plain(WORDS, UNRATED, **LIKELY, **UNPROVED),
+    "_require_complete: a unit has none of the … that a claim needs": plain(
         at=replace(PLAIN, unit_prices=POURED_PRICE), **bound("0", objective=["price"]), **UNPROVED
     ),
-    "_rates: a rate is above 1": plain(at=rated(2), **SURE, costs=["2"]),
-    "_complete: one of the … is below 0": plain(KIND, rated(-2), **SURE, costs=["-2"]),
-    "_rates: a unit that never succeeds is repeated forever": plain(
+    "_required_rates: a rate is above 1": plain(at=rated(2), **SURE, costs=["2"]),
+    "_require_complete: one of the … is below 0": plain(KIND, rated(-2), **SURE, costs=["-2"]),
+    "_required_rates: a unit that never succeeds is repeated forever": plain(
         KIND, NEVER, **bound("0", objective=["attempts"])
     ),
     "__init__: a constraint has no printable name": plain(not_covered=["mine.lp\nverified: all of it"]),
     "__init__: expected goals, each of them once": plain(goals=[], tree=[], costs=[0], **UNPROVED),
     # --- the claim
-    "claim: a tree is given, but no objective": plain(objective=[], costs=[], **UNPROVED),
-    "claim: the tree costs …, not what is stated": plain(costs=[0]),
-    "claim: costs are given, but no tree": plain(**ANY, tree=None),
-    "claim: there cannot be a tree": plain(
+    "verify_claim: a tree is given, but no objective": plain(objective=[], costs=[], **UNPROVED),
+    "verify_claim: the tree costs …, not what is stated": plain(costs=[0]),
+    "verify_claim: costs are given, but no tree": plain(**ANY, tree=None),
+    "verify_claim: there cannot be a tree": plain(
         at=LOST, **NO_TREE | {"objective": ["units"]}, cuts=[LOST_CUT], proof=HOPELESS
     ),
-    "claim: a bound is given where there is nothing to bound": plain(
+    "verify_claim: a bound is given where there is nothing to bound": plain(
         at=LOST, **NO_TREE, bound=["9"], cuts=[LOST_CUT], proof=HOPELESS
     ),
-    "claim: expected the tree that is optimal": plain(tree=None, costs=None, **UNPROVED),
-    "claim: the bound of an optimal tree is what it costs": plain(bound=["1"]),
-    "claim: expected objectives": plain(**bound("0", objective=[]), **UNPROVED),
-    "claim: the bound is false": plain(
+    "verify_claim: expected the tree that is optimal": plain(tree=None, costs=None, **UNPROVED),
+    "verify_claim: the bound of an optimal tree is what it costs": plain(bound=["1"]),
+    "verify_claim: expected objectives": plain(**bound("0", objective=[]), **UNPROVED),
+    "verify_claim: the bound is false": plain(
         "no proof shows such a bound, as the tree costs less; were one accepted, it would show here",
         claim="bound",
         bound=["2"],
     ),
-    "claim: expected the claim optimal, bound or infeasible": plain(claim="best"),
-    "claim: a cut is not used by the proof": plain(cuts=CUTS),
+    "verify_claim: expected the claim optimal, bound or infeasible": plain(claim="best"),
+    "verify_claim: a cut is not used by the proof": plain(cuts=CUTS),
     # --- the tree
-    "_tree: unit … of the tree lacks an input when it is its turn": plain(tree=[BAKE]),
-    "_tree: the tree does not make every goal": plain(tree=[], costs=[0], **UNPROVED),
-    "_figures: a tree that never succeeds is no better than another": plain(
+    "_execute: unit … of the tree lacks an input when it is its turn": plain(tree=[BAKE]),
+    "_execute: the tree does not make every goal": plain(tree=[], costs=[0], **UNPROVED),
+    "_written_costs: a tree that never succeeds is no better than another": plain(
         at=NEVER, objective=["success"], costs=["0"], proof=branch(HOPELESS, weigh(), unit=POUR)
     ),
-    "_figures: the success rate of the tree is too long a number to be written": plain(
+    "_written_costs: the success rate of the tree is too long a number to be written": plain(
         at=CHAIN, **LIKELY | {"costs": [str(NINES**8)]}, **UNPROVED, tree=[*range(8)]
     ),
-    "_figures: what the tree costs is too long a number to be written": plain(
+    "_written_costs: what the tree costs is too long a number to be written": plain(
         KIND, LONG, objective=["attempts"], tree=[0, 1], costs=["1"], **UNPROVED
     ),
-    "_keep: the tree …": plain(rules=at_most(0)),
+    "_require_kept_rules: the tree …": plain(rules=at_most(0)),
     # --- the proof
-    "_prove: the weights do not add up to enough": plain(**BAKED),
-    "_prove: a cut called hopeless is crossed": plain(**NO_TREE, proof=HOPELESS),
-    "_prove: expected weights, a hopeless cut, a broken rule or a branch": plain(proof={**LEAF, "more": 1}),
-    "_prove: a rule called broken is kept": plain(**NO_TREE, rules=[BEFORE], cuts=[], proof={"broken": 0}),
-    "_prove: a branch is taken twice": plain(proof=branch(branch(LEAF, LEAF, unit=POUR), weigh(), unit=POUR)),
-    "_prove: expected a proof for what is without the dear": plain(
+    "_check_proof: the weights do not add up to enough": plain(**BAKED),
+    "_check_proof: a cut called hopeless is crossed": plain(**NO_TREE, proof=HOPELESS),
+    "_check_proof: expected weights, a hopeless cut, a broken rule or a branch": plain(
+        proof={**LEAF, "more": 1}
+    ),
+    "_check_proof: a rule called broken is kept": plain(
+        **NO_TREE, rules=[BEFORE], cuts=[], proof={"broken": 0}
+    ),
+    "_check_proof: a branch is taken twice": plain(
+        proof=branch(branch(LEAF, LEAF, unit=POUR), weigh(), unit=POUR)
+    ),
+    "_check_proof: expected a proof for what is without the dear": plain(
         proof={"dear": [{"unit": 1}], **LEAF}, stays=KIND
     ),
     "_above_cutoff: nothing is too dear": plain(proof={"dear": [], **LEAF, "others": LEAF}),
     "_above_cutoff: what is dear is decided twice": plain(
         proof={"dear": [{"unit": 1}] * 2, **LEAF, "others": LEAF}
     ),
-    "_rounded: a multiple is stated for another objective": plain(
+    "_round_up: a multiple is stated for another objective": plain(
         proof=weigh("1", multiples={"inputs": "1"})
     ),
-    "_rounded: a multiple is not above zero": plain(proof=weigh("1", multiples={"units": "-1"})),
-    "_rounded: a cost is not a multiple of what is stated": plain(
+    "_round_up: a multiple is not above zero": plain(proof=weigh("1", multiples={"units": "-1"})),
+    "_round_up: a cost is not a multiple of what is stated": plain(
         **bound("2"), proof=weigh("1", multiples={"units": "2"})
     ),
     # the two ends cost 2; with a weight below zero on the cut that both units cross they seem to cost 3
@@ -288,32 +294,34 @@ FORGED: dict[str, Forged] = {
     "limit_at: a rule that limits nothing is given a weight": plain(
         rules=[BEFORE], proof=weigh("1", limits=[[0, ["1"]]]), stays=KIND
     ),
-    "_packed: unit or item … carries more than it costs": plain(**BAKED, proof=weigh("2")),
-    "_crossing: cut … holds neither a goal nor what a used unit needs": plain(
+    "_check_cost_partition: unit or item … carries more than it costs": plain(**BAKED, proof=weigh("2")),
+    "_crossing_members: cut … holds neither a goal nor what a used unit needs": plain(
         **NO_TREE, cuts=[[RARE]], proof=HOPELESS
     ),
-    "_members: a cut holds a kitchen item": plain(
+    "_landmark: a cut holds a kitchen item": plain(
         "the item is a member that costs nothing, so no weight fits on the cut; this says so at once",
         cuts=[[START, END]],
     ),
-    "_branch: a branch on an item where items cost nothing": plain(proof=branch(LEAF, LEAF, item=START)),
-    "_read: expected one part of a weight for each objective": plain(proof=weigh(["1", "1"])),
-    "_read: expected rates of motions in a weight, and none of 0 or 1": plain(
+    "_read_branch_member: a branch on an item where items cost nothing": plain(
+        proof=branch(LEAF, LEAF, item=START)
+    ),
+    "_read_amount: expected one part of a weight for each objective": plain(proof=weigh(["1", "1"])),
+    "_read_amount: expected rates of motions in a weight, and none of 0 or 1": plain(
         **LIKELY, cuts=[BOTH], proof=weigh({"99/100": "1"})
     ),
     # --- measures
-    "_measure: a measure has no name of its own": plain(measures=measured("Mine")),
-    "_measure: expected the text of rules": plain(KIND, **FIVE, measures=measured(rules=5)),
-    "_measure: the digest of a measure is not that of its rules": plain(
+    "_read_measure: a measure has no name of its own": plain(measures=measured("Mine")),
+    "_read_measure: expected the text of rules": plain(KIND, **FIVE, measures=measured(rules=5)),
+    "_read_measure: the digest of a measure is not that of its rules": plain(
         **FIVE, measures=measured(sha256="0")
     ),
-    "_measure: a unit costs less than 0 by a measure": plain(
+    "_read_measure: a unit costs less than 0 by a measure": plain(
         **FIVE, measures=measured(costs={"-1": [1], "5": [0, 2]})
     ),
-    "_measure: a unit has two costs by a measure": plain(
+    "_read_measure: a unit has two costs by a measure": plain(
         **FIVE, measures=measured(costs={"6": [0], "5": [0, 2]})
     ),
-    "_measured: the cost of a unit by a measure is not stated": plain(
+    "_stated_cost: the cost of a unit by a measure is not stated": plain(
         KIND, **FIVE, measures=measured(costs={"5": [0]})
     ),
     # --- limits
@@ -325,7 +333,7 @@ FORGED: dict[str, Forged] = {
         cuts=[[3]],
         proof=weigh({"1/2": "15000", "1/101": "15000", "1/202": "-14999"}),
     ),
-    "_spend_on: its fractions add up to numbers that are too long": plain(
+    "_spend_on_fractions: its fractions add up to numbers that are too long": plain(
         **ANY, cuts=[[END]] * 9, proof=weigh(*map(odd, range(9)))
     ),
     "_spend: to check it takes more than … steps": plain(
@@ -351,9 +359,9 @@ PLACES: dict[str, Forged] = {
 NO_CHECKS = {
     "require: otherwise",
     "read_certificate: not JSON: …",
-    "refusing_depth: branches nested too deeply",
+    "refuse_deep_nesting: branches nested too deeply",
 }
-NEXT = "_cost_by: an objective is unknown"
+NEXT = "_cost_by_objective: an objective is unknown"
 SLOW = "_spend: to check it takes more than … steps"
 
 
@@ -491,14 +499,14 @@ PARTS = {
         plain(**NO_TREE, **UNPROVED),
     ),
     "what a rule removes is no member": Part(
-        "[(proof, nobody, self.ruled.removed)]",
-        "[(proof, nobody, frozenset(range(3)))]",
+        "[(proof, no_members, self.ruled.removed)]",
+        "[(proof, no_members, frozenset(range(3)))]",
         plain(**NO_TREE, proof=HOPELESS),
     ),
     # baking on what is mixed is right where something is mixed
     "what a rule bars is told from the branch": Part(
-        "barred = without.union(*(self._barred(number, used, without) for number in self.ruled.barred))",
-        "barred = without.union(*(self._barred(p, used, frozenset({1})) for p in self.ruled.barred))",
+        "excluded = without.union(*(self._barred_units(n, used, without) for n in self.ruled.barred))",
+        "excluded = without.union(*(self._barred_units(n, used, frozenset({1})) for n in self.ruled.barred))",
         plain(
             **NO_TREE,
             rules=[{"rule": "before", "earlier_motion": "mix", "later_motion": "bake"}, *forbid(["pour"])],
@@ -537,29 +545,29 @@ PARTS = {
         rule_meaning,
     ),
     "things of one unit are counted each": Part(
-        "amounts[thing] + amount if thing in amounts else amount",
+        "amounts[member] + amount if member in amounts else amount",
         "amount",
         plain(
             at=replace(NEVER, utensils=frozenset({"start", "end"})),
             rules=[{"rule": "at_most_utensils", "max_utensils": 1}],
         ),
-        ruled,
+        compiled_rules,
     ),
     "of each set a tree has a unit": Part(
         "made.issuperset(needs)",
         "not made.isdisjoint(needs)",
         plain(rules=[INTERMEDIATE], **MIXED),
-        ruled,
+        compiled_rules,
     ),
     # where nothing is dug, mixing is right
     "a claim bars the last of its units where the others are used": Part(
-        "if len(one) == 1",
-        "if one",
+        "if len(remaining) == 1",
+        "if remaining",
         plain(**NO_TREE, rules=[own([[[1, 3], []]]), *forbid(["pour"])], cuts=[BOTH], proof=HOPELESS),
         rule_meaning,
     ),
     "no unit of the tree is barred": Part(
-        "any(units & barred for", "any(others & barred for", plain(rules=[BEFORE], **MIXED), ruled
+        "any(units & barred for", "any(others & barred for", plain(rules=[BEFORE], **MIXED), compiled_rules
     ),
 }
 
@@ -568,4 +576,4 @@ PARTS = {
 def test_a_part_that_is_wrong_lets_a_forged_certificate_pass(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    require_right(PARTS[name], tmp_path, monkeypatch, rule_meaning, ruled, verifier)
+    require_right(PARTS[name], tmp_path, monkeypatch, rule_meaning, compiled_rules, verifier)

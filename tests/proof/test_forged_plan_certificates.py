@@ -180,46 +180,48 @@ FORGED: dict[str, Forged] = {
     "idle: what a unit can add is called unreached": plain(
         **NO_TREE, unreached=[DOUGH, RARE, GOLD], proof=[BREAD_ONCE]
     ),
-    "_members: a cut holds a kitchen item": plain(
+    "_landmark: a cut holds a kitchen item": plain(
         **NO_TREE,
         cuts=[[FLOUR, DOUGH, BREAD]],
         proof=[CUT],
         stays="an item is a member that brings what the cut does, and costs nothing",
     ),
     # --- the plan
-    "_tree: unit … of the plan lacks a copy of an input at step …": plain(
+    "_execute: unit … of the plan lacks a copy of an input at step …": plain(
         tree=[1], costs=[1], proof=[BREAD_ONCE]
     ),
-    "_tree: a copy of a goal is not there in the end": plain(tree=[], costs=[0], proof=[{}]),
+    "_execute: a copy of a goal is not there in the end": plain(tree=[], costs=[0], proof=[{}]),
     # --- rules
-    "_keep_counts: the plan has a unit that a rule removes": plain(rules=forbid(["bake"])),
-    "_keep_counts: the plan lacks what a rule asks for": plain(
+    "_require_kept_rules_by_counts: the plan has a unit that a rule removes": plain(rules=forbid(["bake"])),
+    "_require_kept_rules_by_counts: the plan lacks what a rule asks for": plain(
         rules=[{"rule": "require_motion", "required_motion": "buy"}]
     ),
-    "_keep_counts: the plan exceeds what a rule limits": plain(rules=at_most(1)),
-    "_prove: expected a proof for each objective": plain(proof=[PROOF, PROOF]),
-    "_prove: a rule allows no plan": at_least("9", {}, rules=SPOILED, unreached=[]),
-    "_prove: a proof is given where a rule allows no plan": plain(
+    "_require_kept_rules_by_counts: the plan exceeds what a rule limits": plain(rules=at_most(1)),
+    "_check_proof: expected a proof for each objective": plain(proof=[PROOF, PROOF]),
+    "_check_proof: a rule allows no plan": at_least("9", {}, rules=SPOILED, unreached=[]),
+    "_check_proof: a proof is given where a rule allows no plan": plain(
         **{**NO_TREE, "unreached": []},
         rules=SPOILED,
         proof=[5],
     ),
     # --- the proof
-    "_prove_node: expected weights of conditions or a branch": plain(proof=[proving(more=[])]),
-    "_cheapest: member … brings more than it costs, without end": plain(**NO_TREE, **MEAL, proof=[fed(1)]),
-    "kept: a unit that never succeeds is not compared": at_least(
+    "_check_leaf: expected weights of conditions or a branch": plain(proof=[proving(more=[])]),
+    "_least_reduced_cost: member … brings more than it costs, without end": plain(
+        **NO_TREE, **MEAL, proof=[fed(1)]
+    ),
+    "cost_lower_bound: a unit that never succeeds is not compared": at_least(
         {"3/4": "1"}, {"balance": [[BREAD, {"3/4": "1"}]]}, objective=["success"], at=NEVER, stays=KIND
     ),
     "_read_rounded: expected sums of conditions": plain(rounded=[{"more": [], "balance": [[BREAD, "1/2"]]}]),
     "_read_rounded: what is rounded has a weight that is not above zero": plain(
         rounded=[{"balance": [[BREAD, "-1/2"]]}]
     ),
-    "_round: a sum is rounded that is whole": plain(rounded=[{"balance": [[BREAD, "1"]]}], stays=KIND),
+    "_round_row: a sum is rounded that is whole": plain(rounded=[{"balance": [[BREAD, "1"]]}], stays=KIND),
     "_require_enough: the weights do not add up to enough": plain(proof=[BREAD_ONCE]),
     "__init__: an objective that is not before this one is given a weight": at_least(
         "0", {"levels": [[0, "1"]]}
     ),
-    "_cross: cut … holds neither a goal nor what the unit asks for": at_least(
+    "_add_cut: cut … holds neither a goal nor what the unit asks for": at_least(
         "3", proving(weights=[[0, "1"]]), cuts=[[RARE, GOLD]]
     ),
     "balance: what never runs out has no balance": plain(
@@ -228,22 +230,22 @@ FORGED: dict[str, Forged] = {
     # --- items
     "__init__: an amount of a goal is not above 1": plain(items=items([[SALT, 1]], (), [[BREAD, 1]])),
     "__init__: an amount is wanted of what is no goal": plain(items=items([[SALT, 1]], (), [[DOUGH, 2]])),
-    "_amounts: expected …": plain(at=DUG, items=items([[SALT, 1]], (), (), [[2.0, [], [[GOLD, 2]]]])),
-    "_amounts: the amounts of units are not those of the data": plain(
+    "_read_amounts: expected …": plain(at=DUG, items=items([[SALT, 1]], (), (), [[2.0, [], [[GOLD, 2]]]])),
+    "_read_amounts: the amounts of units are not those of the data": plain(
         items=items([[SALT, 1]], (), (), [[2, [], [[GOLD, 2]]]])
     ),
-    "_supply: what never runs out needs no supply": plain(proof=[proving(supply=[[FLOUR, 0, "1"]])]),
-    "_copies: expected … in order, each of them once": plain(items=items([[SALT, 0], [SALT, 1]])),
-    "_stock: expected kitchen items in stock": plain(items=items([[SALT, 1], [DOUGH, 0]])),
-    "_stays_stated: expected …": plain(items=items([[SALT, 1]], [["salt", 0]])),
-    "_stays_stated: expected labels, and then nodes": plain(
+    "_add_supply: what never runs out needs no supply": plain(proof=[proving(supply=[[FLOUR, 0, "1"]])]),
+    "_read_copies: expected … in order, each of them once": plain(items=items([[SALT, 0], [SALT, 1]])),
+    "_read_stock: expected kitchen items in stock": plain(items=items([[SALT, 1], [DOUGH, 0]])),
+    "_read_stays: expected …": plain(items=items([[SALT, 1]], [["salt", 0]])),
+    "_read_stays: expected labels, and then nodes": plain(
         items=items([[SALT, 1]], [[SALT, False], ["salt", False]])
     ),
-    "_stays_stated: expected each of them once, in order": plain(
+    "_read_stays: expected each of them once, in order": plain(
         items=items([[SALT, 1]], [["salt", True], ["salt", False]])
     ),
-    "_stays_stated: expected ids of nodes that stay or go": plain(items=items([[SALT, 1]], [[99, False]])),
-    "_stays_stated: a label has letters that cannot be printed": plain(
+    "_read_stays: expected ids of nodes that stay or go": plain(items=items([[SALT, 1]], [[99, False]])),
+    "_read_stays: a label has letters that cannot be printed": plain(
         items=items([[SALT, 1]], [["salt\nverified: all of it", False]])
     ),
 }
@@ -369,7 +371,7 @@ PARTS = {
         "below + min(Fraction(1), (coefficient - below) / fraction)", "Fraction(below)", rounded("4", "2")
     ),
     "copies in stock need not be made": Part(
-        "wanted - self._initial(o, weight)",
+        "wanted - self._initial_copies(o, weight)",
         "wanted",
         at_least("1", {"balance": [[SALT, "1"]]}, **goals(PLAIN, SALT)),
     ),
@@ -389,13 +391,13 @@ PARTS = {
         at_least("2", floured("2"), **FLOURED),
     ),
     "a bound is rounded up to what executions cost": Part(
-        'if objective == "attempts" else every',
-        "if objective == 0 else every",
+        'elif objective == "attempts":',
+        "elif objective == 0:",
         at_least("3", {"balance": [[DOUGH, "4/3"], [BREAD, "17/6"]]}, objective=["attempts"]),
     ),
     "a bound is rounded up to what units are priced at": Part(
-        'every = self.prices if objective == "price" else []',
-        'every = self.prices if objective != "price" else []',
+        'if objective == "price":',
+        'if objective != "price":',
         at_least("1", BY_PRICE, objective=["price"], at=PRICED),
     ),
     "each copy that is taken crosses a cut": Part(
@@ -469,20 +471,20 @@ PARTS = {
         at_least("9", branch(0, BREAD_OFTEN, {})),
     ),
     "a bound is rounded up and no further": Part(
-        "math.ceil(bound.get(at, Fraction(0)) * parts)",
-        "math.ceil(bound.get(at, Fraction(0)) * parts) + 1",
+        "math.ceil(bound.get(key, Fraction(0)) * denominator)",
+        "math.ceil(bound.get(key, Fraction(0)) * denominator) + 1",
         at_least("3", PROOF),
     ),
     "where there is nothing to be bounded, a bound is above nothing": Part(
         "enough = self.sign(bound) > 0", "enough = self.sign(bound) >= 0", plain(**NO_TREE, proof=[{}])
     ),
     "a cut before a unit says nothing where it is not executed": Part(
-        "            self._demand(weight, -1)\n",
+        "            self._add_to_constant(weight, -1)\n",
         "            pass\n",
         at_least("3", proving(before=[[0, 4, "1"]]), cuts=[[GOLD]]),
     ),
     "a member of a cut may cross it": Part(
-        "self._bring(self.used if member < len(check.network) else self.executed, member, weight, -1)",
+        "self._add_coefficient(coefficients, member, weight, -1)",
         "pass",
         at_least("9", {"weights": [[0, "9"]]}, cuts=[[BREAD]]),
     ),
@@ -492,8 +494,8 @@ PARTS = {
         at_least("9", BREAD_OFTEN),
     ),
     "what is left of a limit is taken from the bound": Part(
-        "self._demand(weight, -limit.max_sum)",
-        "self._demand(weight, 0)",
+        "self._add_to_constant(weight, -limit.max_sum)",
+        "self._add_to_constant(weight, 0)",
         at_least(
             "3",
             {"limits": [[0, "1"]], "balance": [[DOUGH, "2"], [BREAD, "4"]]},

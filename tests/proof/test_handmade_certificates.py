@@ -630,9 +630,9 @@ def test_files_have_their_limits(tmp_path: Path) -> None:
 
 
 def test_what_is_taken_on_trust_is_found() -> None:
-    assert verifier.trusted({"rules": [*forbid(["pour"]), claiming()]}) == claiming()
-    assert verifier.trusted({"rules": forbid(["pour"])}) is None
-    assert verifier.trusted({}) is None
+    assert verifier.trusted_claims({"rules": [*forbid(["pour"]), claiming()]}) == claiming()
+    assert verifier.trusted_claims({"rules": forbid(["pour"])}) is None
+    assert verifier.trusted_claims({}) is None
     text = "cost(mine,U,1) :- unit(U)."
     measures = {"mine": {"rules": text, "sha256": sha(text), "costs": {"0": [POUR]}}}
     assert accepted(**bound("0"), measures=measures).trusted == ()
@@ -655,7 +655,7 @@ def test_a_claim_is_about_units_of_one_set_and_none_of_another_and_what_they_com
     two = claiming(limits=[[{"1": [BAKE], "2": [MIX]}, 2]])
     assert accepted(**POURED, rules=[two], cuts=[[END]], proof=weigh("1")).claim == "optimal"
     # without pouring there is no tree; the limit of the rule after the library's is the next but one
-    rules = sorted([*forbid(["pour"]), two], key=verifier.canonical)
+    rules = sorted([*forbid(["pour"]), two], key=verifier.canonical_json)
     proof = weigh("1", "2", limits=[[2, ["1"]]])
     values: Content = {**NO_TREE, "rules": rules, "cuts": CUTS}
     assert accepted(**values, proof=proof).claim == "infeasible"
@@ -708,7 +708,7 @@ def test_what_a_limit_does_not_speak_of_carries_what_it_costs() -> None:
     for weight in ("0", "-1"):
         said = "limits: a weight is not above zero"
         assert refusal(**bound("0", **values), proof=weigh("1", limits=[[0, [weight]]])) == said
-    no_pouring = sorted([*rules, *forbid(["pour"])], key=verifier.canonical)
+    no_pouring = sorted([*rules, *forbid(["pour"])], key=verifier.canonical_json)
     baked: Content = {"rules": no_pouring, "cuts": [[END]], "proof": weigh("3/2", limits=[[1, ["1/2"]]])}
     assert accepted(**bound("1", **baked)).claim == "bound"
 

@@ -51,8 +51,8 @@ RIGHT = {"_minus_log_sign: products of rates are too close to be told apart in r
 UNKNOWN = {
     "_check_stand_ins: …": "stand-ins",
     "__init__: an objective is unknown": "the objective unit",
-    "_measured: the cost of a unit by a measure is not stated": "measures of your own",
-    "_prove: a rule called broken is kept": "the rule before",
+    "_stated_cost: the cost of a unit by a measure is not stated": "measures of your own",
+    "_check_proof: a rule called broken is kept": "the rule before",
     "what a rule bars is told from the branch": "the rule before",
     "no unit of the tree is barred": "the rule before",
     "a step costs nothing": "the rule require_intermediate",
@@ -69,17 +69,17 @@ UNREAD = (
     "read_certificate: it has more than … letters or … brackets",
     "read_rules: it has more than … rules",
     "read_rational: a fraction has more than … digits",
-    "_figures: the success rate of the tree is too long a number to be written",
-    "_spend_on: its fractions add up to numbers that are too long",
-    "_own: a file of rules has no printable name",
-    "_goal: a goal is not the node of its id",
+    "_written_costs: the success rate of the tree is too long a number to be written",
+    "_spend_on_fractions: its fractions add up to numbers that are too long",
+    "_check_user_rules: a file of rules has no printable name",
+    "_read_goal: a goal is not the node of its id",
     "__init__: a constraint has no printable name",
 )
 
 
 @pytest.fixture
 def judge() -> Judge:
-    checker = proved_checker.program()
+    checker = proved_checker.find_checker()
     if checker is None:
         pytest.skip("the proved checker is not built: make verified")
 
@@ -89,8 +89,8 @@ def judge() -> Judge:
         except (RefusedError, KeyError, TypeError):
             rules = ()
         text = content if isinstance(content, str) else json.dumps(content)
-        data = subject.described(rules, range(len(subject.network.objects)))
-        return proved_checker.judge(checker, data, text)
+        data = subject.canonical_data(rules, range(len(subject.network.objects)))
+        return proved_checker.run_checker(checker, data, text)
 
     return judged
 
@@ -307,7 +307,7 @@ def test_verify_asks_both_checkers(cli: Cli, judge: Judge, tmp_path: Path) -> No
 def test_verify_says_where_the_proved_checker_is_not_built(
     cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(proved_checker, "program", lambda: None)
+    monkeypatch.setattr(proved_checker, "find_checker", lambda: None)
     proof = tmp_path / "proof.json"
     cli("solve", "--goal", "ice", "--certificate", str(proof))
     ran = cli("verify", str(proof), "--proved")

@@ -16,8 +16,8 @@ from foon_asp.certificate.own_rules import check_with_clingo
 from foon_asp.deadline import Deadline
 from foon_asp.network import NetworkBuilder, ObjectNode, Source, UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
-from foon_asp.proof.rule_meaning import LIBRARY, OWN, Meaning, looked_at
-from foon_asp.proof.ruled import Ruled
+from foon_asp.proof.compiled_rules import CompiledRules
+from foon_asp.proof.rule_meaning import LIBRARY, OWN, Meaning, sources_read
 from foon_asp.proof.verifier import LimitError, RefusedError, read_certificate, verify
 from foon_asp.text.line_parser import parse_node
 from tests.oracle import task_trees
@@ -153,7 +153,7 @@ def test_what_is_barred_by_claims_of_units() -> None:
         found = arrays.ruled.fault(frozenset(units), every - units)
         assert found == (None if units == {1} else fault)
     assert arrays.ruled.fault(frozenset({2, 3, 4, 5, 6, 7}), every - {2, 3, 4, 5, 6, 7}) is None
-    assert looked_at(own, arrays.problem.network) is None
+    assert sources_read(own, arrays.problem.network) is None
     alone = {**own, "claims": claims[:2]}
     assert arrays_of(arrays.problem, alone).ruled.barred == {}
 
@@ -180,9 +180,12 @@ def test_which_constraints_only_remove_units_and_which_look_at_places() -> None:
         *("motion_only_with", "never_heated"),
     }
     network = small("mix: a > b", "cut: b > end").network
-    assert looked_at({"rule": "only_sources", "allowed": ["cut.txt", "no.txt"]}, network) == [[], ["cut.txt"]]
-    assert looked_at({"rule": "at_least_videos", "least_videos": 1}, network) == [[], []]
-    assert looked_at({"rule": "forbid_motion", "forbidden_motion": "cut"}, network) is None
+    assert sources_read({"rule": "only_sources", "allowed": ["cut.txt", "no.txt"]}, network) == [
+        [],
+        ["cut.txt"],
+    ]
+    assert sources_read({"rule": "at_least_videos", "least_videos": 1}, network) == [[], []]
+    assert sources_read({"rule": "forbid_motion", "forbidden_motion": "cut"}, network) is None
 
 
 def test_what_is_wrong_with_a_tree_is_named() -> None:
@@ -191,11 +194,11 @@ def test_what_is_wrong_with_a_tree_is_named() -> None:
 
     ways = [[units(0, 1)]], [[units(1), units(0)], [units(2)]]
     things = [(units(0), Fraction(1)), (units(1, 2), Fraction(2)), (units(0), Fraction(3))]
-    ruled = Ruled(
+    ruled = CompiledRules(
         [
             Meaning(units(7), barred=lambda used, without: used | without),
             Meaning(units(8), [*ways], things, Fraction(4)),
-            Meaning(never=True, things=[(units(2), Fraction(1, 2))], max_sum=Fraction(1)),
+            Meaning(never=True, counted_sets=[(units(2), Fraction(1, 2))], max_sum=Fraction(1)),
         ],
         10,
         20,
@@ -203,7 +206,7 @@ def test_what_is_wrong_with_a_tree_is_named() -> None:
     assert ruled.removed == {7, 8}
     assert (ruled.never, set(ruled.barred)) == ({2}, {0})
     assert [limit.remaining({0, 21, 5}) for limit in ruled.limits.values()] == [-2, 1]
-    assert ruled.bars(units(1), units(2)) == {0: {1, 2}}
+    assert ruled.barred_units(units(1), units(2)) == {0: {1, 2}}
     for tree, fault in (
         (units(0, 7), "has unit 7, which a rule removes"),
         (units(0), "lacks what a rule asks for"),

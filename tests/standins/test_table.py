@@ -77,7 +77,7 @@ def test_the_table_the_search_and_the_verifier_agree_on_prices() -> None:
         network = builder.build()
         prices = NodePrices(network, table)
         for served, node in enumerate(network.objects):
-            found = prices.of(served)
+            found = prices.servers_of(served)
             for serving, other in enumerate(network.objects):
                 if serving != served:
                     expected = table.dissimilarity(other, node)

@@ -43,4 +43,4 @@ def forbid(motions: Iterable[str] = (), labels: Iterable[str] = ()) -> list[dict
     """Give the rules that forbid motions and labels of objects, in order."""
     rules = [{"rule": "forbid_motion", "forbidden_motion": motion} for motion in motions]
     rules += [{"rule": "forbid_object", "forbidden_object": label} for label in labels]
-    return sorted(rules, key=verifier.canonical)
+    return sorted(rules, key=verifier.canonical_json)
