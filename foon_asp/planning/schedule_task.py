@@ -72,8 +72,9 @@ def schedule_task(
 ) -> ScheduleTask:
     """Return the scheduling task of an executable plan.
 
-    ``replay`` says which copy of an item each step takes. ``resources`` has the durations of motions, agents and
-    tools. Raises :class:`UserError` if the durations have too many digits to be added up in ticks.
+    ``replay`` says which copy of an item each step takes. ``resources`` are the durations of motions, the
+    agents and the tools. Raises :class:`UserError` if the durations have too many digits to be added up in
+    ticks.
     """
     seconds = [Fraction(resources.durations[unit.motion].seconds) for unit in plan]
     ticks_per_second = lcm(*(duration.denominator for duration in seconds))
