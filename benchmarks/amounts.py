@@ -37,7 +37,7 @@ from foon_asp.asp.optimum import solve
 from foon_asp.certificate import certify_outcome
 from foon_asp.deadline import Deadline
 from foon_asp.hypergraph.highs_run import silent_highs
-from foon_asp.plans.bulk_order import bulk_order
+from foon_asp.plans.execution_order import bulk_order
 from foon_asp.plans.flows import flows_of
 from foon_asp.plans.whole_program import Stopped
 from foon_asp.problem import Problem, reach, units_relevant_to_plans

@@ -22,6 +22,7 @@ from foon_asp.network import (
     Source,
     StandInTable,
     UnitPrices,
+    is_starting,
     starting_kitchen,
 )
 from foon_asp.problem import DEFAULT_RULE, Changes, Names, Number, Problem, UnitPricesNamed
@@ -29,12 +30,12 @@ from foon_asp.problem.progress import OnProgress, Progress
 from foon_asp.rules.measure import read_measures
 from foon_asp.standins.table_file import read_stand_ins
 from foon_asp.text.assumed_goals import LAST, goal_entry, last_goals
-from foon_asp.text.data_folder import STARTING, Data, find_data
+from foon_asp.text.data_folder import Data, find_data
 from foon_asp.text.line import LineError
 from foon_asp.text.line_parser import parse_node
-from foon_asp.text.node_lookup import GoalError
 from foon_asp.text.reading import reporting_to, size_of
 from foon_asp.text.stated_amounts import StatedAmounts, counted_amounts
+from foon_asp.text.unknown_node import GoalError
 from foon_asp.warning import warn
 
 
@@ -215,7 +216,7 @@ def build(
         making = [unit for unit, outputs in enumerate(network.outputs) if outputs]
         last = {making[-1]: Source("the units", making[-1] + 1)} if making else {}
         entries = tuple(entry for entry in last_goals(network, last)) if goals is None else ()
-        starting = kitchen is None or kitchen == str(STARTING)
+        starting = is_starting(kitchen)
         at_hand = starting_kitchen(network).nodes if starting else frozenset[int]()
         data = Data(network, at_hand, (), entries, None, frozenset(utensils), (), 0, None, starting)
         data = data._replace(

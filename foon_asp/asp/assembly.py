@@ -15,7 +15,7 @@ from foon_asp.errors import UserError
 from foon_asp.problem import Problem
 from foon_asp.resources import encodings_folder
 from foon_asp.rules.passed_constraint import Constraint, LibraryUse, find_constraint
-from foon_asp.text.json_value import json_line
+from foon_asp.text.json_text import json_line
 
 if TYPE_CHECKING:  # clingo, which is not needed where no rule is added
     from foon_asp.encoding.encoding import Encoding

@@ -10,9 +10,9 @@ from foon_asp.asp.outcome import Outcome
 from foon_asp.asp.prepared import prepare
 from foon_asp.asp.program import Program
 from foon_asp.asp.settings import Settings
+from foon_asp.encoding.cost_scales import Scales
 from foon_asp.encoding.fact_writer import write_facts, write_least_penalty, write_objectives, write_times
 from foon_asp.encoding.number_checks import CHECKS_FILE
-from foon_asp.encoding.scales import Scales
 from foon_asp.encoding.stated import Stated
 from foon_asp.errors import UserError
 from foon_asp.plans.most_executions import executions_as_good, most_executions

@@ -27,8 +27,8 @@ from foon_asp.hypergraph import (
 from foon_asp.problem import Contradiction, Objective, Problem, first_tree, levels, reach, relevant_units
 
 if TYPE_CHECKING:  # often clingo need not run
+    from foon_asp.encoding.cost_scales import Scales
     from foon_asp.encoding.run import Run
-    from foon_asp.encoding.scales import Scales
     from foon_asp.rules.ready_made import ReadyMade
     from foon_asp.rules.rules import Rules
 
@@ -72,7 +72,7 @@ class Prepared:
     @cached_property
     def scales(self) -> "Scales":
         """The scales by which costs of the units become integers of clingo; raises like :class:`Scales`."""
-        from foon_asp.encoding.scales import Scales  # noqa: PLC0415
+        from foon_asp.encoding.cost_scales import Scales  # noqa: PLC0415
 
         return Scales(self.problem, self.units, self.levels)
 
@@ -203,7 +203,7 @@ def prepare(
             "give one of them another name"
         )
     if sum(not objective.row.whole for objective in objective_levels) > 1:
-        from foon_asp.encoding.scales import require_one_rounded  # noqa: PLC0415 (few questions have two)
+        from foon_asp.encoding.cost_scales import require_one_rounded  # noqa: PLC0415 (few questions have two)
 
         require_one_rounded(problem, objective_levels)
     deadline = settings.begun

@@ -21,9 +21,9 @@ from foon_asp.hypergraph.landmark_cuts import Cuts
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 
 if TYPE_CHECKING:  # clingo and what it is given, which often is not needed
+    from foon_asp.encoding.cost_scales import Scales
     from foon_asp.encoding.grounded import Grounded
     from foon_asp.encoding.run import Run
-    from foon_asp.encoding.scales import Scales
 
 _NOT_ASKED = (
     "clingo has no statistics: the question was settled without its search; --reduce none leaves it to clingo"

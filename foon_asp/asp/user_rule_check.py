@@ -9,9 +9,9 @@ from foon_asp.asp.prepared import Prepared
 from foon_asp.asp.settings import Settings
 from foon_asp.asp.soft import soft_rules
 from foon_asp.encoding.clingo_run import run
+from foon_asp.encoding.cost_scales import Scales
 from foon_asp.encoding.fact_writer import write_facts, write_least_penalty, write_times, write_tree
 from foon_asp.encoding.run import Run
-from foon_asp.encoding.scales import Scales
 from foon_asp.errors import UserError
 from foon_asp.plans.built_for_plans import require_built_for_plans, require_rules_of_plans
 from foon_asp.problem import Objective, Problem, levels, reach

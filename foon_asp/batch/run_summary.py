@@ -9,7 +9,7 @@ from foon_asp.batch.answer_row import AnswerRow
 from foon_asp.network import counted
 from foon_asp.results.document import Document, Unserialized
 from foon_asp.results.table import Block
-from foon_asp.text.json_value import schema_name
+from foon_asp.text.json_text import schema_name
 
 
 class RunSummary(Document, frozen=True, kw_only=True, tag=schema_name("batch")):

@@ -19,7 +19,7 @@ from foon_asp.hypergraph.proof_tree import Broken, Cases, CostFixing, Hopeless, 
 from foon_asp.problem import Costs, Objective, OptionalData, Problem
 from foon_asp.proof import verifier
 from foon_asp.proof.verify_plan import verify_any
-from foon_asp.text.json_value import json_line
+from foon_asp.text.json_text import json_line
 
 
 class NotBestError(Exception):

@@ -12,7 +12,7 @@ from foon_asp.encoding.own_encodings import ENCODING_FILES, question_encoding
 from foon_asp.hypergraph.exact_optimum import Limit
 from foon_asp.problem import Objective, Problem, reach
 from foon_asp.rules.passed_constraint import Constraint
-from foon_asp.rules.rule_kind import Kind
+from foon_asp.rules.rule_analysis import Kind
 from foon_asp.rules.rules import Rules
 
 

@@ -15,9 +15,9 @@ from foon_asp.comparison.many import makeable
 from foon_asp.dataset import Dataset
 from foon_asp.dataset.item_options import items_for
 from foon_asp.errors import UserError
-from foon_asp.network import Network
+from foon_asp.network import STARTING, Network, is_starting
 from foon_asp.problem import ITEMS, ContainerRule, Problem
-from foon_asp.text.data_folder import STARTING, find_data
+from foon_asp.text.data_folder import find_data
 from foon_asp.text.object_list import read_object_list
 
 
@@ -123,7 +123,7 @@ def data_digest(named: dict[str, Any], question_files: Iterable[Path]) -> str:
     others = {"level", "lenient", "measures", "stand_ins", "stand_in_tables", "similar"}
     files = find_data(**{key: value for key, value in named.items() if key not in others})
     total = hashlib.sha256(b"stand-ins" if named["stand_ins"] else b"")
-    if files.kitchen in {None, STARTING}:  # its answers are not those of an empty kitchen
+    if is_starting(files.kitchen):  # its answers are not those of an empty kitchen
         total.update(str(STARTING).encode())
     for file in (
         *files.network,

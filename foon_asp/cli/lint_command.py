@@ -27,7 +27,7 @@ from foon_asp.questions.result import Ending
 from foon_asp.report.rule_page import rule_page
 from foon_asp.results.plain_values import plain
 from foon_asp.text.diagnostics import Diagnostic
-from foon_asp.text.json_value import json_text
+from foon_asp.text.json_text import json_text
 from foon_asp.text.plain_file import plain_text, read_content
 from foon_asp.whole_file import utf_8, write_whole
 

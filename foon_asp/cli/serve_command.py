@@ -14,7 +14,7 @@ from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
 from foon_asp.problem import parse_objectives
-from foon_asp.questions.common_options import settings_of
+from foon_asp.questions.python_options import settings_of
 from foon_asp.questions.question import Question
 
 _FILE_OPTIONS = {"output": "-o", "format_": "--format"}

@@ -13,7 +13,7 @@ from foon_asp.problem import Objective, Problem
 from foon_asp.proof.verifier import Subject
 from foon_asp.results.plain_values import plain, read_plain
 from foon_asp.searches import Search, SearchSettings
-from foon_asp.text.json_value import Json, json_line
+from foon_asp.text.json_text import Json, json_line
 
 
 def read_comparison(row: Json) -> Comparison:

@@ -29,6 +29,7 @@ from foon_asp.network import (
     StandInTable,
     UnitPrices,
     counted,
+    is_starting,
     pattern_at_level,
 )
 from foon_asp.problem import (
@@ -45,7 +46,7 @@ from foon_asp.problem import (
     container_rule,
     unrated_text,
 )
-from foon_asp.text.data_folder import STARTING, Data, amounts_of_items, kitchen_item_warning
+from foon_asp.text.data_folder import Data, amounts_of_items, kitchen_item_warning
 from foon_asp.text.node_lookup import entry_names, find_goal, node_of_entry, nodes_of_entry
 from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.warning import warn
@@ -370,7 +371,7 @@ class Dataset:
         if kitchen is None and not adding and not without:
             return dataset
         only = None
-        if isinstance(kitchen, Path | str) and kitchen in {STARTING, str(STARTING)}:
+        if kitchen is not None and is_starting(kitchen):
             dataset = dataset.with_starting_kitchen()
         elif isinstance(kitchen, Path):
             items = read_object_list(kitchen)

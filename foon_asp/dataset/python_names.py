@@ -9,8 +9,10 @@ from foon_asp.network import MAX_AMOUNT, FunctionalUnit, Network, ObjectNode, Un
 from foon_asp.problem import Names, Number, UnitPricesNamed, success_rate, unit_price
 from foon_asp.text.line import LineError
 from foon_asp.text.line_parser import parse_name
-from foon_asp.text.node_lookup import GoalError, NodeNames, Wording, find_goal
+from foon_asp.text.node_lookup import find_goal
+from foon_asp.text.node_names import NodeNames
 from foon_asp.text.object_list import ListedObject
+from foon_asp.text.unknown_node import GoalError, Wording
 
 
 class Named(Protocol):

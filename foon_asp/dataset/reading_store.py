@@ -7,11 +7,10 @@ from foon_asp.dataset.kitchen import Kitchen
 from foon_asp.dataset.prices import DataPrices
 from foon_asp.dataset.store_source import StoreSource
 from foon_asp.errors import UserError
-from foon_asp.network import network_at_level, pattern_at_level, starting_kitchen
+from foon_asp.network import is_starting, network_at_level, pattern_at_level, starting_kitchen
 from foon_asp.problem import unrated_remarks
 from foon_asp.store.store import Store
 from foon_asp.text.data_folder import (
-    STARTING,
     Data,
     DataFiles,
     kitchen_item_warning,
@@ -60,7 +59,7 @@ def read_stored(files: DataFiles, level: int) -> Dataset:
         goals_from="" if files.goals else store.goals_from,
         stock=store.stock,
     )
-    if files.kitchen == STARTING or (files.kitchen is None and not store.has_kitchen):
+    if is_starting(files.kitchen) and not (files.kitchen is None and store.has_kitchen):
         dataset = dataset.with_starting_kitchen()
     elif files.kitchen:
         kitchen = read_object_list(files.kitchen, warnings)

@@ -17,7 +17,7 @@ from foon_asp.network import Contents, ObjectNode, counted
 from foon_asp.text.data_folder import kitchen_file
 from foon_asp.text.diagnostics import InputError, Rename, Severity
 from foon_asp.text.formats import format_of
-from foon_asp.text.json_value import Json
+from foon_asp.text.json_text import Json
 from foon_asp.text.line import Line, NameKind, StateLine, line_names
 from foon_asp.text.object_list import read_object_list
 from foon_asp.text.plain_file import split_lines

@@ -5,8 +5,8 @@ from fractions import Fraction
 from functools import cache, lru_cache
 from pathlib import PurePath
 
+from foon_asp.encoding.cost_scales import Scales
 from foon_asp.encoding.exact import LARGEST
-from foon_asp.encoding.scales import Scales
 from foon_asp.errors import UserError
 from foon_asp.escapes import encodable
 from foon_asp.network import ObjectNode, Source

@@ -9,7 +9,7 @@ from dataclasses import replace
 from foon_asp.hypergraph.goal_graph import GoalGraph
 from foon_asp.hypergraph.h_values import compute_h_values
 from foon_asp.hypergraph.lazy_h_max import lazy_h_max_test
-from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
+from foon_asp.hypergraph.reduced_cost_fixing import neighbourhood
 from foon_asp.hypergraph.restricted_subproblem import restricted_subproblem
 
 _FIRST = 500  # actions nearest to the required sets, among which an extension is looked for

@@ -1,7 +1,7 @@
 """Gap-bounded subproblems: all units of trees up to a cost, for questions with rules on trees."""
 
 import math
-from collections.abc import Callable, Collection, Container, Iterable
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass
 
 from foon_asp.hypergraph import tuning
@@ -9,8 +9,7 @@ from foon_asp.hypergraph.exact_costs import ExactCosts
 from foon_asp.hypergraph.goal_graph import GoalGraph
 from foon_asp.hypergraph.h_values import compute_h_values
 from foon_asp.hypergraph.landmark_cuts import Cuts, landmark_cuts
-from foon_asp.hypergraph.lazy_h_max import lazy_h_max_test
-from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
+from foon_asp.hypergraph.reduced_cost_fixing import neighbourhood, reduced_cost_fixing, reduced_costs_of
 from foon_asp.problem import Problem
 
 
@@ -176,33 +175,3 @@ class Subproblem:
     def _units(self, actions: Iterable[int]) -> frozenset[int]:
         """Return the units among actions."""
         return frozenset(a for a in actions if a < self.graph.units)
-
-
-def reduced_costs_of(costs: ExactCosts, cuts: Cuts) -> Callable[[int], int]:
-    """Return a function from an action to its reduced cost by a cost partition."""
-    reduced_costs = cuts.reduced_costs
-    return lambda action: reduced_costs[action] if action in reduced_costs else costs(action)
-
-
-def reduced_cost_fixing(
-    graph: GoalGraph,
-    allowed: Container[int],
-    reduced_cost: Callable[[int], int],
-    limit: int,
-    expired: Callable[[], bool],
-) -> set[int]:
-    """Return a superset of the allowed actions that irredundant trees of reduced cost up to ``limit`` have.
-
-    Alternates h_max from the initial objects with distances to the goals, until no more actions are excluded.
-    Where time is up, the superset is larger.
-    """
-    remaining = neighbourhood(
-        graph, allowed, reduced_cost, limit, reachable=lazy_h_max_test(graph, allowed, reduced_cost)
-    )
-    while not expired():
-        derivations = compute_h_values(graph, remaining, reduced_cost, h_add=False)
-        narrowed = neighbourhood(graph, remaining, reduced_cost, limit, derivations.h_actions)
-        if len(narrowed) == len(remaining):
-            break
-        remaining = narrowed
-    return remaining

@@ -6,12 +6,11 @@ from typing import NamedTuple
 
 from foon_asp.hypergraph.action_landmarks import relevant_given_landmarks
 from foon_asp.hypergraph.dominance import undominated_actions
-from foon_asp.hypergraph.gap_bounded_subproblem import reduced_cost_fixing, reduced_costs_of
 from foon_asp.hypergraph.h_values import compute_h_values
 from foon_asp.hypergraph.incumbent_gap import FirstCuts, Gap, Stage
 from foon_asp.hypergraph.incumbent_trees import improve_locally, irredundant_subset
 from foon_asp.hypergraph.landmark_cuts import Cuts, landmark_cuts
-from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
+from foon_asp.hypergraph.reduced_cost_fixing import neighbourhood, reduced_cost_fixing, reduced_costs_of
 from foon_asp.hypergraph.reductions import Reduction
 from foon_asp.hypergraph.task import Task
 

@@ -21,7 +21,7 @@ from foon_asp.hypergraph.h_values import compute_h_values
 from foon_asp.hypergraph.incumbent_gap import Gap, Stage
 from foon_asp.hypergraph.incumbent_trees import irredundant_subset
 from foon_asp.hypergraph.landmark_cuts import Cuts
-from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
+from foon_asp.hypergraph.reduced_cost_fixing import neighbourhood
 from foon_asp.hypergraph.reductions import ALL, Reduction
 from foon_asp.hypergraph.restricted_subproblem import restricted_subproblem
 from foon_asp.hypergraph.solved_goals import SolvedGoals, can_use_solved_goals

@@ -9,7 +9,6 @@ from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.branch_and_bound import Branching
 from foon_asp.hypergraph.cost_partition import CostPartition, CostPartitioning
 from foon_asp.hypergraph.covering import ROUGH_TOLERANCE
-from foon_asp.hypergraph.gap_bounded_subproblem import reduced_cost_fixing
 from foon_asp.hypergraph.greedy_stages import prune_dominated, search_repeatedly
 from foon_asp.hypergraph.h_values import compute_h_values
 from foon_asp.hypergraph.incumbent_gap import Gap, Stage
@@ -20,6 +19,7 @@ from foon_asp.hypergraph.incumbent_trees import (
     trees_by_partition,
 )
 from foon_asp.hypergraph.landmark_relaxation import PARTS
+from foon_asp.hypergraph.reduced_cost_fixing import reduced_cost_fixing
 from foon_asp.hypergraph.reductions import Reduction
 from foon_asp.hypergraph.task import Task
 

@@ -9,7 +9,7 @@ from msgspec import Struct, ValidationError, convert
 
 from foon_asp.errors import UserError
 from foon_asp.text.diagnostics import Diagnostic
-from foon_asp.text.json_value import read_json, schema_name
+from foon_asp.text.json_text import read_json, schema_name
 from foon_asp.text.plain_file import read_content
 
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from foon_asp.linting.habits import content_names
 from foon_asp.linting.linted_files import Copy
 from foon_asp.network import Network, ObjectNode
-from foon_asp.network.near_nodes import slip_between
+from foon_asp.network.slip import slip_between
 
 _SHORT_DISTANCE, _MIDDLE_DISTANCE, MAX_DISTANCE = 2, 8, 25  # units from making to taking
 

@@ -22,7 +22,9 @@ from foon_asp.network.stand_in_table import Edit as Edit
 from foon_asp.network.stand_in_table import StandInTable as StandInTable
 from foon_asp.network.stand_in_table import spelled_alike as spelled_alike
 from foon_asp.network.stand_in_table import spelling_key as spelling_key
+from foon_asp.network.starting_kitchen import STARTING as STARTING
 from foon_asp.network.starting_kitchen import StartingKitchen as StartingKitchen
+from foon_asp.network.starting_kitchen import is_starting as is_starting
 from foon_asp.network.starting_kitchen import starting_kitchen as starting_kitchen
 from foon_asp.network.starting_kitchen import starting_nodes as starting_nodes
 from foon_asp.network.task_tree import TaskTree as TaskTree

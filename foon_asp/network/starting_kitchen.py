@@ -4,12 +4,21 @@ from abc import ABC, abstractmethod
 from collections import defaultdict
 from collections.abc import Collection, Hashable, Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
+from pathlib import Path
 from typing import Generic, NamedTuple, TypeVar
 
 from foon_asp.network.network import Network
 from foon_asp.network.source import Source
 
 File = TypeVar("File", bound=Hashable)
+
+STARTING = Path("@starting")
+"""Stands for the starting kitchen, in place of a file."""
+
+
+def is_starting(kitchen: object) -> bool:
+    """Whether a kitchen is the starting one: none is given (``None``), or ``@starting`` is in its place."""
+    return kitchen is None or (isinstance(kitchen, Path | str) and str(kitchen) == str(STARTING))
 
 
 class RecipeKitchen(NamedTuple):

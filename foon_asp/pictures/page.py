@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.escapes import UNSAFE
-from foon_asp.text.json_value import Json, json_line
+from foon_asp.text.json_text import Json, json_line
 from foon_asp.whole_file import utf_8, write_whole
 
 WEB = Path(__file__).resolve().parent / "web"
@@ -45,7 +45,7 @@ class Page(NamedTuple):
     def html(self) -> str:
         """Return the page as a complete HTML document."""
         light, picture, dark, page = (
-            web_text(f"{name}.css") for name in ("light", "picture", "dark", "page")
+            web_text(f"{name}.css") for name in ("colours_light", "picture", "colours_dark", "page")
         )
         script = (
             '"use strict";\n(() => {\n' + "\n".join(web_text(f"{name}.js") for name in _SCRIPTS) + "})();\n"

@@ -31,7 +31,7 @@ def two_column_page(
 
     ``names`` are the names of the two networks. ``figures`` are rows of cells; the first row is the header.
     """
-    style = web_text("light.css") + web_text("dark.css") + web_text("two_columns.css")
+    style = web_text("colours_light.css") + web_text("colours_dark.css") + web_text("two_columns.css")
     head, *rows = figures
     table = _row_html("th", head) + "".join(_row_html("td", row) for row in rows)
     columns = "".join(f"<p>{letter}: {_escape(name)}</p>" for letter, name in zip("AB", names, strict=True))

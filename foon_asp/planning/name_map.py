@@ -14,9 +14,9 @@ from foon_asp.results.document import AboutGoals
 from foon_asp.results.plain_values import fraction_text
 from foon_asp.results.values import Copies, Mention, Node, Value
 from foon_asp.results.values_of import copies_of, head_of, mention_of, named_node, node_of
-from foon_asp.text.json_layout import check_json
+from foon_asp.text.foon_json_layout import check_json
 from foon_asp.text.json_node import read_node_json
-from foon_asp.text.json_value import read_json, schema_name
+from foon_asp.text.json_text import read_json, schema_name
 from foon_asp.text.plain_file import read_plain_text
 
 KIND = "pddl-map"

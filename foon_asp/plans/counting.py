@@ -9,14 +9,14 @@ from heapq import heappop, heappush
 
 from foon_asp.asp.reporter import Reporter
 from foon_asp.asp.settings import Settings
-from foon_asp.encoding.exact_success import RateScale, rate_scale
 from foon_asp.encoding.own_encodings import ENCODING_FILES, question_encoding
+from foon_asp.encoding.rate_scale import RateScale, rate_scale
 from foon_asp.encoding.run import Run
 from foon_asp.errors import UserError
-from foon_asp.plans.bulk_order import bulk_order, least_copies, plan_of
+from foon_asp.plans.clingo_order import order_executions
 from foon_asp.plans.conditions import Counts, Level, Measure
 from foon_asp.plans.count_bound import BetterError, CountBound
-from foon_asp.plans.execution_order import order_executions
+from foon_asp.plans.execution_order import bulk_order, least_copies, plan_of
 from foon_asp.plans.flows import flows_of
 from foon_asp.plans.plan_question import Plan, PlanQuestion
 from foon_asp.plans.tuning import PLANS
@@ -325,7 +325,7 @@ class Counting:
         if program.own:
             return True
         from foon_asp.encoding import clingo_run, fact_writer  # noqa: PLC0415 (takes clingo along)
-        from foon_asp.encoding.scales import Scales  # noqa: PLC0415
+        from foon_asp.encoding.cost_scales import Scales  # noqa: PLC0415
 
         units = [self.units[a] for a in counts]
         text = fact_writer.write_facts(problem, units, Scales(problem, units), program.looked_at)
@@ -365,7 +365,7 @@ class Counting:
         With ``best``, it searches for the best plan. The run's time and statistics are added to the question.
         """
         from foon_asp.encoding import clingo_run, fact_writer  # noqa: PLC0415 (takes clingo along)
-        from foon_asp.encoding.scales import Scales  # noqa: PLC0415
+        from foon_asp.encoding.cost_scales import Scales  # noqa: PLC0415
 
         question, problem = self._question, self._problem
         units = [self.units[a] for a in times]

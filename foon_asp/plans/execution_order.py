@@ -1,33 +1,196 @@
-"""An order of executions in which some executions precede others."""
+"""Orders for given counts of executions, as runs that repeat one action each.
 
-from graphlib import TopologicalSorter
+Whether each action can be executed as often as counted is a question about firing sequences of a Petri net. A
+run executes an action as often as possible. The search does not branch over runs if one leaves enough copies
+for all executions that wait.
+"""
 
-from foon_asp.plans.plan_question import Plan
-from foon_asp.problem import Problem
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+from foon_asp.plans.conditions import Counts
+from foon_asp.plans.flows import Flows
+from foon_asp.plans.tuning import PLANS
+from foon_asp.plans.whole_program import Stopped
+
+Run = tuple[int, int]
+"""An action, and how often it is executed in a row."""
 
 
-def order_executions(
-    problem: Problem, times: frozenset[tuple[int, ...]], after: frozenset[tuple[int, ...]]
-) -> Plan:
-    """Return executions in topological order, as unit ids.
+def bulk_order(
+    flows: Flows, counts: Counts, start: Mapping[int, int], expired: Callable[[], bool]
+) -> list[Run] | None:
+    """Return runs that execute each action as often as counted; ``None`` if there is no such order.
 
-    ``times`` has pairs of a unit number and its count. An execution is a unit number and its turn, from 1.
-    ``after`` has rows of two executions (four numbers), of which the second has to come first. Of executions
-    that are ready together, smaller ones come first.
+    ``start`` has the initial copies by object. ``expired`` returns whether time is up. Raises
+    :class:`Stopped` if the search neither finds runs nor proves that there are none.
     """
-    predecessors: dict[tuple[int, int], set[tuple[int, int]]] = {
-        (unit, turn): set() for unit, count in times for turn in range(1, count + 1)
-    }
-    for unit, turn, earlier_unit, earlier_turn in after:
-        predecessors[unit, turn].add((earlier_unit, earlier_turn))
-    plan: list[int] = []
-    sorter = TopologicalSorter(predecessors)
-    sorter.prepare()
-    while sorter.is_active():
-        ready = sorted(sorter.get_ready())
-        for unit, _ in ready:
-            unit_id = problem.network.unit_of_number(unit)
-            assert unit_id is not None
-            plan.append(unit_id)
-        sorter.done(*ready)
-    return tuple(plan)
+    if not _may_have_order(flows, counts, start):
+        return None
+    runs = _Search(flows, counts, start, expired, single=False).find_runs()
+    if runs is None and sum(counts.values()) <= PLANS.single_executions:
+        search = _Search(flows, counts, start, expired, single=True)
+        runs = search.find_runs()
+        if runs is None and search.is_exhausted:
+            return None
+    if runs is None:
+        raise Stopped
+    return runs
+
+
+def least_copies(flows: Flows, counts: Counts) -> dict[int, int]:
+    """Return, for each object with initial copies, a lower bound on the copies that any order needs of it."""
+    change = Counter({o: -n for o, n in flows.targets.items()})
+    required = Counter[int]()
+    for action, times in counts.items():
+        for o, n in flows.asks[action].items():
+            made_before = sum(flows.adds[a].get(o, 0) * counts[a] for a in counts if a != action)
+            required[o] = max(required[o], n - made_before)
+        for o, n in flows.uses[action].items():
+            change[o] -= n * times
+        for o, n in flows.adds[action].items():
+            change[o] += n * times
+    return {o: max(0, -change[o], required[o]) for o in flows.start}
+
+
+def _may_have_order(flows: Flows, counts: Counts, start: Mapping[int, int]) -> bool:
+    """Return whether counts satisfy two conditions that every order needs.
+
+    Each action can be reached if nothing is consumed, and enough copies remain in the end.
+    """
+    copies, waiting = Counter(start), set(counts)
+    grown = True
+    while grown:
+        ready = [a for a in waiting if all(copies[o] >= n for o, n in flows.asks[a].items())]
+        grown = bool(ready)
+        waiting.difference_update(ready)
+        for action in ready:
+            for o, n in flows.adds[action].items():
+                copies[o] += n * counts[action]
+    for action, times in counts.items():
+        for o, n in flows.uses[action].items():
+            copies[o] -= n * times
+    if waiting or any(n < 0 for n in copies.values()):
+        return False
+    return all(copies[o] >= n for o, n in flows.targets.items())
+
+
+class _Search:
+    """A depth-first search for an order of executions.
+
+    ``single``: whether to branch over single executions, in place of runs.
+    ``start``: the initial copies by object.
+    """
+
+    def __init__(
+        self,
+        flows: Flows,
+        counts: Counts,
+        start: Mapping[int, int],
+        expired: Callable[[], bool],
+        single: bool,
+    ) -> None:
+        """Begin with all executions waiting, and count the copies that they consume."""
+        self._flows, self._expired, self._single = flows, expired, single
+        self._copies, self._waiting = Counter(start), dict(counts)
+        self._steps_left = PLANS.order_steps
+        # the copies that all waiting executions consume
+        self._consumed = Counter[int]()
+        for action, times in counts.items():
+            for o, n in flows.uses[action].items():
+                self._consumed[o] += n * times
+
+    @property
+    def is_exhausted(self) -> bool:
+        """Whether the search ended because it had tried all orders, and not for lack of steps or time."""
+        return self._steps_left > 0
+
+    def find_runs(self) -> list[Run] | None:
+        """Return the runs of an order; ``None`` if none is found."""
+        done: list[Run] = []
+        dead: set[tuple[tuple[int, int], ...]] = set()  # waiting executions without an order
+        choices = [self._choices(dead)]
+        while choices:
+            if not self._waiting:
+                return done
+            run = next(choices[-1], None)
+            if run is not None:
+                self._execute(run, 1)
+                done.append(run)
+                choices.append(self._choices(dead))
+                continue
+            if self._steps_left <= 0:
+                return None
+            dead.add(self._waiting_counts)
+            choices.pop()
+            if done:
+                self._execute(done.pop(), -1)
+        return None
+
+    @property
+    def _waiting_counts(self) -> tuple[tuple[int, int], ...]:
+        """The executions that wait, as pairs of action and count, ascending."""
+        return tuple(sorted(self._waiting.items()))
+
+    def _choices(self, dead: set[tuple[tuple[int, int], ...]]) -> Iterator[Run]:
+        """Yield the runs to try next; only one if it leaves enough copies for all waiting executions.
+
+        Nothing is yielded if the waiting executions are in ``dead``: no order was found for them before.
+        """
+        if self._waiting_counts in dead:
+            return
+        ready = [(action, self._max_times(action)) for action in sorted(self._waiting)]
+        ready = [(action, max_times) for action, max_times in ready if max_times]
+        free = [(action, max_times) for action, max_times in ready if self._is_free(action)]
+        for action, max_times in free[:1] or sorted(ready, key=lambda run: len(self._flows.uses[run[0]])):
+            for times in (max_times,) if free or not self._single else (1,):
+                self._steps_left -= 1
+                if self._steps_left <= 0 or self._expired():
+                    self._steps_left = 0
+                    return
+                yield action, times
+
+    def _max_times(self, action: int) -> int:
+        """Return how often a waiting action can be executed in a row; 0 if not at all."""
+        max_times, flows = self._waiting[action], self._flows
+        for o, n in flows.asks[action].items():
+            surplus = self._copies[o] - n
+            if surplus < 0:
+                return 0
+            loss = flows.uses[action].get(o, 0) - flows.adds[action].get(o, 0)
+            if loss > 0:
+                max_times = min(max_times, surplus // loss + 1)
+        return max_times
+
+    def _is_free(self, action: int) -> bool:
+        """Return whether the objects that an action consumes have copies for all waiting executions."""
+        return all(
+            self._copies[o] - self._consumed[o] >= self._copies_to_keep(o) for o in self._flows.uses[action]
+        )
+
+    def _copies_to_keep(self, o: int) -> int:
+        """Return how many copies of an object have to remain after all waiting executions.
+
+        They are those of the target, or those that one execution needs and does not consume, if more.
+        """
+        readers = (self._flows.asks[a].get(o, 0) - self._flows.uses[a].get(o, 0) for a in self._waiting)
+        return max(self._flows.targets.get(o, 0), *readers)
+
+    def _execute(self, run: Run, sign: int) -> None:
+        """Execute a run, or undo it with a ``sign`` of -1."""
+        action, times = run
+        for o, n in self._flows.uses[action].items():
+            self._copies[o] -= sign * n * times
+            self._consumed[o] -= sign * n * times
+        for o, n in self._flows.adds[action].items():
+            self._copies[o] += sign * n * times
+        unexecuted = self._waiting.get(action, 0) - sign * times
+        if unexecuted:
+            self._waiting[action] = unexecuted
+        else:
+            del self._waiting[action]
+
+
+def plan_of(units: Sequence[int], runs: Sequence[Run]) -> tuple[int, ...]:
+    """Return the units that runs execute, in order, with repeats; ``units`` has the unit of each action."""
+    return tuple(unit for action, times in runs for unit in (units[action],) * times)

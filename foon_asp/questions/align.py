@@ -21,7 +21,7 @@ from foon_asp.results.values import Node, Value
 from foon_asp.results.values_of import named_node, node_of
 from foon_asp.standins.node_prices import NodePrices
 from foon_asp.text.data_folder import find_data
-from foon_asp.text.json_value import schema_name
+from foon_asp.text.json_text import schema_name
 from foon_asp.text.writer import write_units
 
 _WORD_EDITS = frozenset((Edit.WORD, Edit.SPELLING, Edit.LABEL))  # other words for the same object and place

@@ -14,15 +14,15 @@ from foon_asp.hypergraph import SolvedGoals
 from foon_asp.problem import Objective, Problem, for_each_goal
 from foon_asp.questions.answer import Answer, answer_from_store
 from foon_asp.questions.caller import caller
-from foon_asp.questions.common_options import CommonOptions, limits_of, settings_of
 from foon_asp.questions.python_arguments import chosen_objectives, problem_for_rules, read_deferred
+from foon_asp.questions.python_options import CommonOptions, limits_of, settings_of
 from foon_asp.questions.question import python_question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.figure_text import figure_text
 from foon_asp.results.table import Block, Cell, Table
 from foon_asp.results.values_of import head_of
-from foon_asp.text.json_value import schema_name
+from foon_asp.text.json_text import schema_name
 
 _ALWAYS = (Objective.UNITS, Objective.INPUTS, Objective.SUCCESS)  # columns; others where they are asked for
 _STYLES = {Status.OPTIMAL: "good", Status.INFEASIBLE: "bad"}

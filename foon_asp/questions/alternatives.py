@@ -18,7 +18,6 @@ from foon_asp.pictures.notebook import page_bundle
 from foon_asp.plans.ranked_plans import RankedPlans, best_plans
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 from foon_asp.questions.caller import caller
-from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.options import AMOUNT, ITEMS, TREE
 from foon_asp.questions.python_arguments import (
     Objectives,
@@ -26,6 +25,7 @@ from foon_asp.questions.python_arguments import (
     problem_for_rules,
     require_at_least,
 )
+from foon_asp.questions.python_options import CommonOptions, settings_of
 from foon_asp.questions.question import TABLES, Kind, Option, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
@@ -35,7 +35,7 @@ from foon_asp.results.figure_text import costs_text
 from foon_asp.results.table import Block
 from foon_asp.results.values import CostedTree, Mention, Node, Value, step_lines, steps_not_in
 from foon_asp.results.values_of import costed_tree, head_of, mention_of, node_of
-from foon_asp.text.json_value import schema_name
+from foon_asp.text.json_text import schema_name
 
 
 class Way(Value, frozen=True):

@@ -27,7 +27,7 @@ from foon_asp.results.figure_text import bound_text, costs_text, figure_text
 from foon_asp.results.table import Block
 from foon_asp.results.values import CostedTree, Figure, ListedConstraint, Node, Step, UsedUpRun, Value
 from foon_asp.results.values_of import head_of, steps_of, used_up_of
-from foon_asp.text.json_value import schema_name
+from foon_asp.text.json_text import schema_name
 from foon_asp.text.tables import Duration
 from foon_asp.text.writer import write_units
 

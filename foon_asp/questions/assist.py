@@ -11,10 +11,10 @@ from foon_asp.dataset.paths import File
 from foon_asp.network import counted
 from foon_asp.problem import Costs, Number, Objective, Problem, success_rate
 from foon_asp.questions.caller import caller
-from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.help_search import helped_trees
 from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.python_arguments import problem_for_rules, require_at_least
+from foon_asp.questions.python_options import CommonOptions, settings_of
 from foon_asp.questions.question import TABLES, Kind, Option, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import Tree
@@ -24,7 +24,7 @@ from foon_asp.results.figure_text import costs_text, success_text
 from foon_asp.results.table import Block, Table
 from foon_asp.results.values import Step, UsedUpRun, Value
 from foon_asp.results.values_of import head_of, steps_of, used_up_of
-from foon_asp.text.json_value import schema_name
+from foon_asp.text.json_text import schema_name
 from foon_asp.text.tables import RATES
 
 

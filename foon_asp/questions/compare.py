@@ -22,11 +22,11 @@ from foon_asp.errors import UserError
 from foon_asp.pictures.comparison_chart import write_comparison_chart
 from foon_asp.problem import Problem
 from foon_asp.questions.caller import caller
-from foon_asp.questions.common_options import CommonOptions, limits_of, settings_of
 from foon_asp.questions.comparison_tables import comparison_table, published_table, summary_tables, tidy_rows
 from foon_asp.questions.options import CHART, CONTAINERS, EACH_GOAL, EACH_LIMITS, ITEMS, JOBS
 from foon_asp.questions.posing import Command, pose_problem
 from foon_asp.questions.python_arguments import problem_for_rules, require_at_least
+from foon_asp.questions.python_options import CommonOptions, limits_of, settings_of
 from foon_asp.questions.question import TABLES, Kind, Option, Role, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.search import Retrieved
@@ -43,7 +43,7 @@ from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block
 from foon_asp.results.values_of import head_of
 from foon_asp.searches import Search, SearchSettings, search_names
-from foon_asp.text.json_value import Json, schema_name
+from foon_asp.text.json_text import Json, schema_name
 
 _ONE_TREE = "FOON text holds one tree: name one search (--search) and one goal (--goal)"
 

@@ -14,7 +14,7 @@ from foon_asp.results.plain_values import plain
 from foon_asp.results.table import Block, Cell, Table
 from foon_asp.results.table_columns import flat_row
 from foon_asp.results.values import Figure
-from foon_asp.text.json_value import Json
+from foon_asp.text.json_text import Json
 
 _HEADINGS = ("search", "units", "inputs", "success", "executes", "used up")
 _EXECUTES = {

@@ -7,7 +7,7 @@ from foon_asp.results.document import Document
 from foon_asp.results.table import Block
 from foon_asp.results.values import Value
 from foon_asp.rules.constraint_library import library_constraints
-from foon_asp.text.json_value import schema_name
+from foon_asp.text.json_text import schema_name
 
 _NOT_SET = frozenset({'""', "#sup", "#inf"})
 

@@ -16,7 +16,7 @@ from foon_asp.proof.verifier import Subject
 from foon_asp.results.plain_values import exact_measures, plain
 from foon_asp.rules.passed_constraint import Constraint, LibraryUse, RuleText, find_constraint
 from foon_asp.text.exact_number import decimal_text
-from foon_asp.text.json_value import Json, json_text
+from foon_asp.text.json_text import Json, json_text
 from foon_asp.text.unit_price_list import write_unit_prices
 from foon_asp.text.writer import write_units
 from foon_asp.whole_file import write_whole

@@ -12,9 +12,9 @@ from foon_asp.results.document import Document
 from foon_asp.results.table import Block
 from foon_asp.results.values import Value
 from foon_asp.rules.passed_constraint import Constraint
-from foon_asp.rules.rule_kind import Kind
+from foon_asp.rules.rule_analysis import Kind
 from foon_asp.rules.rules import ShownRule, Together
-from foon_asp.text.json_value import schema_name
+from foon_asp.text.json_text import schema_name
 
 _KINDS = {
     Kind.FACT: "no unit decides it: it holds for every tree, or for none",

@@ -14,16 +14,16 @@ from foon_asp.planning.pddl_writer import domain_text, items_words, problem_text
 from foon_asp.planning.planning_task import PlanningTask, planning_task
 from foon_asp.planning.unified import unified_problem
 from foon_asp.problem import Problem
-from foon_asp.questions.common_options import Posed, start_deadline
 from foon_asp.questions.options import AMOUNT, CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.posing import Command, pose_problem
 from foon_asp.questions.python_arguments import Objectives, chosen_objectives, over_whole_network
+from foon_asp.questions.python_options import Posed, start_deadline
 from foon_asp.questions.question import Kind, Option, Role, python_question, question
 from foon_asp.questions.result import Result
 from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block
 from foon_asp.results.values_of import head_of
-from foon_asp.text.json_value import schema_name
+from foon_asp.text.json_text import schema_name
 from foon_asp.whole_file import write_whole
 
 FILES = ("domain.pddl", "problem.pddl", "map.json")

@@ -8,7 +8,7 @@ from foon_asp.problem import Objective, Problem
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.values_of import head_of
 from foon_asp.rules.passed_constraint import Constraint
-from foon_asp.text.json_value import schema_name
+from foon_asp.text.json_text import schema_name
 
 
 class Facts(AboutGoals, frozen=True, kw_only=True, tag=schema_name("facts")):

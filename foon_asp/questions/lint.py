@@ -31,7 +31,7 @@ from foon_asp.results.table import Block, blocks_text
 from foon_asp.results.table_columns import flat_row
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.folder_files import foon_files
-from foon_asp.text.json_value import Json, json_text, schema_name
+from foon_asp.text.json_text import Json, json_text, schema_name
 
 
 class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):

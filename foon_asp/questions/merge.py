@@ -16,7 +16,7 @@ from foon_asp.results.table import Block
 from foon_asp.results.values_of import differences_of, listed_unit
 from foon_asp.text.data_folder import DataFiles, amounts_of_units, find_data
 from foon_asp.text.diagnostics import summarize
-from foon_asp.text.json_value import schema_name
+from foon_asp.text.json_text import schema_name
 from foon_asp.text.merged_network import merged_text
 from foon_asp.text.reader import FoonReader
 from foon_asp.text.unit_price_list import read_unit_prices

@@ -12,7 +12,7 @@ from foon_asp.questions.why_not import Explanation
 from foon_asp.results.document import Document
 from foon_asp.results.proof_cases import ProofCases
 from foon_asp.results.values import Value
-from foon_asp.text.json_value import schema_name
+from foon_asp.text.json_text import schema_name
 
 
 class UnitRate(Value, frozen=True):

@@ -16,7 +16,6 @@ from foon_asp.errors import UserError
 from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, Problem, multiplies
 from foon_asp.questions.caller import caller
-from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.options import AMOUNT, CHART, CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.python_arguments import (
     Objectives,
@@ -24,6 +23,7 @@ from foon_asp.questions.python_arguments import (
     problem_for_rules,
     usual_objectives,
 )
+from foon_asp.questions.python_options import CommonOptions, settings_of
 from foon_asp.questions.question import TABLES, Option, question
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.tree import Tree
@@ -42,7 +42,7 @@ from foon_asp.results.values import (
     steps_not_in,
 )
 from foon_asp.results.values_of import costed_tree, head_of
-from foon_asp.text.json_value import schema_name
+from foon_asp.text.json_text import schema_name
 
 _MIN_OBJECTIVES, _MAX_OBJECTIVES = 2, 3
 

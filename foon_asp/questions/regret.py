@@ -19,7 +19,6 @@ from foon_asp.network.spelling import near_labels
 from foon_asp.problem import Costs, Objective, Problem, levels, multiplies
 from foon_asp.questions.answer import Answer, WithAnswer
 from foon_asp.questions.caller import caller
-from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.options import AMOUNT, ITEMS, TREE
 from foon_asp.questions.python_arguments import (
     Objectives,
@@ -27,13 +26,14 @@ from foon_asp.questions.python_arguments import (
     over_whole_network,
     problem_for_rules,
 )
+from foon_asp.questions.python_options import CommonOptions, settings_of
 from foon_asp.questions.question import TABLES, Kind, Option, question
 from foon_asp.questions.result import Ending
 from foon_asp.results.figure_text import costs_text, success_text
 from foon_asp.results.table import Block
 from foon_asp.results.values import Measures, Mention, Node, Value
 from foon_asp.results.values_of import head_of, mention_of, node_of
-from foon_asp.text.json_value import schema_name
+from foon_asp.text.json_text import schema_name
 
 
 class Removal(StrEnum):

@@ -20,8 +20,8 @@ from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.questions.answer import ending_of_status
 from foon_asp.questions.caller import caller
 from foon_asp.questions.certificate_text import certificate_lines
-from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.python_arguments import over_whole_network
+from foon_asp.questions.python_options import CommonOptions, settings_of
 from foon_asp.questions.question import python_question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.stand_in import StandIn, stand_in_lines, stand_ins_in
@@ -31,7 +31,7 @@ from foon_asp.results.table import Block
 from foon_asp.results.values import Node, Step
 from foon_asp.results.values_of import head_of, nodes_of, steps_of
 from foon_asp.standins.repair import Repair
-from foon_asp.text.json_value import schema_name
+from foon_asp.text.json_text import schema_name
 from foon_asp.text.writer import write_units
 from foon_asp.whole_file import write_whole
 

@@ -8,7 +8,7 @@ from foon_asp.problem import Objective
 from foon_asp.questions.alternatives import alternatives
 from foon_asp.questions.answer import Answer, PolicyTree, RetryPolicy
 from foon_asp.questions.caller import asked_by, caller
-from foon_asp.questions.common_options import CommonOptions
+from foon_asp.questions.python_options import CommonOptions
 from foon_asp.results.values_of import costed_tree
 
 

@@ -13,7 +13,7 @@ from foon_asp.results.document import AboutGoals
 from foon_asp.results.values import UsedUpRun
 from foon_asp.results.values_of import head_of, used_up_of
 from foon_asp.text.clip_times import ListedClips, listed_clips
-from foon_asp.text.json_value import schema_name
+from foon_asp.text.json_text import schema_name
 from foon_asp.text.tables import Duration
 
 

@@ -24,11 +24,11 @@ from foon_asp.proof.timetable import TimedStep as Timed
 from foon_asp.proof.used_up_run import used_up_run
 from foon_asp.questions.answer import ending_of_status
 from foon_asp.questions.caller import caller
-from foon_asp.questions.common_options import Posed, start_deadline
 from foon_asp.questions.durations import Durations, duration_of, stated_durations
 from foon_asp.questions.options import AMOUNT, CHART, CONTAINERS, GOAL_OF_PLAN, PLAN_ITEMS
 from foon_asp.questions.posing_plan import pose_plan
 from foon_asp.questions.python_arguments import require_at_least, with_items
+from foon_asp.questions.python_options import Posed, start_deadline
 from foon_asp.questions.question import TABLES, Kind, Option, Role, question
 from foon_asp.questions.result import Ending, NothingToDrawError, NoTreeError, Result
 from foon_asp.questions.tree import OTHER_READING, Tree, as_tree
@@ -38,7 +38,7 @@ from foon_asp.results.timed_step import TimedStep, Tool
 from foon_asp.results.values import Value
 from foon_asp.results.values_of import head_of, lack_of
 from foon_asp.text.clip_times import median_clips
-from foon_asp.text.json_value import schema_name
+from foon_asp.text.json_text import schema_name
 from foon_asp.text.line import LineError
 from foon_asp.text.tables import (
     TOOLS,

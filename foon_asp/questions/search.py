@@ -10,7 +10,7 @@ from foon_asp.comparison.comparison import simulate_retrieval
 from foon_asp.pictures.drawing import Drawing
 from foon_asp.problem import Costs, Problem
 from foon_asp.proof.simulation import Simulation, Verdict
-from foon_asp.questions.common_options import Posed, start_deadline
+from foon_asp.questions.python_options import Posed, start_deadline
 from foon_asp.questions.question import question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.search_options import COUNT, DEPTH, TIES, search_settings, searches_named
@@ -24,7 +24,7 @@ from foon_asp.results.values import Node, Step, UsedUpRun
 from foon_asp.results.values_of import head_of, node_of, steps_of
 from foon_asp.searches import Ending as Searched
 from foon_asp.searches import Search
-from foon_asp.text.json_value import schema_name
+from foon_asp.text.json_text import schema_name
 from foon_asp.text.writer import write_units
 
 _NO_TREE: Any = dict.fromkeys(("verdict", "as_listed", "in_any_order", "order", "used_up"))

@@ -32,7 +32,6 @@ from foon_asp.problem.purchases import Purchases
 from foon_asp.proof.counted_run import counted_run
 from foon_asp.questions.answer import Answer, WithAnswer
 from foon_asp.questions.caller import caller
-from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.options import AMOUNT, ITEMS, TREE
 from foon_asp.questions.python_arguments import (
     Objectives,
@@ -40,13 +39,14 @@ from foon_asp.questions.python_arguments import (
     over_whole_network,
     require_at_least,
 )
+from foon_asp.questions.python_options import CommonOptions, settings_of
 from foon_asp.questions.question import TABLES, Kind, Option, question
 from foon_asp.questions.result import Ending
 from foon_asp.results.figure_text import costs_text
 from foon_asp.results.table import Block
 from foon_asp.results.values import Node, Value
 from foon_asp.results.values_of import head_of, node_as
-from foon_asp.text.json_value import schema_name
+from foon_asp.text.json_text import schema_name
 from foon_asp.text.line import LineError
 from foon_asp.text.line_parser import parse_name
 from foon_asp.text.tables import PRICES

@@ -10,7 +10,6 @@ from foon_asp.errors import UserError
 from foon_asp.hypergraph import Reduction, parse_reductions
 from foon_asp.problem import Problem
 from foon_asp.questions.answer import Answer, SkippedGoal, answer_under_rules
-from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.durations import Durations, stated_durations
 from foon_asp.questions.options import AMOUNT, ITEMS, SOFT, TREE
 from foon_asp.questions.python_arguments import (
@@ -22,6 +21,7 @@ from foon_asp.questions.python_arguments import (
     read_deferred,
     require_at_least,
 )
+from foon_asp.questions.python_options import CommonOptions, settings_of
 from foon_asp.questions.question import TABLES, Kind, Option, Role, not_for_used_up_items, question
 from foon_asp.questions.result import Result
 

@@ -15,16 +15,16 @@ from foon_asp.foon import Foon, load
 from foon_asp.network import Network, counted, starting_kitchen
 from foon_asp.network.statistics import MANY, Statistics, most_connected_labels, most_connected_objects
 from foon_asp.problem import DEFAULT_RULE, ContainerRule, UsedUp, container_rule, needed_inputs
-from foon_asp.questions.common_options import Limits, start_deadline
 from foon_asp.questions.options import CONTAINERS, ITEMS
 from foon_asp.questions.posing import pose_data
+from foon_asp.questions.python_options import Limits, start_deadline
 from foon_asp.questions.question import TABLES, Kind, Option, Role, question
 from foon_asp.questions.result import Result
 from foon_asp.results.table import Block, Table
 from foon_asp.results.values import Node, Unit, Value, step_lines
 from foon_asp.results.values_of import node_as, node_of, nodes_of, unit_of
 from foon_asp.text.data_folder import Data
-from foon_asp.text.json_value import schema_name
+from foon_asp.text.json_text import schema_name
 
 # Heading, row name, and the figure of one level.
 _ROWS: tuple[tuple[str, str, Callable[[Statistics], object]], ...] = (

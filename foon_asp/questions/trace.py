@@ -15,10 +15,10 @@ from foon_asp.network import FunctionalUnit, ObjectNode
 from foon_asp.problem import Problem
 from foon_asp.proof.replay import Replay, replay_for, replayable_problem
 from foon_asp.questions.answer import Answer, answer_problem
-from foon_asp.questions.common_options import Posed, start_deadline
 from foon_asp.questions.options import AMOUNT, CONTAINERS, GOAL_OF_PLAN, OBJECTIVES, PLAN_ITEMS
 from foon_asp.questions.posing_plan import pose_plan_or_state
 from foon_asp.questions.python_arguments import Objectives, chosen_objectives, with_items
+from foon_asp.questions.python_options import Posed, start_deadline
 from foon_asp.questions.question import TABLES, Kind, Option, Role, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.tree import OTHER_READING, Tree, as_tree
@@ -26,7 +26,7 @@ from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block
 from foon_asp.results.values import Copies, Copy, Unit, Value, changed_motions
 from foon_asp.results.values_of import copies_of, copy_of, head_of, lack_of
-from foon_asp.text.json_value import schema_name
+from foon_asp.text.json_text import schema_name
 from foon_asp.text.writer import write_counted_node, write_node
 from foon_asp.whole_file import utf_8, write_whole
 

@@ -31,7 +31,6 @@ from foon_asp.questions.alternatives import Alternatives, alternatives
 from foon_asp.questions.answer import Answer, answer_problem, answer_under_rules
 from foon_asp.questions.caller import caller
 from foon_asp.questions.certifying import solve_with_certificate
-from foon_asp.questions.common_options import CommonOptions, Limits, settings_of, start_deadline
 from foon_asp.questions.options import AMOUNT, CONTAINERS, GOALS, ITEMS, OBJECTIVES
 from foon_asp.questions.page_data import PageData, UnitRate
 from foon_asp.questions.pareto import Front, pareto
@@ -42,6 +41,7 @@ from foon_asp.questions.python_arguments import (
     over_whole_network,
     problem_for_rules,
 )
+from foon_asp.questions.python_options import CommonOptions, Limits, settings_of, start_deadline
 from foon_asp.questions.question import Kind, Option, Role, question
 from foon_asp.questions.result import Ending, NothingToDrawError, Result
 from foon_asp.questions.search import Retrieved, search
@@ -50,7 +50,7 @@ from foon_asp.questions.shopping_list import Shopping, shopping_list
 from foon_asp.questions.tree import as_tree, read_listed_units
 from foon_asp.questions.why_not import Explanation, why_not
 from foon_asp.results.proof_cases import ProofCases
-from foon_asp.text.json_value import Json
+from foon_asp.text.json_text import Json
 from foon_asp.whole_file import utf_8, write_whole
 
 _MERMAID_PAGE = ".md"

@@ -10,13 +10,13 @@ from msgspec.structs import replace
 from foon_asp.dataset import Dataset
 from foon_asp.dataset.paths import File
 from foon_asp.network import STAND_IN, NodePattern, ObjectNode, StandInTable, counted, pattern_at_level
-from foon_asp.network.near_nodes import nearest, slip_between
+from foon_asp.network.slip import nearest, slip_between
 from foon_asp.problem import Objective, Problem
 from foon_asp.problem.dead_ends import Cause, DeadEnds, RootCause, dead_ends
 from foon_asp.problem.for_sale import Shop
-from foon_asp.questions.common_options import CommonOptions, settings_of
 from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.python_arguments import constraint_weights, over_whole_network
+from foon_asp.questions.python_options import CommonOptions, settings_of
 from foon_asp.questions.question import Kind, Option, question
 from foon_asp.questions.result import Ending, Result
 from foon_asp.questions.stand_in import StandIn, stand_ins_in
@@ -25,7 +25,7 @@ from foon_asp.results.table import Block
 from foon_asp.results.values import Mention, Node, Unit, Value
 from foon_asp.results.values_of import head_of, mention_of, node_as, node_of, nodes_of, unit_as
 from foon_asp.standins import with_stand_ins
-from foon_asp.text.json_value import schema_name
+from foon_asp.text.json_text import schema_name
 
 if TYPE_CHECKING:  # takes clingo along, which only rules need
     from foon_asp.asp import Settings

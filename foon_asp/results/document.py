@@ -11,7 +11,7 @@ from foon_asp.results.plain_values import plain
 from foon_asp.results.table import Block, blocks_text
 from foon_asp.results.table_columns import csv_text, data_frame, flat_row, markdown_text
 from foon_asp.results.values import Node
-from foon_asp.text.json_value import Json, json_text, read_json
+from foon_asp.text.json_text import Json, json_text, read_json
 
 T = TypeVar("T")
 

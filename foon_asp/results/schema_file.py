@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from foon_asp.text.json_value import Json, read_json
+from foon_asp.text.json_text import Json, read_json
 
 SCHEMAS = Path(__file__).resolve().parent / "schemas"
 

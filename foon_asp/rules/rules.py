@@ -15,9 +15,9 @@ from foon_asp.network import Source
 from foon_asp.problem import Contradiction, LinearRow, Problem, RequiredUnit, Restriction, reach
 from foon_asp.rules.clause import Signature, literals, statement_text
 from foon_asp.rules.dependence import TIMES
-from foon_asp.rules.rule_kind import Analysis, Kind, Rule
+from foon_asp.rules.rule_analysis import Analysis, Kind, Rule
+from foon_asp.rules.rule_translation import AtLeastOne, Understood
 from foon_asp.rules.tuning import TUNING
-from foon_asp.rules.understood import AtLeastOne, Understood
 from foon_asp.rules.unit_answers import UnitAnswers, ask_units, candidate_units
 
 _SHRINKING = {Kind.HELPER, Kind.FACT, Kind.DELETING, Kind.SHRINKING}

@@ -11,7 +11,7 @@ from foon_asp.errors import UserError
 from foon_asp.network import Network
 from foon_asp.problem import Contradiction, Problem, RequiredUnit, Restriction, Role, reach
 from foon_asp.rules.clause import Signature
-from foon_asp.rules.understood import ANSWER, NOTHING
+from foon_asp.rules.rule_translation import ANSWER, NOTHING
 
 
 class UnitAnswers(NamedTuple):
@@ -77,7 +77,7 @@ def candidate_units(network: Network, wanted: Iterable[RequiredUnit]) -> set[int
 def _read_answers(problem: Problem, rows: Iterable[tuple[Value, ...]]) -> UnitAnswers:
     """Return the removed units, required sets and weights in the atoms that clingo derived.
 
-    ``rows`` are the arguments of the atoms ``_of_unit/4``; :mod:`foon_asp.rules.understood` explains them.
+    ``rows`` are the arguments of the atoms ``_of_unit/4`` (see :mod:`foon_asp.rules.rule_translation`).
     """
     removed: set[int] = set()
     required: dict[tuple[Value, Value], set[int] | None] = {}  # None where a set is not needed

@@ -20,7 +20,7 @@ from foon_asp.results.figure_text import bound_text, costs_text
 from foon_asp.rules.passed_constraint import Constraint, RuleText, find_constraint
 from foon_asp.serve.form import Form, RegretForm
 from foon_asp.text.diagnostics import InputError
-from foon_asp.text.json_value import Json
+from foon_asp.text.json_text import Json
 from foon_asp.text.node_lookup import entry_names, nodes_beginning
 
 SendEvent = Callable[[Json], object]

@@ -24,7 +24,7 @@ from foon_asp.errors import UserError
 from foon_asp.pictures.page import digest, script_json, web_text
 from foon_asp.serve.desk import Desk, SendEvent
 from foon_asp.serve.form import Form, RegretForm, read_question
-from foon_asp.text.json_value import Json, json_line
+from foon_asp.text.json_text import Json, json_line
 
 Asgi = Callable[[Any, Any, Any], Any]
 
@@ -192,8 +192,8 @@ def _question_page(data: Json) -> tuple[str, str]:
     """Return the HTML of the page that asks questions, and its content security policy."""
     style = "\n".join(
         [
-            web_text("light.css"),
-            web_text("dark.css"),
+            web_text("colours_light.css"),
+            web_text("colours_dark.css"),
             web_text("page.css"),
             web_text("ask.css", _WEB),
         ]

@@ -10,13 +10,13 @@ from typing import NamedTuple
 from foon_asp.errors import UserError
 from foon_asp.file_permissions import copy_permissions, warn_of_replaced
 from foon_asp.garbage_collection import uncollected
-from foon_asp.network import FunctionalUnit, Source
+from foon_asp.network import STARTING, FunctionalUnit, Source
 from foon_asp.problem import unrated_remarks
 from foon_asp.store.builder import StoreBuilder
 from foon_asp.store.digests import append_digest
 from foon_asp.store.store_file import is_store_database
 from foon_asp.text.assumed_goals import LAST, MARKED, goal_entry
-from foon_asp.text.data_folder import STARTING, DataFiles, kitchen_item_warning, unit_price_warning
+from foon_asp.text.data_folder import DataFiles, kitchen_item_warning, unit_price_warning
 from foon_asp.text.diagnostics import Diagnostic
 from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.text.plain_file import STORE_MAGIC, STORE_SUFFIX, is_store

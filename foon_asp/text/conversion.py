@@ -7,10 +7,10 @@ from foon_asp.text.amount_mark import is_amount
 from foon_asp.text.conversion_ids import Numbering
 from foon_asp.text.conversion_loss import CannotHoldError, Loss, lost_in_line
 from foon_asp.text.diagnostics import Diagnostic
+from foon_asp.text.foon_json_writer import with_container
 from foon_asp.text.foon_text import FoonText, rewrite_lines
 from foon_asp.text.format import Dialect, Format, WrittenPart
 from foon_asp.text.formats import format_of, format_with
-from foon_asp.text.json_writer import with_container
 from foon_asp.text.line import Line, MotionLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
 from foon_asp.text.plain_file import protect_byte_order_mark, split_lines

@@ -10,12 +10,14 @@ from foon_asp.errors import UserError
 from foon_asp.garbage_collection import uncollected
 from foon_asp.network import (
     NO_AMOUNTS,
+    STARTING,
     DataAmounts,
     FunctionalUnit,
     Network,
     ObjectNode,
     Source,
     UnitPrices,
+    is_starting,
     network_at_level,
     pattern_at_level,
     starting_kitchen,
@@ -24,7 +26,7 @@ from foon_asp.resources import bundled_kitchen
 from foon_asp.text.assumed_goals import LAST, MARKED, goal_entry, last_goals
 from foon_asp.text.diagnostics import Diagnostic, Severity
 from foon_asp.text.formats import NEUTRAL
-from foon_asp.text.node_lookup import NodeNames
+from foon_asp.text.node_names import NodeNames
 from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.text.plain_file import NEUTRAL_SUFFIXES, read_beginning_text, read_content
 from foon_asp.text.reader import FoonReader
@@ -43,9 +45,6 @@ _OBJECT_KEY = re.compile(rb'"(?:input_nodes|functional_units|object_label|label)
 _FOR_SCHEDULES = {"durations.txt", "tools.txt"}
 _TABLES = {_RATES, _UTENSILS, _UNIT_PRICES, _UNIT_AMOUNTS, _STAND_INS}
 _SIDE_TABLES = {*_TABLES, *_KITCHENS, *_GOALS, *_FOR_SCHEDULES}
-
-STARTING = Path("@starting")
-"""Stands in ``DataFiles.kitchen`` for the starting kitchen, in place of a file."""
 
 
 class DataFiles(NamedTuple):
@@ -202,7 +201,7 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
         whole_network = reader.read_network(files.network)
     network = network_at_level(whole_network, level)
     warnings = reader.diagnostics
-    starting = files.kitchen in {None, STARTING}
+    starting = is_starting(files.kitchen)
     items = () if files.kitchen is None or starting else tuple(read_object_list(files.kitchen, warnings))
     kitchen = set(starting_kitchen(network).nodes) if starting else set()
     for item in items:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from foon_asp.network import FunctionalUnit, NodePattern
 from foon_asp.text.diagnostics import InputError
 from foon_asp.text.exact_number import read_price
+from foon_asp.text.foon_json_layout import check_json, lay_out
 from foon_asp.text.format import Dialect, Format, Writer
-from foon_asp.text.json_layout import check_json, lay_out
 from foon_asp.text.json_list import JsonList, begins_json
 from foon_asp.text.json_names import json_mentions, rename_in_json
 from foon_asp.text.json_object import read_json_objects
@@ -104,7 +104,7 @@ class FoonJson(Format):
 
     def writer(self, target: Dialect, numbering: "Numbering") -> Writer:
         """Return a writer of networks and lists of objects in one of the forms; ``numbering`` is not used."""
-        from foon_asp.text.json_writer import JsonWriter  # noqa: PLC0415 (only for conversions)
+        from foon_asp.text.foon_json_writer import JsonWriter  # noqa: PLC0415 (only for conversions)
 
         return JsonWriter(target)
 

@@ -1,79 +1,31 @@
 """Lookup of the object node that a name means, for goals and kitchen items."""
 
 import re
-import shlex
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
-from typing import NamedTuple, Protocol
+from collections.abc import Iterator, Sequence
 
-from foon_asp.errors import UserError
-from foon_asp.network import NodePattern, ObjectNode, in_quotes, node_at_level, unquoted
+from foon_asp.network import ObjectNode, in_quotes, node_at_level, unquoted
 from foon_asp.text.line import LineError
 from foon_asp.text.line_parser import parse_name
+from foon_asp.text.node_names import NodeNames
 from foon_asp.text.object_list import ListedObject
+from foon_asp.text.unknown_node import (
+    GOAL,
+    GoalError,
+    Wording,
+    error_with_candidates,
+    most_similar_first,
+    unknown_error,
+)
 
-_MAX_CANDIDATES = 12  # candidates in a message
 _IN_QUOTES = re.compile(r' *"(?:\\(?:["\\/bfnrt]|u[0-9a-fA-F]{4})|[^"\\])*("?)')  # closed or not
-
-
-class Wording(NamedTuple):
-    """The words for a node in messages: a noun, and the option that precedes each candidate to paste."""
-
-    noun: str
-    option: str
-
-
-_GOAL = Wording("goal", "--goal")
-
-
-class GoalError(UserError):
-    """A name that means no object node, or several.
-
-    ``message`` is without candidates. ``candidates`` are those shown, in one-line notation, and ``hidden``
-    counts the others. The text of the error has the candidates ready to paste, behind ``option``.
-    """
-
-    def __init__(
-        self, message: str, candidates: Sequence[str] = (), hidden: int = 0, option: str = _GOAL.option
-    ) -> None:
-        lines = [message, *(f"  {option} {shlex.quote(candidate)}" for candidate in candidates)]
-        if hidden:
-            lines.append(f"  ... and {hidden} more")
-        super().__init__("\n".join(lines))
-        self.message, self.candidates, self.hidden = message, tuple(candidates), hidden
-
-
-class NodeNames(Protocol):
-    """A network whose nodes are looked up by name: a :class:`~foon_asp.network.Network`, or a store."""
-
-    @property
-    def level(self) -> int:
-        """The level of FOON, from 1 to 3."""
-
-    def object_id(self, node: ObjectNode) -> int | None:
-        """Return the id of a node, ``None`` if it does not exist."""
-
-    def node(self, object_id: int) -> ObjectNode:
-        """Return the node with an id."""
-
-    def find(self, pattern: NodePattern) -> Sequence[int]:
-        """Return the ids of the nodes that match an entry of a kitchen or goals file."""
-
-    def labelled(self, label: str) -> tuple[int, Sequence[int]]:
-        """Return how many nodes have a label, and the ids of these or at least of the first twelve."""
-
-    def beginning(self, start: str, max_labels: int) -> Sequence[str]:
-        """Return labels that begin with ``start``, in alphabetical order, at most ``max_labels``."""
-
-    def near(self, label: str, max_labels: int) -> Sequence[str]:
-        """Return labels similar to ``label``, the most similar first, at most ``max_labels``."""
 
 
 def find_goal(
     name: str,
     names: NodeNames,
     listed: Sequence[ListedObject] = (),
-    wording: Wording = _GOAL,
+    wording: Wording = GOAL,
 ) -> int:
     """Return the id of the object node that a goal names.
 
@@ -115,10 +67,8 @@ def find_goal(
     count, labelled = names.labelled(node.label)
     if count:
         message = f"no object node is exactly {str(node)!r}; with that label there are"
-        raise _error_with_candidates(
-            message, names, count, _most_similar_first(node, labelled, names), wording
-        )
-    raise _unknown_error(f"no object node has the label {node.label!r}", node, names, wording)
+        raise error_with_candidates(message, names, count, most_similar_first(node, labelled, names), wording)
+    raise unknown_error(f"no object node has the label {node.label!r}", node, names, wording)
 
 
 def nodes_beginning(start: str, names: NodeNames, max_nodes: int) -> list[int]:
@@ -164,7 +114,7 @@ def node_of_entry(entry: ListedObject, names: NodeNames) -> int:
     Raises :class:`GoalError` if several nodes match, or none.
     """
     nodes = nodes_of_entry(entry, names)
-    return _only_node(str(entry.pattern), names, len(nodes), nodes, _GOAL)
+    return _only_node(str(entry.pattern), names, len(nodes), nodes, GOAL)
 
 
 def nodes_of_entry(entry: ListedObject, names: NodeNames) -> Sequence[int]:
@@ -178,10 +128,8 @@ def nodes_of_entry(entry: ListedObject, names: NodeNames) -> Sequence[int]:
         position = f"{entry.source}:{entry.source.column}"
         message = f"{position}: error: the goal {str(entry.pattern)!r} matches no object node"
         if count:
-            raise _error_with_candidates(
-                f"{message}; with that label there are", names, count, labelled, _GOAL
-            )
-        raise _unknown_error(f"{message} of the network", ObjectNode(entry.pattern.label), names, _GOAL)
+            raise error_with_candidates(f"{message}; with that label there are", names, count, labelled, GOAL)
+        raise unknown_error(f"{message} of the network", ObjectNode(entry.pattern.label), names, GOAL)
     return nodes
 
 
@@ -192,40 +140,5 @@ def _only_node(name: str, names: NodeNames, count: int, nodes: Sequence[int], wo
     """
     if count > 1:
         message = f"the {wording.noun} {name!r} means {count} object nodes"
-        raise _error_with_candidates(f"{message}; paste the one you mean", names, count, nodes, wording)
+        raise error_with_candidates(f"{message}; paste the one you mean", names, count, nodes, wording)
     return nodes[0]
-
-
-def _most_similar_first(node: ObjectNode, nodes: Sequence[int], names: NodeNames) -> Sequence[int]:
-    """Return ids of nodes sorted by similarity of notation to ``node``; unsorted if this is a label alone."""
-    if node == ObjectNode(node.label):
-        return nodes
-    import difflib  # noqa: PLC0415 (only for error messages)
-
-    by_notation = {str(names.node(o)): o for o in nodes}
-    return [
-        by_notation[text]
-        for text in difflib.get_close_matches(str(node), by_notation, len(by_notation), cutoff=0)
-    ]
-
-
-def _unknown_error(message: str, node: ObjectNode, names: NodeNames, wording: Wording) -> GoalError:
-    """Return the error about an unknown node, with some nodes of each similar label as candidates."""
-    labels = dict.fromkeys((*names.beginning(node.label, _MAX_CANDIDATES), *names.near(node.label, 3)))
-    counted_nodes = [names.labelled(label) for label in labels]
-    if not counted_nodes:
-        return GoalError(message)
-    nodes_per_label = max(1, _MAX_CANDIDATES // len(counted_nodes))
-    total = sum(count for count, _ in counted_nodes)
-    candidates = [
-        o for _, nodes in counted_nodes for o in _most_similar_first(node, nodes, names)[:nodes_per_label]
-    ]
-    return _error_with_candidates(f"{message}; similar are", names, total, candidates, wording)
-
-
-def _error_with_candidates(
-    message: str, names: NodeNames, count: int, candidates: Iterable[int], wording: Wording
-) -> GoalError:
-    """Return an error with up to twelve of the candidates, which are ids; ``count`` is their number."""
-    shown = [str(names.node(o)) for o in [*candidates][:_MAX_CANDIDATES]]
-    return GoalError(message, shown, count - len(shown), wording.option)

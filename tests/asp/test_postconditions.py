@@ -24,7 +24,7 @@ from foon_asp.questions.solve import solve as solve_goals
 from foon_asp.resources import bundled_kitchen, encodings_folder
 from foon_asp.text.reader import FoonReader
 from tests.conftest import Cli
-from tests.encoding.test_exact_success import two_ways
+from tests.encoding.test_rate_scale import two_ways
 from tests.support.random_problems import random_problem
 from tests.support.wrong_costs import with_measures
 

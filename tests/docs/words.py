@@ -79,7 +79,7 @@ EXCEPTIONS = {
     ),
     "most": ("questions/assist.py", "a parameter that users write"),
     "near": (
-        "network/network.py questions/why_not.py store/store.py text/node_lookup.py",
+        "network/network.py questions/why_not.py store/store.py text/node_names.py",
         "near names and nodes",
     ),
     "part": ("dataset network questions/regret.py store/store.py", "a part of a network or a tree"),

@@ -27,7 +27,7 @@ from foon_asp.problem import ContainerRule, Costs, Objective, Problem, levels
 from foon_asp.proof.verifier import Subject
 from foon_asp.text.data_folder import find_data, read_data
 from tests.conftest import Cli
-from tests.encoding.test_exact_success import two_ways
+from tests.encoding.test_rate_scale import two_ways
 from tests.oracle import task_trees
 from tests.support.gap_problem import gap_problem
 from tests.support.hard_problem import hard_problem

@@ -16,7 +16,7 @@ from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp.bare_program import bare_program
 from foon_asp.asp.soft import SoftOutcome, solve_soft
 from foon_asp.deadline import Deadline
-from foon_asp.encoding.exact_success import rate_scale
+from foon_asp.encoding.rate_scale import rate_scale
 from foon_asp.engines import (
     Asked,
     Check,
@@ -30,7 +30,7 @@ from foon_asp.engines.bare_clingo import check_with_bare_clingo, tree_weight_bou
 from foon_asp.problem import Objective, Problem
 from foon_asp.rules.passed_constraint import Constraint
 from tests.conftest import ROOT, Cli
-from tests.encoding.test_exact_success import two_ways
+from tests.encoding.test_rate_scale import two_ways
 from tests.support.gap_problem import gap_problem
 from tests.support.reported import reported, words_to_ask_again
 from tests.support.wrong_costs import with_measures

@@ -18,7 +18,7 @@ from foon_asp.hypergraph.exact_costs import CoarseCosts
 from foon_asp.hypergraph.goal_graph import GoalGraph, graph_of
 from foon_asp.hypergraph.h_values import Derivations, compute_h_values
 from foon_asp.hypergraph.lazy_h_max import lazy_h_max_test
-from foon_asp.hypergraph.reduced_cost_neighbourhood import neighbourhood
+from foon_asp.hypergraph.reduced_cost_fixing import neighbourhood
 from foon_asp.hypergraph.restricted_subproblem import restricted_subproblem
 from foon_asp.network import NetworkBuilder, ObjectNode, Source, UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem

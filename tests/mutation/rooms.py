@@ -18,8 +18,8 @@ PROVING = (
     "foon_asp/asp/prepared.py",
     "foon_asp/asp/solver.py",
     "foon_asp/asp/ranking.py",
-    "foon_asp/encoding/exact_success.py",
-    "foon_asp/encoding/scales.py",
+    "foon_asp/encoding/rate_scale.py",
+    "foon_asp/encoding/cost_scales.py",
 )
 
 

@@ -11,8 +11,8 @@ from hypothesis import given, settings
 
 import foon_asp
 from foon_asp.network import FunctionalUnit, node_at_level, unit_at_level
-from foon_asp.network.near_nodes import nearest
 from foon_asp.network.near_units import nearest_units, unit_differences, units_kept_apart
+from foon_asp.network.slip import nearest
 from foon_asp.pictures.page import digest
 from foon_asp.text.line_parser import parse_node
 from foon_asp.text.writer import write_units

@@ -8,10 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import foon_asp
-from foon_asp.network import Network, NetworkBuilder, Source, starting_nodes
+from foon_asp.network import STARTING, Network, NetworkBuilder, Source, starting_nodes
 from foon_asp.network.object_node import ObjectNode
 from foon_asp.problem import reach
-from foon_asp.text.data_folder import STARTING
 from tests.conftest import CORPUS, Cli
 
 SUBGRAPHS = sorted((CORPUS / "subgraphs").glob("*.txt"))

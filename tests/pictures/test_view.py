@@ -19,7 +19,7 @@ from foon_asp.problem import reach
 from foon_asp.results.plain_values import plain
 from foon_asp.results.proof_cases import ProofCases
 from foon_asp.searches import find_searches
-from foon_asp.text.json_value import json_text
+from foon_asp.text.json_text import json_text
 from tests.conftest import Cli, valid
 from tests.questions.recipes import posed
 

@@ -14,7 +14,7 @@ from foon_asp.asp import Settings, Status
 from foon_asp.asp.bare_program import bare_program
 from foon_asp.asp.optimum import solve
 from foon_asp.certificate import certify_outcome
-from foon_asp.plans.bulk_order import bulk_order, least_copies
+from foon_asp.plans.execution_order import bulk_order, least_copies
 from foon_asp.plans.flows import Flows
 from foon_asp.problem import Objective
 from tests.oracle import amounts

@@ -9,8 +9,8 @@ import pytest
 
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.asp.ranking import Ranked
+from foon_asp.encoding.cost_scales import Scales
 from foon_asp.encoding.fact_writer import write_facts, write_objectives
-from foon_asp.encoding.scales import Scales
 from foon_asp.engines import Asked, DisagreementError, cross_check
 from foon_asp.errors import BugError
 from foon_asp.hypergraph import ALL, NONE, Reduction
@@ -27,7 +27,7 @@ from foon_asp.problem import (
 )
 from foon_asp.proof import verifier
 from foon_asp.resources import encodings_folder
-from tests.encoding.test_exact_success import two_ways
+from tests.encoding.test_rate_scale import two_ways
 from tests.oracle import task_trees
 from tests.support.random_problems import random_problem
 from tests.support.ways_problem import ways

@@ -11,7 +11,7 @@ import pytest
 import foon_asp
 from foon_asp import deadline, why_not
 from foon_asp.network import NodePattern, ObjectNode
-from foon_asp.network.near_nodes import slip_between
+from foon_asp.network.slip import slip_between
 from foon_asp.problem import ContainerRule, Problem, reach
 from foon_asp.problem.dead_ends import Cause
 from foon_asp.resources import bundled_kitchen

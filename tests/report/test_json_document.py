@@ -22,7 +22,7 @@ from foon_asp.results.plain_values import plain
 from foon_asp.results.schema_file import schema, schema_kinds
 from foon_asp.results.values_of import named_node
 from foon_asp.text.json_node import read_node_json
-from foon_asp.text.json_value import json_text, read_json, schema_name
+from foon_asp.text.json_text import json_text, read_json, schema_name
 from tests.conftest import Cli, valid
 
 FORBID = ("--constraint", "forbid_motion", "-c", 'forbidden_motion="crush"')

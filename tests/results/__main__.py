@@ -14,7 +14,7 @@ from foon_asp.results.document import Document
 from foon_asp.results.json_schema import schema_of, schema_of_rows
 from foon_asp.results.schema_file import SCHEMAS
 from foon_asp.results.values import Value
-from foon_asp.text.json_value import Json, json_text
+from foon_asp.text.json_text import Json, json_text
 from tests.results.json_page import PAGE, page
 
 ROWS: dict[str, type[msgspec.Struct]] = {"batch-row": AnswerRow, "compare-row": Comparison}

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.results.schema_file import schema, schema_kinds
-from foon_asp.text.json_value import Json, json_line, read_json
+from foon_asp.text.json_text import Json, json_line, read_json
 from tests.conftest import ROOT
 from tests.golden.transcript import run_here
 

@@ -11,7 +11,7 @@ import pytest
 
 from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp.ranking import Ranked
-from foon_asp.encoding import exact_success
+from foon_asp.encoding import rate_scale
 from foon_asp.encoding.run import Run
 from foon_asp.errors import BugError
 from foon_asp.hypergraph import ALL, NONE
@@ -182,7 +182,7 @@ def test_units_that_mattered_before_may_be_any(seeds: Sequence[int], monkeypatch
         settings = Settings((given_constraint(rules),))
         with monkeypatch.context() as patch:
             if seed % 2:
-                patch.setattr(exact_success, "_scale", lambda _: 2)
+                patch.setattr(rate_scale, "_scale", lambda _: 2)
             for before in (None, known, known):  # and those that mattered in this one
                 outcome = solve(problem, [*map(Objective, names)], settings, mattered=before)
                 assert outcome.status is (Status.INFEASIBLE if best is None else Status.OPTIMAL), seed

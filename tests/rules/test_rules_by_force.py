@@ -8,8 +8,8 @@ from clingo import Control
 
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.asp.ranking import Ranked
+from foon_asp.encoding.cost_scales import Scales
 from foon_asp.encoding.fact_writer import write_facts
-from foon_asp.encoding.scales import Scales
 from foon_asp.errors import UserError
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import ContainerRule, Objective, Problem, reach

@@ -14,7 +14,6 @@ from foon_asp.foon import Foon, load
 from foon_asp.network import LEVELS, Amounts, Network, NetworkBuilder, ObjectNode
 from foon_asp.problem import DEFAULT_RULE, Problem
 from foon_asp.questions.answer import Answer
-from foon_asp.questions.common_options import Posed, start_deadline
 from foon_asp.questions.diff.networks import NetworkDifference as NetworkDifference
 from foon_asp.questions.diff.networks import compare_networks
 from foon_asp.questions.diff.trees import TreeDifference as TreeDifference
@@ -22,6 +21,7 @@ from foon_asp.questions.diff.trees import compare_trees
 from foon_asp.questions.options import CONTAINERS, GOALS
 from foon_asp.questions.posing import Command
 from foon_asp.questions.posing_plan import data_for_trees, listed_tree, own_networks
+from foon_asp.questions.python_options import Posed, start_deadline
 from foon_asp.questions.question import TABLES, Kind, Option, Role, question
 from foon_asp.questions.result import ENDINGS, NoTreeError
 from foon_asp.questions.tree import Tree, read_answer

@@ -11,7 +11,7 @@ from foon_asp.results.plain_values import plain
 from foon_asp.results.table_columns import flat_row
 from foon_asp.results.values import Unit, UnitDifference, Value
 from foon_asp.results.values_of import differences_of
-from foon_asp.text.json_value import Json
+from foon_asp.text.json_text import Json
 
 
 class NearUnits(Value, frozen=True):

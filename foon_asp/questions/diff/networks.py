@@ -9,7 +9,7 @@ from foon_asp.questions.diff.difference import Difference, difference_fields
 from foon_asp.results.table import Block, Table
 from foon_asp.results.values import Node, Unit, Value
 from foon_asp.results.values_of import named_node, unit_of
-from foon_asp.text.json_value import schema_name
+from foon_asp.text.json_text import schema_name
 
 Side = Literal["inputs", "outputs"]
 _SIDES: Final[tuple[Side, Side]] = ("inputs", "outputs")

@@ -16,7 +16,7 @@ from foon_asp.results.figure_text import costs_text
 from foon_asp.results.table import Block
 from foon_asp.results.values import Node, Unit, UsedUpRun, Value
 from foon_asp.results.values_of import head_of, listed_unit, named_node, used_up_of
-from foon_asp.text.json_value import schema_name
+from foon_asp.text.json_text import schema_name
 
 
 class Side(Value, frozen=True, kw_only=True):

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from typing import NamedTuple
 
-from foon_asp.encoding.exact_success import USUAL_SCALE, RateScale, problem_scale
+from foon_asp.encoding.rate_scale import USUAL_SCALE, RateScale, problem_scale
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective, Problem, multiplies
 from foon_asp.problem.number import INT32_MAX

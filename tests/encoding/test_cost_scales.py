@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import pytest
 
-from foon_asp.encoding.scales import Scales, cost_scale
+from foon_asp.encoding.cost_scales import Scales, cost_scale
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective
 from tests.problem.test_objectives import NEW

@@ -9,12 +9,12 @@ from collections.abc import Sequence
 from foon_asp.network import Contents, NodePattern, Relation
 from foon_asp.text.conversion_loss import CannotHoldError, lost_in_line, lost_in_states
 from foon_asp.text.diagnostics import Severity
+from foon_asp.text.foon_json_layout import STEP, lay_out
 from foon_asp.text.format import Dialect, WrittenPart
-from foon_asp.text.json_layout import STEP, lay_out
 from foon_asp.text.json_list import JsonNumber
 from foon_asp.text.json_object import read_json_objects
+from foon_asp.text.json_text import json_line
 from foon_asp.text.json_units import read_json_units
-from foon_asp.text.json_value import json_line
 from foon_asp.text.line import MotionLine, ObjectLine, StateLine
 from foon_asp.text.listed_unit import ListedUnit, ObjectBlock
 from foon_asp.text.motion_times import MotionFields, in_two_fields

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from foon_asp.asp import Settings, Status, solve
-from foon_asp.encoding.exact_success import RateScale, problem_scale, rate_scale
+from foon_asp.encoding.rate_scale import RateScale, problem_scale, rate_scale
 from foon_asp.errors import UserError
 from foon_asp.hypergraph import NONE
 from foon_asp.network import NetworkBuilder, ObjectNode, Source

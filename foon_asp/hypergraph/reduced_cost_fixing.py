@@ -1,9 +1,13 @@
-"""The reduced-cost neighbourhood: actions that derivations below a given cost can use."""
+"""Reduced-cost fixing: exclude actions that no tree below a given cost can have."""
 
 from collections.abc import Callable, Container, Mapping
 from heapq import heappop, heappush
 
+from foon_asp.hypergraph.exact_costs import ExactCosts
 from foon_asp.hypergraph.goal_graph import GoalGraph
+from foon_asp.hypergraph.h_values import compute_h_values
+from foon_asp.hypergraph.landmark_cuts import Cuts
+from foon_asp.hypergraph.lazy_h_max import lazy_h_max_test
 
 
 def neighbourhood(
@@ -60,3 +64,33 @@ def neighbourhood(
         if enough is not None and len(kept) >= enough:
             break
     return kept
+
+
+def reduced_costs_of(costs: ExactCosts, cuts: Cuts) -> Callable[[int], int]:
+    """Return a function from an action to its reduced cost by a cost partition."""
+    reduced_costs = cuts.reduced_costs
+    return lambda action: reduced_costs[action] if action in reduced_costs else costs(action)
+
+
+def reduced_cost_fixing(
+    graph: GoalGraph,
+    allowed: Container[int],
+    reduced_cost: Callable[[int], int],
+    limit: int,
+    expired: Callable[[], bool],
+) -> set[int]:
+    """Return a superset of the allowed actions that irredundant trees of reduced cost up to ``limit`` have.
+
+    Alternates h_max from the initial objects with distances to the goals, until no more actions are excluded.
+    Where time is up, the superset is larger.
+    """
+    remaining = neighbourhood(
+        graph, allowed, reduced_cost, limit, reachable=lazy_h_max_test(graph, allowed, reduced_cost)
+    )
+    while not expired():
+        derivations = compute_h_values(graph, remaining, reduced_cost, h_add=False)
+        narrowed = neighbourhood(graph, remaining, reduced_cost, limit, derivations.h_actions)
+        if len(narrowed) == len(remaining):
+            break
+        remaining = narrowed
+    return remaining

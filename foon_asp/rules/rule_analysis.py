@@ -32,7 +32,7 @@ from foon_asp.rules.clause import (
 from foon_asp.rules.dependence import Dependence, Doubt, Monotonicity
 from foon_asp.rules.fact_values import COLUMNS, position_of_wrong_type
 from foon_asp.rules.locality import Locality
-from foon_asp.rules.understood import AtLeastOne, Removal, Row, Translator
+from foon_asp.rules.rule_translation import AtLeastOne, Removal, Row, Translator
 
 
 class Kind(StrEnum):
