@@ -41,7 +41,8 @@ from foon_asp.certificate.certificate import subject_of
 from foon_asp.comparison.many import makeable
 from foon_asp.deadline import Deadline
 from foon_asp.problem import Objective, Problem, reach
-from foon_asp.proof.verifier import read_certificate, verify
+from foon_asp.proof.certificate_file import read_certificate
+from foon_asp.proof.verifier import verify
 
 T = TypeVar("T")
 _MINECRAFT = "1.21.9"

@@ -55,6 +55,7 @@ from foon_asp.planning.strips_task import StripsTask
 from foon_asp.planning.task_files import read_task
 from foon_asp.problem import Problem, executable_order
 from foon_asp.proof import verifier as proof
+from foon_asp.proof.certificate_file import read_certificate
 from foon_asp.questions.relax import Relaxed, solve_relaxation
 
 OURS, GREEDY = "foon-asp", "greedy"
@@ -126,7 +127,7 @@ def certified(found: Relaxed, limit: float) -> dict[str, Any]:
     if certificate is None:
         return {"certified": False}
     text = certificate.text()
-    content = proof.read_certificate(text)
+    content = read_certificate(text)
     proof.verify(content, subject_of(problem))
     return {"certified": True, "certificate": text}
 

@@ -36,7 +36,7 @@ _ROOMS = {
     "problem": ("ContainerRule", "Costs", "Fate", "Objective", "Problem", "UsedUp"),
     "problem.progress": ("Progress",),
     "proof.simulation": ("Simulation", "Verdict"),
-    "proof.verifier": ("RefusedError",),
+    "proof.refusal": ("RefusedError",),
     "results.timed_step": ("TimedStep", "Tool"),
     "text.tables": ("Duration",),
     "text.line_parser": ("parse_node",),

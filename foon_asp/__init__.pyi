@@ -28,9 +28,9 @@ from foon_asp.problem import Objective as Objective
 from foon_asp.problem import Problem as Problem
 from foon_asp.problem import UsedUp as UsedUp
 from foon_asp.problem.progress import Progress as Progress
+from foon_asp.proof.refusal import RefusedError as RefusedError
 from foon_asp.proof.simulation import Simulation as Simulation
 from foon_asp.proof.simulation import Verdict as Verdict
-from foon_asp.proof.verifier import RefusedError as RefusedError
 from foon_asp.questions.align import Aligned as Aligned
 from foon_asp.questions.align import align as align
 from foon_asp.questions.all_goals import Optima as Optima

@@ -11,7 +11,8 @@ from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.lexicographic import Lexicographic, Vector
 from foon_asp.hypergraph.proof_tree import Cases
 from foon_asp.problem import Objective, Problem, multiplies
-from foon_asp.proof import compiled_rules, verifier
+from foon_asp.proof import compiled_rules
+from foon_asp.proof.refusal import LimitError
 
 
 class Arrays:
@@ -232,4 +233,4 @@ def fraction_text(number: Fraction) -> str:
     try:
         return str(number)
     except ValueError:  # Python writes no whole number of more than 4,300 digits
-        raise verifier.LimitError("a fraction has more digits than are written") from None
+        raise LimitError("a fraction has more digits than are written") from None

@@ -17,7 +17,11 @@ from foon_asp.hypergraph.lexicographic import Vector
 from foon_asp.hypergraph.optimality_proof import CheaperError, Prover
 from foon_asp.hypergraph.proof_tree import Broken, Cases, CostFixing, Hopeless, Packing, Proof
 from foon_asp.problem import Costs, Objective, OptionalData, Problem
-from foon_asp.proof import verifier
+from foon_asp.proof.certificate_file import read_certificate
+from foon_asp.proof.certificate_header import TREE_FORM, Form, seal
+from foon_asp.proof.certificate_subject import Subject
+from foon_asp.proof.refusal import LimitError, RefusedError
+from foon_asp.proof.verified_claim import Verified
 from foon_asp.proof.verify_plan import verify_any
 from foon_asp.text.json_text import json_line
 
@@ -67,7 +71,7 @@ def certify(
     covered: Coverage = NOTHING,
     expired: Callable[[], bool] = lambda: False,
     cuts: Sequence[Sequence[int]] = (),
-    subject: verifier.Subject | None = None,
+    subject: Subject | None = None,
     cases: Cases = None,
 ) -> Certificate | None:
     """Certify that a tree is optimal, by as many of the first objectives as are proved, or certify a bound.
@@ -129,7 +133,7 @@ def certify_infeasible(
     problem: Problem,
     covered: Coverage = NOTHING,
     expired: Callable[[], bool] = lambda: False,
-    subject: verifier.Subject | None = None,
+    subject: Subject | None = None,
 ) -> Certificate | None:
     """Return a certificate that there is no tree; ``subject`` is as for :func:`certify`.
 
@@ -169,7 +173,7 @@ def _write_tree_certificate(
     claim: str,
     units: Sequence[int] | None,
     proof: Proof,
-    subject: verifier.Subject | None,
+    subject: Subject | None,
     bound: Vector | None = None,
 ) -> Certificate | None:
     """Return the certificate of a claim about trees; each cut and each limit gets a number in it.
@@ -224,7 +228,7 @@ def _write_tree_certificate(
     try:
         proof_content = proof_json(proof)
         least = None if bound is None else arrays.vector_json(bound)
-    except verifier.LimitError:
+    except LimitError:
         return None
     graph = arrays.graph
     members = (u for cut in cuts for o in cut for u in graph.makers[o] if {*cut}.isdisjoint(graph.needs[u]))
@@ -233,7 +237,7 @@ def _write_tree_certificate(
     numbered = [list(map(network.object_number, objects)) for objects in cuts]
     claimed = Claimed(claim, arrays.objectives, units, least)
     return write_certificate(
-        verifier.TREE_FORM, problem, claimed, covered._replace(rules=rules), numbered, proof_content, subject
+        TREE_FORM, problem, claimed, covered._replace(rules=rules), numbered, proof_content, subject
     )
 
 
@@ -251,13 +255,13 @@ class Claimed(NamedTuple):
 
 
 def write_certificate(
-    form: verifier.Form,
+    form: Form,
     problem: Problem,
     claimed: Claimed,
     covered: Coverage,
     cuts: Sequence[Sequence[int]],
     proof: object,
-    subject: verifier.Subject,
+    subject: Subject,
     **more_keys: object,
 ) -> Certificate | None:
     """Return a sealed and verified certificate; ``None`` where it is beyond the limits of the verifier.
@@ -299,9 +303,9 @@ def write_certificate(
             content["measures"][measure.name]["costs"] = _units_by_cost(measure.costs)
         if verified.trusted:
             _seal_and_verify(certificate, subject)
-    except verifier.LimitError:
+    except LimitError:
         return None
-    except verifier.RefusedError as refused:
+    except RefusedError as refused:
         raise BugError(f"a certificate that was found is refused: {refused}") from None
     return certificate
 
@@ -313,19 +317,19 @@ def _costs_json(problem: Problem, objectives: Sequence[Objective], units: Sequen
     return [figure if isinstance(figure, int) else fraction_text(figure) for figure in figures]
 
 
-def _seal_and_verify(certificate: Certificate, subject: verifier.Subject) -> verifier.Verified:
+def _seal_and_verify(certificate: Certificate, subject: Subject) -> Verified:
     """Seal a certificate in place, and return what the verifier says that it proves."""
     content = certificate.content
-    content["seal"] = verifier.seal(content)
-    return verify_any(verifier.read_certificate(certificate.text()), subject)
+    content["seal"] = seal(content)
+    return verify_any(read_certificate(certificate.text()), subject)
 
 
-def subject_of(problem: Problem) -> verifier.Subject:
+def subject_of(problem: Problem) -> Subject:
     """Return the data that certificates of a problem are about: its network, kitchen, rates and the like.
 
     The problem has to be over a whole network, not a part of one.
     """
-    return verifier.Subject(
+    return Subject(
         *(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices),
         amounts=problem.amounts,
         stand_ins=problem.stand_ins.table if problem.stand_ins else None,

@@ -14,7 +14,9 @@ from foon_asp.certificate.plan import certify_no_plan, certify_plan, covered_for
 from foon_asp.errors import BugError
 from foon_asp.hypergraph.lexicographic import Vector
 from foon_asp.problem import Problem, levels, multiplies
-from foon_asp.proof.verifier import ALLOWED, Subject, trusted_claims
+from foon_asp.proof.certificate_limits import ALLOWED
+from foon_asp.proof.certificate_rules import trusted_claims
+from foon_asp.proof.certificate_subject import Subject
 
 
 def certify_outcome(

@@ -12,9 +12,9 @@ from foon_asp.encoding.encoding_file import string_constant
 from foon_asp.encoding.own_encodings import is_own
 from foon_asp.hypergraph.exact_optimum import Limit
 from foon_asp.problem import Problem
+from foon_asp.proof.canonical_json import canonical_json
 from foon_asp.proof.compiled_rules import CompiledRules
 from foon_asp.proof.rule_meaning import LIBRARY, OWN, Rule, meaning_of_rule
-from foon_asp.proof.verifier import canonical_json
 from foon_asp.rules.passed_constraint import Constraint, LibraryUse, RuleText, find_constraint
 from foon_asp.rules.ready_made import LISTED, question_of
 

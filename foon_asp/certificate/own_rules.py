@@ -18,8 +18,9 @@ from foon_asp.errors import UserError
 from foon_asp.hypergraph import NONE
 from foon_asp.problem import Contradiction, Objective, Problem
 from foon_asp.problem.number import INT32_MAX
+from foon_asp.proof.canonical_json import canonical_json
+from foon_asp.proof.refusal import LimitError, RefusedError
 from foon_asp.proof.rule_meaning import OWN, Rule
-from foon_asp.proof.verifier import LimitError, RefusedError, canonical_json
 from foon_asp.rules.passed_constraint import (
     Constraint,
     LibraryUse,

@@ -36,7 +36,8 @@ from foon_asp.problem import (
     reach,
     units_relevant_to_plans,
 )
-from foon_asp.proof import verifier
+from foon_asp.proof.canonical_json import canonical_json
+from foon_asp.proof.refusal import LimitError
 from foon_asp.proof.rule_meaning import OWN
 from foon_asp.proof.verify_plan import LOGARITHM_SCALE, PLAN, PLAN_RULES
 
@@ -46,9 +47,7 @@ _HALF = Fraction(1, 2)
 def covered_for_plans(covered: Coverage) -> Coverage:
     """Return the coverage for plans: rules that their certificates cannot check go to ``not_covered``."""
     rules = tuple(rule for rule in covered.rules if rule["rule"] in PLAN_RULES)
-    others = {
-        verifier.canonical_json(rule) for rule in covered.rules if rule not in rules and rule["rule"] != OWN
-    }
+    others = {canonical_json(rule) for rule in covered.rules if rule not in rules and rule["rule"] != OWN}
     return Coverage(rules, tuple(sorted({*covered.not_covered, *others})))
 
 
@@ -357,7 +356,7 @@ class _PlanQuestion:
         try:
             order = None if bound is None else self._claim(objectives[0]).order
             stated = None if bound is None else [weight_json(vector, order) for vector in bound]
-        except verifier.LimitError:
+        except LimitError:
             return None
         return write_certificate(
             PLAN,

@@ -52,7 +52,7 @@ from foon_asp.text.object_list import ListedObject, read_object_list
 from foon_asp.warning import warn
 
 if TYPE_CHECKING:  # plain answers do not need it
-    from foon_asp.proof.verifier import Subject
+    from foon_asp.proof.certificate_subject import Subject
     from foon_asp.store.unit_distances import UnitDistances
 
 
@@ -420,7 +420,7 @@ class Dataset:
         prices are those of the store. Otherwise all data are read; raises :class:`UserError` if they do not
         have a digest that the store states. A starting kitchen is the one for ``goals``.
         """
-        from foon_asp.proof.verifier import Subject  # noqa: PLC0415 (few answers need it)
+        from foon_asp.proof.certificate_subject import Subject  # noqa: PLC0415 (few answers need it)
 
         source, stocked = self.source, self.for_goals(goals)
         rates = None if self.unrated else self.rates
@@ -456,7 +456,7 @@ class Dataset:
 
         With ``steps``, the ids of the units of a tree, the stand-ins are those for the repair of this tree.
         """
-        from foon_asp.proof.verifier import Subject  # noqa: PLC0415 (few answers need it)
+        from foon_asp.proof.certificate_subject import Subject  # noqa: PLC0415 (few answers need it)
 
         if steps and self.stand_ins is not None:
             from foon_asp.standins.repair import Repair  # noqa: PLC0415 (few questions have stand-ins)

@@ -10,7 +10,7 @@ from foon_asp.problem import Objective, Problem, UsedUp
 from foon_asp.store.cone import Cone
 
 if TYPE_CHECKING:  # plain answers do not need it
-    from foon_asp.proof.verifier import Subject
+    from foon_asp.proof.certificate_subject import Subject
     from foon_asp.store.unit_distances import UnitDistances
 
 

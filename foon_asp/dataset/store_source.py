@@ -128,7 +128,7 @@ class StoreSource(Source):
 
     def true_digests(self) -> dict[str, str]:
         """Compute the digests that the store states; raises :class:`UserError` if one is not true."""
-        from foon_asp.proof.verifier import Subject  # noqa: PLC0415 (few answers need it)
+        from foon_asp.proof.certificate_subject import Subject  # noqa: PLC0415 (few answers need it)
 
         store, (network, kitchen) = self.names, self._whole
         single = self.unit_prices(network, self.prices.from_file)

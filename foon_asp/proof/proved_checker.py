@@ -12,7 +12,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from foon_asp.proof.verifier import RefusedError, Subject, read_rules
+from foon_asp.proof.certificate_rules import read_rules
+from foon_asp.proof.certificate_subject import Subject
+from foon_asp.proof.refusal import RefusedError
 
 ACCEPTED = "accepted"
 NOT_BUILT = "not built; `make verified` builds it where Coq is installed"

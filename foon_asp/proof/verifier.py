@@ -20,29 +20,31 @@ import json
 import math
 import re
 from collections import defaultdict
-from collections.abc import Callable, Collection, Container, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from decimal import Context, Decimal
 from fractions import Fraction
 from functools import cache
 from itertools import accumulate, chain
-from pathlib import Path
-from types import MappingProxyType
-from typing import Any, NamedTuple, TypeAlias
+from typing import Any, TypeAlias
 
-from foon_asp.network import STAND_IN, Amounts, Network, StandInTable, UnitPrices, node_at_level
-from foon_asp.proof.compiled_rules import CompiledRules, Limit
-from foon_asp.proof.rule_meaning import (
-    ALL_STEPS,
-    LIBRARY,
-    OWN,
-    Meaning,
-    Question,
-    Rule,
-    meaning_of_rule,
-    sources_read,
+from foon_asp.network import STAND_IN, Network, UnitPrices, node_at_level
+from foon_asp.proof.certificate_fields import (
+    read_goal,
+    read_list,
+    read_names,
+    read_number,
+    read_numbers,
+    read_object,
+    read_rational,
 )
-from foon_asp.proof.stand_ins import Actions, StandInClaim, price_of, stand_in_fault, stand_in_price_data
+from foon_asp.proof.certificate_header import TREE_FORM, check_header
+from foon_asp.proof.certificate_limits import ALLOWED
+from foon_asp.proof.certificate_subject import Subject
+from foon_asp.proof.compiled_rules import CompiledRules, Limit
+from foon_asp.proof.refusal import LimitError, RefusedError, refuse_deep_nesting, require
+from foon_asp.proof.rule_meaning import ALL_STEPS, Meaning, Question, Rule, meaning_of_rule
+from foon_asp.proof.stand_ins import Actions, StandInClaim, price_of, stand_in_fault
+from foon_asp.proof.verified_claim import Trusted, Verified
 
 _UNMEASURED = "nothing"  # in place of objectives, if the claim is that there is no tree
 OBJECTIVES = (
@@ -56,262 +58,11 @@ OBJECTIVES = (
     "dissimilarity",
 )
 
-CERTIFICATE_KEYS = frozenset(
-    (
-        *("format", "version", "claim", "goals", "containers", "level", "objective", "digests", "rules"),
-        *("measures", "not_covered", "tree", "costs", "bound", "cuts", "proof", "seal"),
-    )
-)
 _MEASURE_NAME = re.compile(r"[a-z][A-Za-z0-9_']*", re.ASCII)
-_RATIONAL = re.compile(r"-?(0|[1-9]\d*)(/[1-9]\d*)?", re.ASCII)
-_SURROGATE = re.compile("[\ud800-\udfff]")
 
-
-class CertificateLimits(NamedTuple):
-    """Limits on certificates, which may come from strangers; a certificate beyond a limit is refused.
-
-    Attributes:
-        letters: Characters of the file.
-        brackets: Lists and objects in the file.
-        steps: Steps of the check. To look at a unit is one step; arithmetic takes more.
-        steps_each: Additional steps for each unit and object node of the network.
-        rules: Rules of a claim.
-        rule_steps: Steps that are counted for a rule, for each unit and object node of the network.
-        digits: Digits of a fraction in the file.
-        sum_bits: Bits of a sum of fractions.
-        product_bits: Bits of a product of rates.
-        written_bits: Bits of the cost of a tree, since Python writes numbers of up to 4,300 digits.
-    """
-
-    letters: int = 16_000_000
-    brackets: int = 1_000_000
-    steps: int = 5_000_000
-    steps_each: int = 200
-    rules: int = 100
-    rule_steps: int = 10
-    digits: int = 2_000
-    sum_bits: int = 40_000
-    product_bits: int = 250_000
-    written_bits: int = 13_000
-
-
-ALLOWED = CertificateLimits()
 
 # A cost or weight: exact numbers by objective (its index) and rate (``None`` except by success).
 Amount: TypeAlias = dict[tuple[int, Fraction | None], Fraction]
-
-
-class Form(NamedTuple):
-    """A form of certificates: its name, its version, and the keys that every certificate of the form has."""
-
-    name: str
-    version: int
-    keys: frozenset[str]
-
-
-TREE_FORM = Form("foon-asp certificate", 5, CERTIFICATE_KEYS)
-
-
-class Subject(NamedTuple):
-    """The data that a certificate is about.
-
-    ``network``: the network; units and nodes are given by id.
-    ``kitchen``: the nodes that are available at first.
-    ``rates``: the success rate of each motion; ``None`` if unknown.
-    ``utensils``: the labels of utensils.
-    ``prices``: the prices of motions and units; ``None`` if unknown.
-    ``stated``: digests by name that are used as they are, in place of computed ones.
-    ``trusted``: the names of those stated digests that nobody computed from the data.
-    ``amounts``: the amounts of inputs and outputs, which only plans read.
-    ``stand_ins``: the table by which stand-ins were added to the network; ``None`` without stand-ins.
-    """
-
-    network: Network
-    kitchen: Collection[int]
-    rates: Mapping[str, Fraction] | None
-    utensils: frozenset[str]
-    prices: UnitPrices | None = None
-    stated: Mapping[str, str] = MappingProxyType({})
-    trusted: tuple[str, ...] = ()
-    amounts: Amounts = MappingProxyType({})
-    stand_ins: StandInTable | None = None
-
-    def digests(self, rules: Iterable[Rule] = ()) -> dict[str, str]:
-        """Return the SHA-256 digests of the data, by name, as a certificate with these rules states them.
-
-        A digest in ``stated`` is returned as it is. The digest of sources covers only what the rules read of
-        them.
-        """
-        return {
-            name: self.stated.get(name) or _digest(value())
-            for name, value in self._digest_data(rules).items()
-        }
-
-    def canonical_data(self, rules: Iterable[Rule] = (), goals: Iterable[int] = ()) -> str:
-        """Return all data that a certificate with these rules and goals depends on, as canonical JSON.
-
-        It is an object with the data of each digest, by name, and under ``goals`` the id and text of each
-        goal.
-        """
-        values = {name: value() for name, value in self._digest_data(rules).items()}
-        return canonical_json(
-            {**values, "goals": [(goal, str(self.network.objects[goal])) for goal in goals]}
-        )
-
-    def _digest_data(self, rules: Iterable[Rule]) -> dict[str, Callable[[], object]]:
-        """Return for each digest, by name, a function that returns the data to be digested."""
-        network, rates, prices = self.network, self.rates, self.prices
-        places = [looked for rule in rules if (looked := sources_read(rule, network)) is not None]
-        table = self.stand_ins
-        return {
-            **({} if table is None else {"stand-ins": lambda: stand_in_price_data(table)}),
-            "network": lambda: _network_data(network),
-            "kitchen": lambda: sorted(self.kitchen),
-            "rates": lambda: rates and sorted([motion, str(rate)] for motion, rate in rates.items()),
-            "utensils": lambda: sorted(self.utensils),
-            "prices": lambda: prices and _price_data(prices, network.detailed or network),
-            "sources": lambda: places or None,
-        }
-
-
-class RefusedError(Exception):
-    """The certificate is wrong; the message says where.
-
-    Example:
-        >>> import pathlib, tempfile
-        >>> file = pathlib.Path(tempfile.mkdtemp()) / "proof.json"
-        >>> _ = file.write_text("{}")
-        >>> foon_asp.verify(foon_asp.load(), file)
-        Traceback (most recent call last):
-        foon_asp.proof.verifier.RefusedError: expected the format 'foon-asp certificate'
-    """
-
-
-class LimitError(RefusedError):
-    """The certificate may be right, but it exceeds a limit of :class:`CertificateLimits`."""
-
-
-class Trusted(NamedTuple):
-    """A statement taken on trust: what units cost by a measure of the user.
-
-    ``name``: the name of the measure.
-    ``rules``: the text of the rules that define the measure.
-    ``sha256``: the digest of this text.
-    ``costs``: the costs by unit id, as stated. No unit has a negative cost; this is taken on trust, too.
-    """
-
-    name: str
-    rules: str
-    sha256: str
-    costs: Mapping[int, Fraction]
-
-
-class ItemClaims(NamedTuple):
-    """The statements about consumable items that a claim about plans rests on.
-
-    ``stock``: the copies of kitchen items, by id of the node. Other kitchen items never run out.
-    ``stays``: for labels, and for nodes by id, whether they stay when used, whatever the rule says.
-    ``wanted``: the number of copies wanted of a goal, by id, if it is not 1.
-    """
-
-    stock: Mapping[int, int]
-    stays: Mapping[str | int, bool]
-    wanted: Mapping[int, int] = MappingProxyType({})
-
-
-class Verified(NamedTuple):
-    """What a certificate proves about the data it was checked with.
-
-    ``claim`` is one of three. ``optimal``: no tree is better than ``tree`` by the ``objectives``, most
-    important first. ``bound``: no tree costs less than the certificate's bound. ``infeasible``: there is no
-    tree.
-
-    ``goals``: the goal nodes, by id.
-    ``containers``: the container rule, ``strict`` or ``implied``.
-    ``level``: the level of the network.
-    ``rules``: the constraints that all these trees satisfy, each with its name (``rule``) and its values.
-    ``not_covered``: names of constraints that the claim does not take into account.
-    ``tree``: the units by id, in an order that executes; ``None`` without a tree.
-    ``costs``: the costs of the tree, one for each objective; ``None`` without a tree.
-    ``cuts``: the number of cuts.
-    ``trusted``: statements that the claim rests on and that are not in the data.
-    ``used_up``: statements about items, if items are used up. All claims are then about plans in place of
-    trees.
-    """
-
-    claim: str
-    goals: tuple[int, ...]
-    containers: str
-    level: int
-    objectives: tuple[str, ...]
-    rules: tuple[Rule, ...]
-    not_covered: tuple[str, ...]
-    tree: tuple[int, ...] | None
-    costs: tuple[int | Fraction, ...] | None
-    cuts: int
-    trusted: tuple[Trusted, ...] = ()
-    used_up: ItemClaims | None = None
-
-
-def load_certificate(file: Path) -> Any:
-    """Return the parsed JSON of a certificate file.
-
-    The file is read up to the greatest length of certificates. Raises ``OSError`` and ``UnicodeDecodeError``
-    if it cannot be read, and :class:`RefusedError` if it is too long, invalid, or has a key twice.
-    """
-    with file.open("rb") as stream:
-        raw = stream.read(ALLOWED.letters)
-        if stream.peek():
-            raise LimitError(f"it has more than {ALLOWED.letters:,} letters")
-    return read_certificate(raw.decode("utf-8"))
-
-
-def read_certificate(text: str) -> Any:
-    """Return the parsed JSON of a certificate.
-
-    Raises :class:`RefusedError` if the text is too long or no JSON, or has a key twice or a float.
-    """
-
-    def unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-        """Return a JSON object as a dictionary; refuse a key that occurs twice."""
-        content = dict(pairs)
-        require(len(content) == len(pairs), "a key stands twice in one object")
-        return content
-
-    def refuse_float(number: str) -> None:
-        """Refuse a number that is no whole number."""
-        raise RefusedError(f"found the number {number[:50]}, expected whole numbers, and fractions in quotes")
-
-    if len(text) > ALLOWED.letters or text.count("[") + text.count("{") > ALLOWED.brackets:
-        raise LimitError(f"it has more than {ALLOWED.letters:,} letters or {ALLOWED.brackets:,} brackets")
-    try:
-        return json.loads(
-            text, object_pairs_hook=unique_keys, parse_float=refuse_float, parse_constant=refuse_float
-        )
-    except (ValueError, RecursionError) as error:
-        raise RefusedError(f"not JSON: {error}") from None
-
-
-def seal(certificate: Mapping[str, Any]) -> str:
-    """Return the seal of a certificate: the SHA-256 digest of all its content except its key ``seal``."""
-    return _digest({key: value for key, value in certificate.items() if key != "seal"})
-
-
-def trusted_claims(certificate: Mapping[str, Any]) -> Rule | None:
-    """Return the claims about user rules that a certificate takes on trust, as one of its rules.
-
-    ``None`` if there are none.
-    """
-    return next((rule for rule in certificate.get("rules", ()) if rule["rule"] == OWN), None)
-
-
-@contextmanager
-def refuse_deep_nesting() -> Iterator[None]:
-    """Turn a ``RecursionError`` of the decorated check into :class:`RefusedError`."""
-    try:
-        yield
-    except RecursionError:
-        raise RefusedError("branches nested too deeply") from None
 
 
 @refuse_deep_nesting()
@@ -324,28 +75,6 @@ def verify(certificate: Any, subject: Subject) -> Verified:
     """
     rules = check_header(certificate, TREE_FORM, subject)
     return Check(certificate, rules, subject).verify_claim()
-
-
-def check_header(certificate: Any, form: Form, subject: Subject) -> tuple[Rule, ...]:
-    """Check all of a certificate that depends neither on its tree nor on its proof; return its rules.
-
-    These are the form, the version, the keys, the seal, the level and the digests.
-    """
-    require(isinstance(certificate, dict), "expected an object with the keys of a certificate")
-    require(certificate.get("format") == form.name, f"expected the format {form.name!r}")
-    version = certificate.get("version")
-    same = type(version) is int and version == form.version
-    require(same, f"expected version {form.version} of the format")
-    require(certificate.keys() == form.keys, f"expected the keys {', '.join(sorted(form.keys))}")
-    require(certificate["seal"] == seal(certificate), "the seal does not match: something was changed")
-    level, network = certificate["level"], subject.network
-    require(type(level) is int and level == network.level, f"not a claim about level {network.level}")
-    rules = read_rules(certificate["rules"], len(network))
-    digests = subject.digests(rules)
-    named = read_object(certificate["digests"], tuple(digests))
-    for name, digest in digests.items():
-        require(named[name] == digest, f"{name}: not the one that the certificate is about")
-    return rules
 
 
 class Check:
@@ -382,7 +111,7 @@ class Check:
         self.rates = self._required_rates(rates) if by_rates else {}
         self.fractional_rates = frozenset(self.rates.values()) - {0, 1}
         self.prices = self._required_prices(prices) if "price" in self.objectives else []
-        self.goals = tuple(_read_goal(goal, network) for goal in read_list(certificate["goals"]))
+        self.goals = tuple(read_goal(goal, network) for goal in read_list(certificate["goals"]))
         require(len(set(self.goals)) == len(self.goals) > 0, "expected goals, each of them once")
         self.needs, self.gives = cache(self._needs), cache(self._gives)  # of a unit, without its rules
         self.preconditions, self.cost = cache(self._preconditions), cache(self._cost)  # of a member
@@ -404,7 +133,7 @@ class Check:
             len(network.objects),
             len(network) + len(network.objects),
         )
-        self.not_covered = _read_names(certificate["not_covered"])
+        self.not_covered = read_names(certificate["not_covered"])
         # other names could print misleading lines of their own
         require(all(name.isprintable() for name in self.not_covered), "a constraint has no printable name")
         nodes = len(network.objects) + len(self.ruled.makers)
@@ -1141,180 +870,3 @@ def bit_length(value: Fraction) -> int:
 def negate(amount: Amount) -> Amount:
     """Return an amount with the opposite sign."""
     return {key: -value for key, value in amount.items()}
-
-
-def _network_data(network: Network) -> list[Any]:
-    """Return all that a claim about a network can depend on, as lists that JSON can write.
-
-    Below level 3, this includes the network of level 3.
-    """
-    nodes = [
-        (label, sorted(states), sorted(relations), contents)
-        for label, states, relations, contents in network.objects
-    ]
-    below = [] if network.detailed is None else [_network_data(network.detailed), network.stands_for]
-    return [network.level, nodes, network.motions, network.inputs, network.outputs, *below]
-
-
-def _price_data(prices: UnitPrices, network: Network) -> list[list[Any]]:
-    """Return two sorted lists of pairs: motions and their prices, and unit ids and their prices.
-
-    Ids are those of ``network``; units that it does not have are omitted.
-    """
-    ids = ((network.unit_id(unit), price) for unit, price in prices.units.items())
-    single = sorted([unit, str(price)] for unit, price in ids if unit is not None)
-    return [sorted([motion, str(price)] for motion, price in prices.motions.items()), single]
-
-
-def _digest(value: object) -> str:
-    """Return the SHA-256 digest of plain values, written as canonical JSON."""
-    return hashlib.sha256(canonical_json(value).encode()).hexdigest()
-
-
-def canonical_json(value: object) -> str:
-    """Return plain values as canonical JSON: keys in order, without spaces."""
-    return json.dumps(value, sort_keys=True, separators=(",", ":"), check_circular=False)
-
-
-def require(holds: bool, otherwise: str) -> None:
-    """Raise :class:`RefusedError` with the message ``otherwise`` unless ``holds`` is true."""
-    if not holds:
-        raise RefusedError(otherwise)
-
-
-def read_object(value: Any, keys: Sequence[str] | None = None) -> dict[str, Any]:
-    """Return a value; refuse it unless it is a JSON object with exactly these keys.
-
-    If ``keys`` is ``None``, the object may have any keys.
-    """
-    require(isinstance(value, dict), "expected an object")
-    content: dict[str, Any] = value
-    require(keys is None or set(content) == set(keys), f"expected the keys {', '.join(keys or ())}")
-    return content
-
-
-def read_list(value: Any) -> list[Any]:
-    """Return a value; refuse it unless it is a JSON list."""
-    require(isinstance(value, list), "expected a list")
-    items: list[Any] = value
-    return items
-
-
-def read_pair(value: Any, what: str) -> tuple[Any, Any]:
-    """Return the two entries of a list; refuse other values; ``what`` names the list in the error."""
-    require(isinstance(value, list) and len(value) == 2, f"expected {what}")
-    first, second = value
-    return first, second
-
-
-def read_number(value: Any, allowed: Container[int], what: str) -> int:
-    """Return a whole number; refuse values that are not ``allowed``; ``what`` names it in the error.
-
-    JSON's ``true`` is no number.
-    """
-    require(type(value) is int and value in allowed, f"expected {what}")
-    return int(value)
-
-
-def _read_names(value: Any) -> tuple[str, ...]:
-    """Return a list of texts as a tuple; refuse it unless they are sorted and different.
-
-    Texts with surrogates (half letters) are refused, too.
-    """
-    names = read_list(value)
-    require(all(isinstance(name, str) for name in names), "expected names")
-    require(names == sorted(set(names)), "expected names in order, each of them once")
-    require(not any(map(_SURROGATE.search, names)), "a name has half of a letter (a surrogate)")
-    return tuple(names)
-
-
-def read_numbers(value: Any, below: int, ascending: bool = True) -> list[int]:
-    """Return a list of numbers; refuse it unless they are distinct and from 0 to ``below - 1``.
-
-    With ``ascending``, refuse a list that is empty or not ascending, too.
-    """
-    numbers = read_list(value)
-    require(all(type(n) is int and 0 <= n < below for n in numbers), "expected ids of the network")
-    require(len(set(numbers)) == len(numbers), "an id stands twice")
-    require(not ascending or (numbers == sorted(numbers) and len(numbers) > 0), "expected ids in order")
-    return numbers
-
-
-def _read_goal(value: Any, network: Network) -> int:
-    """Return the id of a goal from an object with its id and text; refuse it unless these agree."""
-    goal = read_object(value, ("id", "node"))
-    (node,) = read_numbers([goal["id"]], len(network.objects))
-    require(str(network.objects[node]) == goal["node"], "a goal is not the node of its id")
-    return node
-
-
-def read_rules(value: Any, units: int) -> tuple[Rule, ...]:
-    """Return the rules of a claim; refuse rules that are unknown, malformed, repeated or not sorted.
-
-    ``units`` is the number of units. Claims about user rules are rules, too; only their form is checked.
-    """
-    rules = [read_object(rule) for rule in read_list(value)]
-    if len(rules) > ALLOWED.rules:
-        raise LimitError(f"it has more than {ALLOWED.rules} rules")
-    for rule in rules:
-        name = rule.get("rule")
-        if name == OWN:
-            _check_user_rules(rule, units)
-            continue
-        if name == ALL_STEPS:
-            read_object(rule, ("rule", "units"))
-            read_numbers(rule["units"], units)
-            continue
-        require(isinstance(name, str) and name in LIBRARY, "a rule is unknown")
-        values = LIBRARY[rule["rule"]].values
-        read_object(rule, ("rule", *values))
-        for key, kind in values.items():
-            require(type(rule[key]) is kind, "a value of a rule is of another kind")
-            _read_names(rule[key] if kind is list else [rule[key]] if kind is str else [])
-    require(sum(rule["rule"] == OWN for rule in rules) <= 1, "rules of the user's own stand twice")
-    texts = [canonical_json(rule) for rule in rules]
-    require(texts == sorted(set(texts)), "expected rules in order, each of them once")
-    return tuple(rules)
-
-
-def _check_user_rules(rule: Rule, units: int) -> None:
-    """Check the form of claims about user rules; their truth is taken on trust.
-
-    They consist of the texts of the rules with their digests, pairs of sets of units, and limits on sums.
-    """
-    read_object(rule, ("rule", "claims", "constants", "files", "library", "limits"))
-    for key in ("constants", "library"):
-        _read_names(rule[key])
-    for file in read_list(rule["files"]):
-        read_object(file, ("name", "sha256", "text"))
-        _read_names([file["name"]])
-        _read_names([file["text"]])
-        require(file["name"].isprintable(), "a file of rules has no printable name")
-        sha = hashlib.sha256(file["text"].encode()).hexdigest()
-        require(file["sha256"] == sha, "a text of rules does not have its digest")
-    for claim in read_list(rule["claims"]):
-        for unit_set in read_pair(claim, "two sets of units in a claim"):
-            read_numbers(unit_set, units, ascending=unit_set != [])
-    for limit in read_list(rule["limits"]):
-        amounts, max_sum = read_pair(limit, "amounts and their limit")
-        require(type(max_sum) is int, "a limit is no whole number")
-        counted: list[int] = []
-        for amount, counted_units in read_object(amounts).items():
-            number = read_rational(amount)
-            is_count = number > 0 and number.denominator == 1
-            require(is_count, "a limit counts what is no whole number above zero")
-            counted += read_numbers(counted_units, units)
-        require(len(set(counted)) == len(counted), "a limit counts a unit twice")
-
-
-def read_rational(value: Any) -> Fraction:
-    """Return the fraction that a text such as ``3/2`` or ``-7`` stands for; refuse other values.
-
-    The text has to be in lowest terms.
-    """
-    require(isinstance(value, str) and bool(_RATIONAL.fullmatch(value)), "expected a number such as 3/2")
-    if len(value) > ALLOWED.digits:
-        raise LimitError(f"a fraction has more than {ALLOWED.digits:,} digits")
-    number = Fraction(value)
-    require(str(number) == value, "expected a fraction in lowest terms")
-    return number

@@ -22,28 +22,20 @@ from itertools import chain
 from typing import Any, NamedTuple, TypeAlias
 
 from foon_asp.network import ObjectNode
-from foon_asp.proof.rule_meaning import LIBRARY, Rule
-from foon_asp.proof.verifier import (
-    CERTIFICATE_KEYS,
-    Amount,
-    Check,
-    Form,
-    ItemClaims,
-    Subject,
-    Verified,
-    bit_length,
-    check_header,
-    negate,
+from foon_asp.proof.certificate_fields import (
     read_list,
     read_number,
     read_numbers,
     read_object,
     read_pair,
     read_rational,
-    refuse_deep_nesting,
-    require,
-    verify,
 )
+from foon_asp.proof.certificate_header import CERTIFICATE_KEYS, Form, check_header
+from foon_asp.proof.certificate_subject import Subject
+from foon_asp.proof.refusal import refuse_deep_nesting, require
+from foon_asp.proof.rule_meaning import LIBRARY, Rule
+from foon_asp.proof.verified_claim import ItemClaims, Verified
+from foon_asp.proof.verifier import Amount, Check, bit_length, negate, verify
 
 PLAN = Form("foon-asp certificate of a plan", 3, CERTIFICATE_KEYS | {"items", "unreached", "rounded"})
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from foon_asp.escapes import escaped
 from foon_asp.network import counted
+from foon_asp.proof.certificate_rules import trusted_claims
 from foon_asp.proof.rule_meaning import Rule
-from foon_asp.proof.verifier import trusted_claims
 
 if TYPE_CHECKING:  # takes clingo along, which `verify` must not load
     from foon_asp.asp import Outcome

@@ -18,7 +18,7 @@ from foon_asp.dataset import Dataset
 from foon_asp.dataset.nearby_optimum import near_goals
 from foon_asp.dataset.paths import File
 from foon_asp.problem import Objective, Problem, levels
-from foon_asp.proof.verifier import Subject
+from foon_asp.proof.certificate_subject import Subject
 from foon_asp.questions.answer import Answer, answer_from_store, answer_problem
 from foon_asp.questions.certificate_text import bound_text, certificate_lines, proof_size
 from foon_asp.questions.python_arguments import limited_reading, over_whole_network, problem_for_rules

@@ -12,7 +12,7 @@ from foon_asp.engines import Asked, DisagreementError
 from foon_asp.engines.bare_clingo import ENGINE_OPTIONS
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
-from foon_asp.proof.verifier import Subject
+from foon_asp.proof.certificate_subject import Subject
 from foon_asp.results.plain_values import exact_measures, plain
 from foon_asp.rules.passed_constraint import Constraint, LibraryUse, RuleText, find_constraint
 from foon_asp.text.exact_number import decimal_text

@@ -15,9 +15,14 @@ from foon_asp.escapes import escaped
 from foon_asp.foon import Foon
 from foon_asp.network import Network, StandInTable, counted
 from foon_asp.problem import DEFAULT_RULE, ContainerRule, Problem, kitchen_needed, parse_objectives
-from foon_asp.proof import proved_checker
-from foon_asp.proof import verifier as proof
+from foon_asp.proof import proved_checker, refusal
+from foon_asp.proof.certificate_file import load_certificate, read_certificate
+from foon_asp.proof.certificate_header import seal
+from foon_asp.proof.certificate_rules import trusted_claims
+from foon_asp.proof.certificate_subject import Subject
+from foon_asp.proof.refusal import RefusedError
 from foon_asp.proof.rule_meaning import ALL_STEPS, OWN, Rule
+from foon_asp.proof.verified_claim import ItemClaims, Verified
 from foon_asp.proof.verify_plan import is_of_plan, verify_any
 from foon_asp.questions.certificate_text import bound_text, proof_size, trusted_text
 from foon_asp.questions.posing import DATA, Command, pose_data
@@ -48,7 +53,7 @@ _NAMED_BY = {
 }
 
 
-class OtherDataError(proof.RefusedError):
+class OtherDataError(RefusedError):
     """The certificate is about other data than those named.
 
     ``differing`` is the name of the part that differs, for example ``kitchen``.
@@ -106,7 +111,7 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
     @classmethod
     def of(
         cls,
-        verified: proof.Verified,
+        verified: Verified,
         network: Network,
         content: Mapping[str, Any],
         with_clingo: bool = False,
@@ -125,7 +130,7 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
             stated: The digests that were not computed, because a store states them.
             by_proved_checker: The answer of the proved checker, if it was asked.
         """
-        user_rules, items = proof.trusted_claims(content), verified.used_up
+        user_rules, items = trusted_claims(content), verified.used_up
         claims = [] if user_rules is None else [trusted_text(user_rules, verified.tree is not None)]
         for measure in verified.trusted:
             units = counted(len(measure.costs), "unit")
@@ -206,7 +211,7 @@ class Refused(Result, frozen=True, kw_only=True, tag=schema_name("refused")):
         yield f"refused: {self.reason}"
 
 
-def _items_lines(used_up: proof.ItemClaims, network: Network) -> Iterator[str]:
+def _items_lines(used_up: ItemClaims, network: Network) -> Iterator[str]:
     """Yield lines on the stock, the copies wanted, and the items that stay, as a certificate states them."""
     nodes = network.objects
     if used_up.stock:
@@ -282,7 +287,7 @@ def verify_or_refuse(
         raise UserError(
             f"{certificate} is about other data ({other}): add {_NAMED_BY[other.differing]}"
         ) from None
-    except proof.RefusedError as refused:
+    except RefusedError as refused:
         return Refused(verified=False, reason=str(refused))
 
 
@@ -358,12 +363,12 @@ def verify(
     """
     if isinstance(certificate, str | PathLike):
         try:
-            content = proof.load_certificate(Path(certificate))
+            content = load_certificate(Path(certificate))
         except (OSError, UnicodeDecodeError) as error:
             reason = error.strerror if isinstance(error, OSError) else None
             raise UserError(f"{certificate}: cannot be read: {reason or error}") from None
     elif isinstance(getattr(certificate, "content", None), Mapping):
-        content = proof.read_certificate(certificate.text())
+        content = read_certificate(certificate.text())
     else:
         raise UserError(
             f"found a certificate of type {type(certificate).__name__}, expected a path or that of an answer"
@@ -385,7 +390,7 @@ def _verify_content(
     subject = _subject(dataset, content, full)
     try:
         verified = verify_any(content, subject)
-    except proof.RefusedError as refused:
+    except RefusedError as refused:
         differing = _differing_part(content, subject)
         if differing is None:
             raise
@@ -393,8 +398,8 @@ def _verify_content(
     for measure in verified.trusted:
         known_measure = dataset.measures.get(measure.name)
         if known_measure is not None and known_measure.text != measure.rules:
-            raise proof.RefusedError(f"the rules of {measure.name} are not those that are given")
-    user_rules = proof.trusted_claims(content)
+            raise RefusedError(f"the rules of {measure.name} are not those that are given")
+    user_rules = trusted_claims(content)
     if with_clingo and (verified.trusted or user_rules is not None):
         problem = dataset.problem(verified.goals, verified.containers, everything=True)
         _check_measures_with_clingo(problem, verified)
@@ -411,7 +416,7 @@ def _verify_content(
     )
 
 
-def _subject(dataset: Dataset, content: Any, full: bool) -> proof.Subject:
+def _subject(dataset: Dataset, content: Any, full: bool) -> Subject:
     """Return the data that a certificate can be about; of a store, only the part it needs unless ``full``.
 
     If there are stand-ins, or the certificate is about a repair, the data have the stand-ins for its goals.
@@ -426,19 +431,19 @@ def _subject(dataset: Dataset, content: Any, full: bool) -> proof.Subject:
     everything = bool(content.get("rules")) or (objectives or ["dissimilarity"])[:1] != ["dissimilarity"]
     rule = containers if containers in [*ContainerRule] else DEFAULT_RULE
     if not goals:
-        raise proof.RefusedError("expected goals of the network")
+        raise RefusedError("expected goals of the network")
     steps = [unit for unit in steps if 0 <= unit < len(dataset.data.network)]
     return dataset.subject_with_stand_ins(goals, rule, everything, steps)
 
 
-def _differing_part(content: Any, subject: proof.Subject) -> str | None:
+def _differing_part(content: Any, subject: Subject) -> str | None:
     """Return the name of the first part of the data whose digest differs from that in the certificate.
 
     The name is ``task`` for a certificate about a planning task. It is ``None`` if no part differs, or if the
     certificate itself is damaged.
     """
     with suppress(RecursionError, KeyError, TypeError, AttributeError):  # the content is no certificate
-        if content["seal"] == proof.seal(content):
+        if content["seal"] == seal(content):
             actual = {"level": subject.network.level, **subject.digests()}
             stated = {**content["digests"], "level": content["level"]}
             if "stand-ins" in {*stated} ^ {*actual}:
@@ -478,7 +483,7 @@ def _needs_whole_network(content: Any) -> bool:
     return bool(content.get("rules") or content.get("forbidden")) or priced
 
 
-def _check_measures_with_clingo(problem: Problem, verified: proof.Verified) -> None:
+def _check_measures_with_clingo(problem: Problem, verified: Verified) -> None:
     """Check the stated costs of units by measures; raises :class:`RefusedError` for a wrong one."""
     from foon_asp.rules.measure import Measure, wrong_cost  # noqa: PLC0415 (the solver)
 
@@ -488,10 +493,10 @@ def _check_measures_with_clingo(problem: Problem, verified: proof.Verified) -> N
         try:
             wrong = wrong_cost(rules, problem, measure.costs, deadline)
         except UserError as error:
-            raise proof.RefusedError(str(error)) from None
+            raise RefusedError(str(error)) from None
         except LimitError as limit:
             if deadline.interrupted:
                 raise
-            raise proof.LimitError(f"the rules of {measure.name}: {limit.stopped}") from None
+            raise refusal.LimitError(f"the rules of {measure.name}: {limit.stopped}") from None
         if wrong is not None:
-            raise proof.RefusedError(wrong)
+            raise RefusedError(wrong)

@@ -20,8 +20,9 @@ from foon_asp.certificate import (
 )
 from foon_asp.network import TaskTree
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
+from foon_asp.proof.certificate_file import read_certificate
 from foon_asp.proof.simulation import simulate_for
-from foon_asp.proof.verifier import Verified, read_certificate
+from foon_asp.proof.verified_claim import Verified
 from foon_asp.resources import bundled_kitchen
 from foon_asp.text.data_folder import find_data, read_data
 from foon_asp.text.node_lookup import find_goal
@@ -310,12 +311,12 @@ print(*sys.modules)
     loaded = run_python("-I", "-c", alone).split()
     ours = {name for name in loaded if name.split(".")[0] == "foon_asp"}
     names = {"foon_asp", "foon_asp.escapes"}  # public names, and how names are quoted
-    names |= {
-        "foon_asp.proof",
-        "foon_asp.proof.rule_meaning",
-        "foon_asp.proof.compiled_rules",
-    }  # its own parts
-    names.add("foon_asp.proof.stand_ins")
+    own_parts = (
+        *("canonical_json", "certificate_fields", "certificate_header", "certificate_limits"),
+        *("certificate_rules", "certificate_subject", "compiled_rules", "refusal", "rule_meaning"),
+        *("stand_ins", "verified_claim"),
+    )
+    names |= {"foon_asp.proof", *(f"foon_asp.proof.{part}" for part in own_parts)}
     assert ours == names | {name for name in ours if name.startswith("foon_asp.network")}
     assert not {"clingo", "highspy", "numpy", "lark", "click"} & {*loaded}
 

@@ -21,7 +21,7 @@ from foon_asp.certificate import (
 from foon_asp.errors import BugError
 from foon_asp.hypergraph.proof_tree import Packing
 from foon_asp.problem import Objective, Problem
-from foon_asp.proof import verifier
+from foon_asp.proof.certificate_header import seal
 from tests.proof.by_hand import recipe
 from tests.support.gap_problem import gap_problem
 from tests.support.handmade_certificate import forbid
@@ -353,7 +353,7 @@ def test_costs_are_said_as_far_as_they_can_be_printed(
 
 def test_a_certificate_holds_to_the_format_of_the_verifier() -> None:
     content = found(certify(SMALL, (UNITS,), [POUR])).content
-    assert content["seal"] == verifier.seal(content)
+    assert content["seal"] == seal(content)
     assert list(content) == [
         *("format", "version", "claim", "goals", "containers", "level", "objective", "digests"),
         *("rules", "measures", "not_covered", "tree", "costs", "bound", "cuts", "proof", "seal"),

@@ -19,7 +19,9 @@ from foon_asp.certificate.certificate import subject_of
 from foon_asp.deadline import Deadline
 from foon_asp.network import ObjectNode, UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem, UsedUp, levels
-from foon_asp.proof.verifier import RefusedError, Verified, seal
+from foon_asp.proof.certificate_header import seal
+from foon_asp.proof.refusal import RefusedError
+from foon_asp.proof.verified_claim import Verified
 from foon_asp.proof.verify_plan import LOGARITHM_SCALE, verify_any
 from foon_asp.questions.certificate_text import certificate_lines
 from tests.conftest import Cli

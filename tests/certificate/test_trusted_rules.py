@@ -14,8 +14,10 @@ from foon_asp.certificate import Coverage, certify_outcome
 from foon_asp.certificate.coverage import coverage
 from foon_asp.certificate.own_rules import check_with_clingo, with_own_rules
 from foon_asp.problem import ContainerRule, Objective
+from foon_asp.proof.certificate_header import seal
+from foon_asp.proof.certificate_rules import trusted_claims
+from foon_asp.proof.refusal import LimitError, RefusedError
 from foon_asp.proof.rule_meaning import Rule
-from foon_asp.proof.verifier import LimitError, RefusedError, seal, trusted_claims
 from foon_asp.resources import encodings_folder
 from foon_asp.rules.passed_constraint import given_constraint
 from tests.conftest import Cli

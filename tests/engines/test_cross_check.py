@@ -24,7 +24,7 @@ from foon_asp.engines.fast_downward import installed, solve_with_fast_downward
 from foon_asp.engines.highs import solve_with_highs
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, levels
-from foon_asp.proof.verifier import Subject
+from foon_asp.proof.certificate_subject import Subject
 from foon_asp.text.data_folder import find_data, read_data
 from tests.conftest import Cli
 from tests.encoding.test_rate_scale import two_ways

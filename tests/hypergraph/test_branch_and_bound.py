@@ -28,7 +28,9 @@ from foon_asp.hypergraph.hypergraph import Hypergraph
 from foon_asp.hypergraph.proof_tree import Branch
 from foon_asp.hypergraph.tuning import PresolveTuning
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
-from foon_asp.proof.verifier import RefusedError, seal, verify
+from foon_asp.proof.certificate_header import seal
+from foon_asp.proof.refusal import RefusedError
+from foon_asp.proof.verifier import verify
 from tests.hypergraph.small_graphs import asked, cheapest, parts, reaches, require_proves
 from tests.support.gap_problem import gap_problem
 from tests.support.random_problems import random_problem

@@ -39,8 +39,9 @@ from foon_asp.problem import (
     reach,
     relevant_units,
 )
+from foon_asp.proof.certificate_header import TREE_FORM, seal
+from foon_asp.proof.refusal import RefusedError
 from foon_asp.proof.simulation import Verdict, simulate_for
-from foon_asp.proof.verifier import TREE_FORM, RefusedError, seal
 from tests.conftest import Cli
 from tests.oracle import task_trees
 from tests.support.handmade_certificate import check

@@ -6,7 +6,8 @@ from typing import Any
 
 from foon_asp.network import NetworkBuilder, ObjectNode, Source
 from foon_asp.problem import Problem
-from foon_asp.proof.verifier import RefusedError, Verified
+from foon_asp.proof.refusal import RefusedError
+from foon_asp.proof.verified_claim import Verified
 from foon_asp.text.line_parser import parse_node
 from tests.support.handmade_certificate import Content, check, handmade
 

@@ -1,9 +1,12 @@
-"""Certificates that one check alone refuses: with the check taken out of the source, they pass."""
+"""Certificates that one check alone refuses: with the check taken out of the source, they pass.
+
+A verifier is a list of modules. Each imports only those before it, and the last one verifies.
+"""
 
 import ast
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
 from types import ModuleType
@@ -13,7 +16,7 @@ import pytest
 
 from foon_asp.certificate.certificate import subject_of
 from foon_asp.problem import Problem
-from foon_asp.proof.verifier import RefusedError
+from foon_asp.proof.refusal import RefusedError
 
 KIND = "what is of another kind ends the check with a fault of Python's and not with a refusal"
 WORDS = "the refusal says what is wrong; without it a later one says less"
@@ -39,9 +42,10 @@ class Part(NamedTuple):
     of: ModuleType | None = None
 
 
-def checks(by: ModuleType) -> Iterator[tuple[str, ast.stmt]]:
-    """Return the statements that refuse, in order, each by its function and what it says."""
-    yield from _checks(ast.parse(_source(by)), "")
+def checks(by: Iterable[ModuleType]) -> Iterator[tuple[str, ast.stmt]]:
+    """Return the statements of modules that refuse, in order, each by its function and what it says."""
+    for module in by:
+        yield from _checks(ast.parse(_source(module)), "")
 
 
 def _checks(tree: ast.AST, function: str) -> Iterator[tuple[str, ast.stmt]]:
@@ -73,39 +77,50 @@ def _source(of: ModuleType) -> str:
     return Path(str(of.__file__)).read_text(encoding="utf-8")
 
 
-def _run(source: str) -> ModuleType:
-    """Run a source as a module."""
-    found = ModuleType("changed")
-    exec(compile(source, "changed", "exec"), found.__dict__)
-    return found
+def _run(sources: Mapping[ModuleType, str], patch: pytest.MonkeyPatch) -> tuple[ModuleType, ...]:
+    """Run sources in place of modules, in order, each of which imports those before it."""
+    changed = []
+    for module, source in sources.items():
+        found = ModuleType(module.__name__)
+        exec(compile(source, module.__name__, "exec"), found.__dict__)
+        patch.setitem(sys.modules, module.__name__, found)
+        changed.append(found)
+    return tuple(changed)
 
 
 @cache
-def _without(by: ModuleType, name: str) -> ModuleType:
-    gone, lines = dict(checks(by))[name], _source(by).split("\n")
+def _without(by: tuple[ModuleType, ...], name: str) -> tuple[ModuleType, ...]:
+    sources = {module: _source(module) for module in by}
+    (at,) = (module for module in by if name in dict(checks([module])))
+    gone, lines = dict(checks([at]))[name], sources[at].split("\n")
     lines[gone.lineno - 1 : gone.end_lineno] = [" " * gone.col_offset + "pass"]
-    return _run("\n".join(lines))
+    with pytest.MonkeyPatch.context() as patch:
+        return _run({**sources, at: "\n".join(lines)}, patch)
 
 
-def held(by: Any, forged: Forged, folder: Path) -> Any:
+def named(by: Iterable[ModuleType], name: str) -> Any:
+    """Give what the first of modules that knows a name calls so; the name itself where none does."""
+    return next((vars(module)[name] for module in by if name in vars(module)), name)
+
+
+def held(by: tuple[ModuleType, ...], forged: Forged, folder: Path) -> Any:
     """Hold a forged certificate against its data: from a file, from text or as it is."""
     content, at = forged.content, forged.at
     if isinstance(content, bytes):
         file = folder / "forged.json"
         file.write_bytes(content)
-        content = by.load_certificate(file)
+        content = named(by, "load_certificate")(file)
     elif isinstance(content, str):
-        content = by.read_certificate(content)
+        content = named(by, "read_certificate")(content)
     if isinstance(forged.content, str | bytes):
-        content["seal"] = by.seal(content)
-    verify = getattr(by, "verify_plan", None) or by.verify
+        content["seal"] = named(by, "seal")(content)
+    verify = getattr(by[-1], "verify_plan", None) or vars(by[-1])["verify"]
     return verify(content, subject_of(at))
 
 
-def require_its_check_alone(by: ModuleType, name: str, forged: Forged, folder: Path) -> None:
+def require_its_check_alone(by: tuple[ModuleType, ...], name: str, forged: Forged, folder: Path) -> None:
     """Require that a check refuses a certificate, in its words, and that nothing else does."""
-    said = name.partition(": ")[2]
-    said = getattr(by, said, said)
+    said = named(by, name.partition(": ")[2])
     with pytest.raises(RefusedError, match=".*".join(map(re.escape, said.split("…")))):
         held(by, forged, folder)
     failed = ""
@@ -117,18 +132,14 @@ def require_its_check_alone(by: ModuleType, name: str, forged: Forged, folder: P
     assert (forged.stays == KIND) == (failed not in ("", "RefusedError", "LimitError"))
 
 
-def require_right(part: Part, folder: Path, monkeypatch: pytest.MonkeyPatch, *modules: ModuleType) -> None:
-    """Require that a certificate is refused, and with a wrong part in one of the modules accepted.
-
-    The last module verifies; each imports those before it.
-    """
+def require_right(
+    part: Part, folder: Path, monkeypatch: pytest.MonkeyPatch, by: tuple[ModuleType, ...]
+) -> None:
+    """Require that a certificate is refused, and with a wrong part in one of the modules accepted."""
     with pytest.raises(RefusedError):
-        held(modules[-1], part.forged, folder)
-    for each in modules:
-        source = _source(each)
-        if each is (part.of or modules[-1]):
-            assert source.count(part.right) == 1
-            source = source.replace(part.right, part.wrong)
-        changed = _run(source)
-        monkeypatch.setitem(sys.modules, each.__name__, changed)
-    assert type(held(changed, part.forged, folder)).__name__ == "Verified"
+        held(by, part.forged, folder)
+    sources = {module: _source(module) for module in by}
+    wrong_in = part.of or by[-1]
+    assert sources[wrong_in].count(part.right) == 1
+    sources[wrong_in] = sources[wrong_in].replace(part.right, part.wrong)
+    assert type(held(_run(sources, monkeypatch), part.forged, folder)).__name__ == "Verified"

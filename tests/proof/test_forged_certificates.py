@@ -15,7 +15,17 @@ import pytest
 
 from foon_asp.network import StandInTable, UnitPrices
 from foon_asp.problem import Problem, StandIns
-from foon_asp.proof import compiled_rules, rule_meaning, verifier
+from foon_asp.proof import (
+    certificate_fields,
+    certificate_file,
+    certificate_header,
+    certificate_rules,
+    compiled_rules,
+    refusal,
+    rule_meaning,
+    verifier,
+)
+from foon_asp.proof.refusal import RefusedError
 from tests.proof.by_hand import (
     BAKE,
     END,
@@ -46,6 +56,12 @@ from tests.proof.forging import (
     require_right,
 )
 from tests.support.handmade_certificate import Content, forbid, handmade
+
+# Each module imports only those before it.
+VERIFIER = (
+    *(rule_meaning, compiled_rules, refusal, certificate_file),
+    *(certificate_fields, certificate_rules, certificate_header, verifier),
+)
 
 # Nobody can make the end.
 LOST = recipe("pour: start > middle", "dig: rare > end")
@@ -176,9 +192,9 @@ FORGED: dict[str, Forged] = {
     "read_object: expected an object": plain(proof=["weights"], stays=KIND),
     "read_object: expected the keys …": plain(digests={**DIGESTS, "more": ""}),
     "read_list: expected a list": plain(objective={"units": "units"}),
-    "_read_names: expected names": plain(not_covered=[1], stays=KIND),
-    "_read_names: expected names in order, each of them once": plain(not_covered=["b", "a"]),
-    "_read_names: a name has half of a letter (a surrogate)": plain(rules=forbid(["\ud800"])),
+    "read_names: expected names": plain(not_covered=[1], stays=KIND),
+    "read_names: expected names in order, each of them once": plain(not_covered=["b", "a"]),
+    "read_names: a name has half of a letter (a surrogate)": plain(rules=forbid(["\ud800"])),
     "read_numbers: expected ids of the network": plain(tree=[False]),
     "read_numbers: an id stands twice": plain(**ANY, tree=[0, 0], costs=[2]),
     "read_numbers: expected ids in order": plain(cuts=[BOTH[::-1]]),
@@ -202,7 +218,7 @@ FORGED: dict[str, Forged] = {
         proof=weigh(limits=[[1, ["3/2"]]]),
     ),
     "_check_user_rules: a limit counts a unit twice": plain(rules=[own((), [[{"1": [3], "2": [3]}, 1]])]),
-    "_read_goal: a goal is not the node of its id": plain(goals=[{"id": END, "node": "another"}]),
+    "read_goal: a goal is not the node of its id": plain(goals=[{"id": END, "node": "another"}]),
     "read_rational: expected a number such as 3/2": plain(proof=weigh("one"), stays=KIND),
     "read_rational: expected a fraction in lowest terms": plain(proof=weigh("2/2")),
     "read_rational: a fraction has more than … digits": plain(**ANY, proof=weigh("1/1" + "0" * 2500)),
@@ -367,13 +383,13 @@ SLOW = "_spend: to check it takes more than … steps"
 
 def test_a_right_certificate_passes(tmp_path: Path) -> None:
     content = (certificate(), certificate(**FIVE, measures=measured()), text(), text().encode())
-    assert [held(verifier, Forged(each, PLAIN), tmp_path).claim for each in content] == [
+    assert [held(VERIFIER, Forged(each, PLAIN), tmp_path).claim for each in content] == [
         *("optimal", "optimal", "bound", "bound")
     ]
 
 
 def test_every_check_has_a_forged_certificate() -> None:
-    names = [name for name, _ in checks(verifier)]
+    names = [name for name, _ in checks(VERIFIER)]
     assert len(set(names)) == len(names)
     assert {*names} == FORGED.keys() | NO_CHECKS | {NEXT}
 
@@ -383,21 +399,21 @@ def test_an_objective_that_has_no_cost_yet_is_refused(
 ) -> None:
     """That check is for the day when an objective is added: no certificate comes to it now."""
     monkeypatch.setattr(verifier, "OBJECTIVES", (*verifier.OBJECTIVES, "pans"))
-    with pytest.raises(verifier.RefusedError, match="an objective is unknown"):
-        held(verifier, plain(objective=["pans"]), tmp_path)
+    with pytest.raises(RefusedError, match="an objective is unknown"):
+        held(VERIFIER, plain(objective=["pans"]), tmp_path)
 
 
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.slow if name == SLOW else ()) for name in FORGED]
 )
 def test_a_forged_certificate_is_refused_by_its_check_alone(name: str, tmp_path: Path) -> None:
-    require_its_check_alone(verifier, name, FORGED[name], tmp_path)
+    require_its_check_alone(VERIFIER, name, FORGED[name], tmp_path)
 
 
 @pytest.mark.parametrize("said", PLACES)
 def test_each_place_is_read(said: str, tmp_path: Path) -> None:
-    with pytest.raises(verifier.RefusedError, match=said):
-        held(verifier, PLACES[said], tmp_path)
+    with pytest.raises(RefusedError, match=said):
+        held(VERIFIER, PLACES[said], tmp_path)
 
 
 # --- what refuses by what it computes
@@ -576,4 +592,4 @@ PARTS = {
 def test_a_part_that_is_wrong_lets_a_forged_certificate_pass(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    require_right(PARTS[name], tmp_path, monkeypatch, rule_meaning, compiled_rules, verifier)
+    require_right(PARTS[name], tmp_path, monkeypatch, VERIFIER)

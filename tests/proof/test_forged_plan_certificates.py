@@ -14,10 +14,14 @@ import pytest
 from foon_asp.network import UnitAmounts, UnitPrices
 from foon_asp.network.level import network_at_level
 from foon_asp.problem import ContainerRule, Problem
-from foon_asp.proof import verifier, verify_plan
+from foon_asp.proof import verify_plan
+from foon_asp.proof.certificate_header import seal
+from foon_asp.proof.refusal import RefusedError
 from tests.proof.by_hand import NO_TREE, bound, goals, recipe
 from tests.proof.forging import KIND, Forged, Part, checks, held, require_its_check_alone, require_right
 from tests.support.handmade_certificate import Content, forbid, handmade
+
+VERIFIER = (verify_plan,)
 
 # Bread is baked of dough, which is mixed of flour without end and of salt, of which there is one; more can be
 # bought. Bread could be melted of gold, too, but nobody has what gold is dug of.
@@ -93,7 +97,7 @@ def certificate(at: Problem = PLAIN, **values: Any) -> Content:
     }
     right = {"tree": [0, 1], "costs": [2], "unreached": [RARE, GOLD], "rounded": [], "proof": [PROOF]}
     content = {**handmade(at), **frame, **right, **values}
-    return {**content, "seal": verifier.seal(content)}
+    return {**content, "seal": seal(content)}
 
 
 def plain(stays: str = "", at: Problem = PLAIN, **values: Any) -> Forged:
@@ -318,7 +322,7 @@ def test_right_certificates_pass(tmp_path: Path) -> None:
     )
     for claim, certificates in (("optimal", optimal), ("bound", bounds), ("infeasible", none)):
         for each in certificates:
-            assert held(verify_plan, each, tmp_path).claim == claim
+            assert held(VERIFIER, each, tmp_path).claim == claim
     wrong = (
         plain(items=items([[SALT, 10**9]])),
         plain(proof=[branch(10**9, PROOF, PROOF)]),
@@ -330,33 +334,33 @@ def test_right_certificates_pass(tmp_path: Path) -> None:
         at_least("2", {"balance": [[FLOUR, "2"]]}, **{**TWO_BAGS, "cuts": []}),  # the bag that is taken
     )
     for each in wrong:
-        with pytest.raises(verifier.RefusedError):
-            held(verify_plan, each, tmp_path)
+        with pytest.raises(RefusedError):
+            held(VERIFIER, each, tmp_path)
 
 
 def test_every_check_has_a_forged_certificate() -> None:
-    names = [name for name, _ in checks(verify_plan)]
+    names = [name for name, _ in checks(VERIFIER)]
     assert len(set(names)) == len(names)
     assert {*names} == FORGED.keys()
 
 
 @pytest.mark.parametrize("name", FORGED)
 def test_a_forged_certificate_is_refused_by_its_check_alone(name: str, tmp_path: Path) -> None:
-    require_its_check_alone(verify_plan, name, FORGED[name], tmp_path)
+    require_its_check_alone(VERIFIER, name, FORGED[name], tmp_path)
 
 
 @pytest.mark.parametrize("said", PLACES)
 def test_each_place_is_read(said: str, tmp_path: Path) -> None:
-    with pytest.raises(verifier.RefusedError, match=said):
-        held(verify_plan, PLACES[said], tmp_path)
+    with pytest.raises(RefusedError, match=said):
+        held(VERIFIER, PLACES[said], tmp_path)
 
 
 def test_what_is_nested_too_deeply_is_refused(tmp_path: Path) -> None:
     content = certificate()
     for _ in range(10_000):
         content["proof"] = [content["proof"]]
-    with pytest.raises(verifier.RefusedError, match="branches nested too deeply"):
-        held(verify_plan, Forged(content, PLAIN), tmp_path)
+    with pytest.raises(RefusedError, match="branches nested too deeply"):
+        held(VERIFIER, Forged(content, PLAIN), tmp_path)
 
 
 # --- what refuses by what it computes
@@ -509,4 +513,4 @@ PARTS = {
 def test_a_part_that_is_wrong_lets_a_forged_certificate_pass(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    require_right(PARTS[name], tmp_path, monkeypatch, verify_plan)
+    require_right(PARTS[name], tmp_path, monkeypatch, VERIFIER)

@@ -14,8 +14,15 @@ import pytest
 from foon_asp.network import FunctionalUnit, UnitPrices, network_at_level
 from foon_asp.problem import ContainerRule, Problem
 from foon_asp.proof import verifier
+from foon_asp.proof.canonical_json import canonical_json
+from foon_asp.proof.certificate_file import load_certificate, read_certificate
+from foon_asp.proof.certificate_header import seal
+from foon_asp.proof.certificate_limits import ALLOWED
+from foon_asp.proof.certificate_rules import trusted_claims
+from foon_asp.proof.certificate_subject import Subject
+from foon_asp.proof.refusal import LimitError, RefusedError
 from foon_asp.proof.rule_meaning import OWN
-from foon_asp.proof.verifier import LimitError, RefusedError, Subject, load_certificate, read_certificate
+from foon_asp.proof.verified_claim import Verified
 from foon_asp.text.line_parser import parse_node
 from tests.proof.by_hand import (
     BAKE,
@@ -80,7 +87,7 @@ def test_an_optimum_by_each_objective(
     found = accepted(**values)
     exact = tuple(map(Fraction, costs))
     said = ("optimal", (END,), "strict", 3, tuple(objective), (), (), tuple(tree), exact, len(cuts))
-    assert found == verifier.Verified(*said)
+    assert found == Verified(*said)
 
 
 @pytest.mark.parametrize(
@@ -539,7 +546,7 @@ def test_digests_are_those_of_canonical_json() -> None:
         '[1,[["bowl",[],[],[]],["plat\\u00e9",[],[],[]],["end",[],[],[]]],'
         f'["pour","mix"],[[0,1],[2]],[[2],[1]],{written},[[0],[1]]]'
     )
-    assert verifier.seal({"b": [1, "x"], "seal": "any", "a": None}) == sha('{"a":null,"b":[1,"x"]}')
+    assert seal({"b": [1, "x"], "seal": "any", "a": None}) == sha('{"a":null,"b":[1,"x"]}')
 
 
 # --- how much work is done, and how long numbers may be
@@ -572,7 +579,7 @@ def test_work_of_all_kinds_is_counted(
     monkeypatch: pytest.MonkeyPatch, most: int, at: Problem, values: Content
 ) -> None:
     assert accepted(at, **values).claim == "bound"
-    limits = verifier.ALLOWED._replace(steps=most, steps_each=0)
+    limits = ALLOWED._replace(steps=most, steps_each=0)
     monkeypatch.setattr(verifier, "ALLOWED", limits)
     assert refusal(at, **values) == f"to check it takes more than {most:,} steps"
 
@@ -630,9 +637,9 @@ def test_files_have_their_limits(tmp_path: Path) -> None:
 
 
 def test_what_is_taken_on_trust_is_found() -> None:
-    assert verifier.trusted_claims({"rules": [*forbid(["pour"]), claiming()]}) == claiming()
-    assert verifier.trusted_claims({"rules": forbid(["pour"])}) is None
-    assert verifier.trusted_claims({}) is None
+    assert trusted_claims({"rules": [*forbid(["pour"]), claiming()]}) == claiming()
+    assert trusted_claims({"rules": forbid(["pour"])}) is None
+    assert trusted_claims({}) is None
     text = "cost(mine,U,1) :- unit(U)."
     measures = {"mine": {"rules": text, "sha256": sha(text), "costs": {"0": [POUR]}}}
     assert accepted(**bound("0"), measures=measures).trusted == ()
@@ -655,7 +662,7 @@ def test_a_claim_is_about_units_of_one_set_and_none_of_another_and_what_they_com
     two = claiming(limits=[[{"1": [BAKE], "2": [MIX]}, 2]])
     assert accepted(**POURED, rules=[two], cuts=[[END]], proof=weigh("1")).claim == "optimal"
     # without pouring there is no tree; the limit of the rule after the library's is the next but one
-    rules = sorted([*forbid(["pour"]), two], key=verifier.canonical_json)
+    rules = sorted([*forbid(["pour"]), two], key=canonical_json)
     proof = weigh("1", "2", limits=[[2, ["1"]]])
     values: Content = {**NO_TREE, "rules": rules, "cuts": CUTS}
     assert accepted(**values, proof=proof).claim == "infeasible"
@@ -708,7 +715,7 @@ def test_what_a_limit_does_not_speak_of_carries_what_it_costs() -> None:
     for weight in ("0", "-1"):
         said = "limits: a weight is not above zero"
         assert refusal(**bound("0", **values), proof=weigh("1", limits=[[0, [weight]]])) == said
-    no_pouring = sorted([*rules, *forbid(["pour"])], key=verifier.canonical_json)
+    no_pouring = sorted([*rules, *forbid(["pour"])], key=canonical_json)
     baked: Content = {"rules": no_pouring, "cuts": [[END]], "proof": weigh("3/2", limits=[[1, ["1/2"]]])}
     assert accepted(**bound("1", **baked)).claim == "bound"
 

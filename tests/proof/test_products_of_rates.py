@@ -10,7 +10,7 @@ from fractions import Fraction
 import pytest
 
 from foon_asp.problem import Problem
-from foon_asp.proof.verifier import LimitError
+from foon_asp.proof.refusal import LimitError
 from tests.proof.by_hand import recipe, refusal
 
 TOO_CLOSE = "products of rates are too close to be told apart in reasonable time"

@@ -21,7 +21,12 @@ from foon_asp.certificate.certificate import subject_of
 from foon_asp.network import UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.proof import proved_checker
-from foon_asp.proof.verifier import RefusedError, Subject, read_certificate, read_rules, seal, verify
+from foon_asp.proof.certificate_file import read_certificate
+from foon_asp.proof.certificate_header import seal
+from foon_asp.proof.certificate_rules import read_rules
+from foon_asp.proof.certificate_subject import Subject
+from foon_asp.proof.refusal import RefusedError
+from foon_asp.proof.verifier import verify
 from tests.conftest import Cli
 from tests.oracle.constraints import random_rule, settings_of
 from tests.proof.by_hand import PLAIN, UNPROVED

@@ -15,7 +15,9 @@ from foon_asp.asp import Settings, solve
 from foon_asp.certificate import Certificate, Coverage, certify, certify_outcome
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Objective, Problem
-from foon_asp.proof.verifier import RefusedError, Verified, seal
+from foon_asp.proof.certificate_header import seal
+from foon_asp.proof.refusal import RefusedError
+from foon_asp.proof.verified_claim import Verified
 from tests.oracle import task_trees
 from tests.oracle.constraints import keeps, random_rule, settings_of
 from tests.support.gap_problem import gap_problem

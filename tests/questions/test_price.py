@@ -19,6 +19,9 @@ from foon_asp.hypergraph import ALL, NONE, Reduction
 from foon_asp.network import FunctionalUnit, Network, UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
 from foon_asp.proof import verifier
+from foon_asp.proof.certificate_file import read_certificate
+from foon_asp.proof.certificate_header import seal
+from foon_asp.proof.refusal import RefusedError
 from foon_asp.questions.pareto import pareto
 from tests.oracle import task_trees
 from tests.oracle.test_optimum import assert_agrees
@@ -106,7 +109,7 @@ def test_the_best_are_those_of_brute_force_in_every_room(
             continue
         certificate = certify(problem, (*BY, Objective.UNITS), found.units)
         assert certificate is not None
-        proved = verifier.verify(verifier.read_certificate(certificate.text()), subject_of(problem))
+        proved = verifier.verify(read_certificate(certificate.text()), subject_of(problem))
         assert (proved.claim, proved.costs) == ("optimal", task_trees.best(trees, problem, ["price"]))
         if seed % 4 == 0:
             clingo, *_ = cross_check(Asked(found))
@@ -164,7 +167,7 @@ def forged(problem: Problem, **values: Any) -> Any:
     certificate = certify(problem, (*BY, Objective.UNITS), (0, 1))
     assert certificate is not None
     content = {**certificate.content, **values}
-    return {**content, "seal": verifier.seal(content)}
+    return {**content, "seal": seal(content)}
 
 
 def test_certificates_by_wrong_prices_are_refused() -> None:
@@ -173,7 +176,7 @@ def test_certificates_by_wrong_prices_are_refused() -> None:
     assert prices is not None
     given = subject_of(problem)
     for costs in (["1/5", 2], ["3/10", 3], [0, 2], ["0.3", 2]):
-        with pytest.raises(verifier.RefusedError, match="the tree costs"):
+        with pytest.raises(RefusedError, match="the tree costs"):
             verifier.verify(forged(problem, costs=costs), given)
     one, two, other = problem.network.motions
     unit = problem.network.unit
@@ -186,7 +189,7 @@ def test_certificates_by_wrong_prices_are_refused() -> None:
     ):
         priced = given._replace(prices=wrong)
         content = forged(problem, digests=priced.digests())
-        with pytest.raises(verifier.RefusedError, match=said):
+        with pytest.raises(RefusedError, match=said):
             verifier.verify(content, priced)
     # of a unit that is not here, and so of no account
     free = FunctionalUnit("go 0 0", unit(0).inputs, unit(0).inputs)

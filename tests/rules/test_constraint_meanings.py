@@ -16,9 +16,11 @@ from foon_asp.certificate.own_rules import check_with_clingo
 from foon_asp.deadline import Deadline
 from foon_asp.network import NetworkBuilder, ObjectNode, Source, UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Problem
+from foon_asp.proof.certificate_file import read_certificate
 from foon_asp.proof.compiled_rules import CompiledRules
+from foon_asp.proof.refusal import LimitError, RefusedError
 from foon_asp.proof.rule_meaning import LIBRARY, OWN, Meaning, sources_read
-from foon_asp.proof.verifier import LimitError, RefusedError, read_certificate, verify
+from foon_asp.proof.verifier import verify
 from foon_asp.text.line_parser import parse_node
 from tests.oracle import task_trees
 from tests.oracle.constraints import keeps, random_rule

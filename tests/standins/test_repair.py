@@ -15,6 +15,9 @@ from foon_asp.errors import BugError
 from foon_asp.network import STAND_IN
 from foon_asp.problem import Objective
 from foon_asp.proof import verifier
+from foon_asp.proof.certificate_file import load_certificate
+from foon_asp.proof.certificate_header import seal
+from foon_asp.proof.refusal import RefusedError
 from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.standins import with_stand_ins
 from foon_asp.standins.repair import Repair
@@ -67,7 +70,7 @@ def test_certificates_hold_and_a_raised_bound_is_refused(seeds: range, tmp_path:
         claims[repaired.certificate.claim] += 1
         places = [network.sources[step][0] for step in steps]
         subject = subject_of(Repair.of(problem, tree, places, table, lambda _: False).shown)
-        content = verifier.load_certificate(tmp_path / "proof.json")
+        content = load_certificate(tmp_path / "proof.json")
         verified = verifier.verify(content, subject)
         expected = stand_ins.best(problem, table, ("dissimilarity", "units"), steps)
         assert (verified.costs or None) == expected, seed
@@ -78,12 +81,12 @@ def test_certificates_hold_and_a_raised_bound_is_refused(seeds: range, tmp_path:
         dissimilarity, units = map(Fraction, expected)
         for raised in ((dissimilarity + 1, units), (dissimilarity, units + 1)):
             forged = {**content, "claim": "bound", "tree": None, "costs": None, "bound": [*map(str, raised)]}
-            with pytest.raises(verifier.RefusedError, match=r"the weights do not add up|stand-in is missing"):
-                verifier.verify({**forged, "seal": verifier.seal(forged)}, subject)
+            with pytest.raises(RefusedError, match=r"the weights do not add up|stand-in is missing"):
+                verifier.verify({**forged, "seal": seal(forged)}, subject)
         fewer = [unit for unit in verified.tree if unit != steps[0]]
         forged = {**content, "tree": fewer}
-        with pytest.raises(verifier.RefusedError):
-            verifier.verify({**forged, "seal": verifier.seal(forged)}, subject)
+        with pytest.raises(RefusedError):
+            verifier.verify({**forged, "seal": seal(forged)}, subject)
     assert min(claims.values()) > len(seeds) // 8
 
 

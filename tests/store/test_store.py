@@ -25,7 +25,7 @@ from foon_asp.dataset.reading_store import read_stored
 from foon_asp.errors import UserError
 from foon_asp.network import Network, starting_nodes
 from foon_asp.problem import ContainerRule, Objective, Problem
-from foon_asp.proof.verifier import Subject
+from foon_asp.proof.certificate_subject import Subject
 from foon_asp.store import builder, digests, store_tables
 from foon_asp.store.digests import FILE_DIGEST, append_digest
 from foon_asp.store.import_files import import_files

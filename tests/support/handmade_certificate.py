@@ -6,6 +6,9 @@ from typing import Any
 from foon_asp.certificate.certificate import subject_of
 from foon_asp.problem import Problem
 from foon_asp.proof import verifier
+from foon_asp.proof.canonical_json import canonical_json
+from foon_asp.proof.certificate_header import TREE_FORM, seal
+from foon_asp.proof.verified_claim import Verified
 
 Content = dict[str, Any]
 
@@ -13,8 +16,8 @@ Content = dict[str, Any]
 def handmade(problem: Problem, **values: Any) -> Content:
     """Give a sealed certificate of a problem with these values, and those of no claim for the others."""
     content: Content = {
-        "format": verifier.TREE_FORM.name,
-        "version": verifier.TREE_FORM.version,
+        "format": TREE_FORM.name,
+        "version": TREE_FORM.version,
         "claim": "optimal",
         "goals": [{"id": goal, "node": str(problem.network.objects[goal])} for goal in problem.goals],
         "containers": str(problem.containers),
@@ -31,10 +34,10 @@ def handmade(problem: Problem, **values: Any) -> Content:
         "proof": {"weights": []},
         **values,
     }
-    return {**content, "seal": verifier.seal(content)}
+    return {**content, "seal": seal(content)}
 
 
-def check(content: Any, problem: Problem) -> verifier.Verified:
+def check(content: Any, problem: Problem) -> Verified:
     """Verify a certificate against the data of a problem."""
     return verifier.verify(content, subject_of(problem))
 
@@ -43,4 +46,4 @@ def forbid(motions: Iterable[str] = (), labels: Iterable[str] = ()) -> list[dict
     """Give the rules that forbid motions and labels of objects, in order."""
     rules = [{"rule": "forbid_motion", "forbidden_motion": motion} for motion in motions]
     rules += [{"rule": "forbid_object", "forbidden_object": label} for label in labels]
-    return sorted(rules, key=verifier.canonical_json)
+    return sorted(rules, key=canonical_json)

@@ -1,0 +1,47 @@
+"""The file of a certificate and its JSON text: both are read here, and floats and double keys are refused."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+from foon_asp.proof.certificate_limits import ALLOWED
+from foon_asp.proof.refusal import LimitError, RefusedError, require
+
+
+def load_certificate(file: Path) -> Any:
+    """Return the parsed JSON of a certificate file.
+
+    The file is read up to the greatest length of certificates. Raises ``OSError`` and ``UnicodeDecodeError``
+    if it cannot be read, and :class:`RefusedError` if it is too long, invalid, or has a key twice.
+    """
+    with file.open("rb") as stream:
+        raw = stream.read(ALLOWED.letters)
+        if stream.peek():
+            raise LimitError(f"it has more than {ALLOWED.letters:,} letters")
+    return read_certificate(raw.decode("utf-8"))
+
+
+def read_certificate(text: str) -> Any:
+    """Return the parsed JSON of a certificate.
+
+    Raises :class:`RefusedError` if the text is too long or no JSON, or has a key twice or a float.
+    """
+
+    def unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        """Return a JSON object as a dictionary; refuse a key that occurs twice."""
+        content = dict(pairs)
+        require(len(content) == len(pairs), "a key stands twice in one object")
+        return content
+
+    def refuse_float(number: str) -> None:
+        """Refuse a number that is no whole number."""
+        raise RefusedError(f"found the number {number[:50]}, expected whole numbers, and fractions in quotes")
+
+    if len(text) > ALLOWED.letters or text.count("[") + text.count("{") > ALLOWED.brackets:
+        raise LimitError(f"it has more than {ALLOWED.letters:,} letters or {ALLOWED.brackets:,} brackets")
+    try:
+        return json.loads(
+            text, object_pairs_hook=unique_keys, parse_float=refuse_float, parse_constant=refuse_float
+        )
+    except (ValueError, RecursionError) as error:
+        raise RefusedError(f"not JSON: {error}") from None
