@@ -278,7 +278,7 @@ class Deadline:
             if self._within is not None:
                 self._within.interrupt()
 
-    def enough(self) -> None:
+    def stop_at_proof(self) -> None:
         """Stop the question because its answer is proved; an outer deadline (``within``) is not stopped."""
         self._stopped_by = self._stopped_by or _PROVED
 

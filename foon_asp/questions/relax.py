@@ -264,7 +264,7 @@ class _Enough(Reporter):
 
     def _compare(self) -> None:
         if self._objective is not Objective.UNITS and None is not self._cost == self._least:
-            self._deadline.enough()
+            self._deadline.stop_at_proof()
 
 
 def _certificate(relaxed: Relaxed, deadline: Deadline) -> "Certificate | None":
