@@ -229,7 +229,7 @@ class Deadline:
         elif self.memory is not None and now >= self._memory_polled + _PACE.poll_seconds:
             self._memory_polled = now
             if self.memory_in_use() > self.memory:
-                self.out_of_memory()
+                self.stop_out_of_memory()
         return self._stopped_by is not None
 
     @property
@@ -259,10 +259,10 @@ class Deadline:
             return now >= self._end + self._tolerance
         if self._noticed is None:
             self._noticed = now
-        return now >= self._noticed + (_PACE.memory_tolerance_seconds if self.full else self._tolerance)
+        return now >= self._noticed + (_PACE.memory_tolerance_seconds if self.is_out_of_memory else self._tolerance)
 
     @property
-    def full(self) -> bool:
+    def is_out_of_memory(self) -> bool:
         """Whether the memory limit is reached: current work may finish, but no other work is begun."""
         return self._stopped_by is not None and self._stopped_by not in {
             self._time_words,
@@ -282,7 +282,7 @@ class Deadline:
         """Stop the question because its answer is proved; an outer deadline (``within``) is not stopped."""
         self._stopped_by = self._stopped_by or _PROVED
 
-    def out_of_memory(self) -> None:
+    def stop_out_of_memory(self) -> None:
         """Stop the question because of the memory, unless it was stopped before."""
         limit = "" if self.memory is None else f"the memory limit of {size_text(self.memory)}"
         self._stopped_by = self._stopped_by or limit or "the end of memory"
@@ -419,7 +419,7 @@ class Watch:
         """Start the background thread; raises :class:`LimitError` if the deadline allows no more work."""
         deadline = self._deadline
         deadline.doing = self._doing
-        if self._due or (deadline.passed and deadline.full and not self._begins):
+        if self._due or (deadline.passed and deadline.is_out_of_memory and not self._begins):
             raise LimitError(deadline)
         if deadline.limited:
             try:

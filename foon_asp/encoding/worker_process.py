@@ -129,7 +129,7 @@ def _ask(worker: Worker, deadline: Deadline, *command: object, handlers: _Handle
 def _cause(code: int, has_spoken: bool, deadline: Deadline) -> UserError | LimitError:
     """Return the error for a process that died: memory ran out, or else the rules made it stop."""
     if code in _OF_MEMORY or (deadline.memory is not None and code == -signal.SIGSEGV):
-        deadline.out_of_memory()
+        deadline.stop_out_of_memory()
         return LimitError(deadline)
     if code == -signal.SIGFPE:
         return UserError(
