@@ -302,7 +302,7 @@ class Deadline:
         if self.passed:
             raise LimitError(self)
 
-    def slice(self, longest: float = 0.2) -> float:
+    def seconds_to_next_check(self, longest: float = 0.2) -> float:
         """Return the seconds to wait until the next check of the deadline, at most ``longest``."""
         if self.memory is not None:
             longest = min(longest, 2 * _PACE.poll_seconds)
@@ -473,7 +473,7 @@ class Watch:
         if self._finished or interrupts == _PACE.interrupts:
             return None
         if not self._due:
-            return max(_PACE.poll_seconds, self._deadline.slice()), interrupts
+            return max(_PACE.poll_seconds, self._deadline.seconds_to_next_check()), interrupts
         _targets.append(self._thread)
         try:
             if self._finished:

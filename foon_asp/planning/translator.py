@@ -72,7 +72,7 @@ def _run(folder: Path, deadline: Deadline) -> tuple[int, str]:
     try:
         while True:
             try:
-                output, _ = process.communicate(timeout=deadline.slice())
+                output, _ = process.communicate(timeout=deadline.seconds_to_next_check())
             except subprocess.TimeoutExpired:
                 deadline.check()
             else:

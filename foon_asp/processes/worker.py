@@ -89,7 +89,7 @@ class Worker(PythonProcess):
         """Wait for a message; raises :class:`DiedError` or :class:`LimitError`."""
         while True:
             with contextlib.suppress(queue.Empty):
-                message = self._messages.get(timeout=max(0.001, deadline.slice()))
+                message = self._messages.get(timeout=max(0.001, deadline.seconds_to_next_check()))
                 if message is None:
                     raise DiedError(self.died())
                 self.has_spoken = True
