@@ -238,7 +238,7 @@ class Deadline:
         return self._stopped_by == _INTERRUPTED
 
     @property
-    def left(self) -> float | None:
+    def remaining_seconds(self) -> float | None:
         """The remaining seconds; ``None`` without a time limit."""
         return None if self._end is None else max(0.0, self._end - time.monotonic())
 
@@ -306,7 +306,7 @@ class Deadline:
         """Return the seconds to wait until the next check of the deadline, at most ``longest``."""
         if self.memory is not None:
             longest = min(longest, 2 * _PACE.poll_seconds)
-        remaining = self.left
+        remaining = self.remaining_seconds
         return longest if remaining is None else min(longest, remaining)
 
     def memory_in_use(self) -> int:

@@ -97,7 +97,7 @@ class Progress(Reporter):
         from foon_asp.results.figure_text import bound_text, costs_text  # slow to import: for long searches
 
         seconds = f"{now - self._began:.0f} s"
-        limit = None if self._deadline is None else self._deadline.left
+        limit = None if self._deadline is None else self._deadline.remaining_seconds
         remaining = self._remaining(now)
         if remaining is not None and (limit is None or remaining < limit):
             seconds += f", about {remaining:.0f} s left at this pace"

@@ -75,7 +75,7 @@ def cross_check(
     engine is wrong.
     """
     if seconds is None:
-        remaining = claim.settings.begun.left
+        remaining = claim.settings.begun.remaining_seconds
         seconds = 60.0 if remaining is None else remaining / (1 + len(engines))  # one more: bare clingo
     checks: list[Check] = []
     interrupted = False

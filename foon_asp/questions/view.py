@@ -440,7 +440,7 @@ def pages(
     yield page
 
     def remaining_limits() -> Limits:
-        return {"time_limit": deadline.left, "memory_limit": deadline.memory}
+        return {"time_limit": deadline.remaining_seconds, "memory_limit": deadline.memory}
 
     if plans and not ruled:
         below = Objective.KITCHEN not in chosen  # a plan need not take from the kitchen items that it makes
