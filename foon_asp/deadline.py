@@ -243,7 +243,7 @@ class Deadline:
         return None if self._end is None else max(0.0, self._end - time.monotonic())
 
     @property
-    def limited(self) -> bool:
+    def is_limited(self) -> bool:
         """Whether the question can be stopped: it has a time limit, a memory limit or a token."""
         return self.seconds is not None or self.memory is not None or self._token is not None
 
@@ -421,7 +421,7 @@ class Watch:
         deadline.doing = self._doing
         if self._due or (deadline.passed and deadline.is_out_of_memory and not self._begins):
             raise LimitError(deadline)
-        if deadline.limited:
+        if deadline.is_limited:
             try:
                 if not self._is_woken_by_signals:
                     import ctypes  # noqa: F401, PLC0415 (imported before it is needed for an interrupt)
