@@ -313,11 +313,11 @@ class Deadline:
         """Return the resident memory of this process and of the counted ones, in bytes."""
         return sum(_resident(Path(f"/proc/{pid}/statm")) for pid in ("self", *self._workers))
 
-    def count(self, process: int) -> None:
+    def count_memory_of(self, process: int) -> None:
         """Count the memory of another process, by its id, as well."""
         self._workers.add(process)
 
-    def uncount(self, process: int) -> None:
+    def uncount_memory_of(self, process: int) -> None:
         """Stop counting the memory of a process."""
         self._workers.discard(process)
 

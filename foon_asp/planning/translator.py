@@ -68,7 +68,7 @@ def _run(folder: Path, deadline: Deadline) -> tuple[int, str]:
         encoding="utf-8",
         errors="replace",
     )
-    deadline.count(process.pid)
+    deadline.count_memory_of(process.pid)
     try:
         while True:
             try:
@@ -80,7 +80,7 @@ def _run(folder: Path, deadline: Deadline) -> tuple[int, str]:
     finally:
         process.kill()
         process.wait()
-        deadline.uncount(process.pid)
+        deadline.uncount_memory_of(process.pid)
         if process.stdout is not None:
             process.stdout.close()
 

@@ -62,7 +62,7 @@ class Worker(PythonProcess):
         if self._busy:
             raise BugError("a process was asked that had been ended")
         self._busy = True
-        deadline.count(self._process.pid)
+        deadline.count_memory_of(self._process.pid)
         try:
             self.start_thread(write_if_open, self._out, request)
             while True:
@@ -77,7 +77,7 @@ class Worker(PythonProcess):
                 raise LimitError(deadline) from None
             raise
         finally:
-            deadline.uncount(self._process.pid)
+            deadline.uncount_memory_of(self._process.pid)
         self._busy = False
         return kind, value
 
