@@ -52,7 +52,7 @@ class Done(NamedTuple, Generic[Task, Answer]):
         return self.answer  # type: ignore[return-value]  # not None without an error
 
 
-def share(
+def run_in_processes(
     begin: "Begin[Task, Answer]",
     tasks: Iterable[Task],
     jobs: int,
