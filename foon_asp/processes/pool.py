@@ -17,7 +17,7 @@ from foon_asp.processes.python_process import PythonProcess
 Task = TypeVar("Task")
 Answer = TypeVar("Answer")
 
-Begin = Callable[[], Callable[[Task], Answer]]
+TaskFunctionMaker = Callable[[], Callable[[Task], Answer]]
 """Called once in each process, it returns the function that does tasks there; it has to pickle."""
 
 
@@ -35,7 +35,7 @@ class LostError(Exception):
         self.is_late = code is None
 
 
-class Done(NamedTuple, Generic[Task, Answer]):
+class FinishedTask(NamedTuple, Generic[Task, Answer]):
     """A finished task with its answer, or with the exception that was raised instead.
 
     The exception is one of the work, or a :class:`LostError`.
@@ -53,23 +53,23 @@ class Done(NamedTuple, Generic[Task, Answer]):
 
 
 def run_in_processes(
-    begin: "Begin[Task, Answer]",
+    make_task_function: "TaskFunctionMaker[Task, Answer]",
     tasks: Iterable[Task],
     jobs: int,
     seconds: Callable[[Task], float | None] = lambda _: None,
-) -> "Iterator[Done[Task, Answer]]":
+) -> "Iterator[FinishedTask[Task, Answer]]":
     """Do tasks in up to ``jobs`` child processes, and yield each with its answer as soon as it is done.
 
-    ``begin`` runs once in each process, and returns the function that does the tasks there. ``seconds``
+    ``make_task_function`` runs once in each process, and returns the function that does the tasks there. ``seconds``
     returns the time limit of a task, ``None`` for no limit. A process that dies or exceeds this time is
-    replaced by another one. The time of the first task of a process starts once ``begin`` has returned.
+    replaced by another one. The time of the first task of a process starts once ``make_task_function`` has returned.
     """
-    packed_begin, remaining, messages = packed(begin), iter(tasks), _Messages()
+    packed_maker, remaining, messages = packed(make_task_function), iter(tasks), _Messages()
     workers: dict[int, _Worker[Task]] = {}
     started = 0
     try:
         for task in islice(remaining, jobs):
-            workers[started] = _Worker(packed_begin, task, started, messages)
+            workers[started] = _Worker(packed_maker, task, started, messages)
             started += 1
         while workers:
             number, (kind, value) = _next_message(workers, messages)
@@ -86,7 +86,7 @@ def run_in_processes(
             for task in islice(remaining, 1):
                 if kind == "lost":
                     del workers[number]
-                    workers[started] = _Worker(packed_begin, task, started, messages)
+                    workers[started] = _Worker(packed_maker, task, started, messages)
                     started += 1
                 else:
                     worker.ask(task, seconds(task))
@@ -94,7 +94,7 @@ def run_in_processes(
             else:
                 del workers[number]
                 worker.end()
-            yield Done(current, None, value) if kind != "done" else Done(current, value, None)
+            yield FinishedTask(current, None, value) if kind != "done" else FinishedTask(current, value, None)
     finally:
         for worker in workers.values():
             worker.end()
@@ -125,13 +125,13 @@ class _Worker(PythonProcess, Generic[Task]):
     ``end_by`` is a time of the monotonic clock, or ``None``.
     """
 
-    def __init__(self, packed_begin: bytes, task: Task, number: int, messages: _Messages) -> None:
+    def __init__(self, packed_maker: bytes, task: Task, number: int, messages: _Messages) -> None:
         super().__init__("foon_asp.processes.pool", "work is shared")
         self.task = task
         self.is_late = False
         self.end_by: float | None = None
         self.start_thread(
-            write_if_open, self._out, packed_begin + packed(task)
+            write_if_open, self._out, packed_maker + packed(task)
         )  # waits until the process has started
         self.start_thread(_listen, self._in, number, messages)
 
@@ -155,19 +155,19 @@ def _listen(pipe: RawIOBase, number: int, messages: _Messages) -> None:
 
 
 def serve() -> None:
-    """Work as a child process of a pool: receive ``begin`` and tasks, send answers, until the parent ends."""
+    """Work as a child process of a pool: receive ``make_task_function`` and tasks, send answers, until the parent ends."""
     received, answers = requests(receive_packed)
-    work = _task_function(received.get())
+    work = _make_task_function(received.get())
     with contextlib.suppress(BrokenPipeError):  # the parent has ended
         send(answers, ("ready", None))
         while True:
-            write(answers, _answer(work, received.get()))
+            write(answers, _answer_message(work, received.get()))
 
 
-def _task_function(begin: bytes) -> Callable[[Any], Any]:
-    """Return the function that ``begin`` makes for tasks; if it raises, one that always raises the same."""
+def _make_task_function(pickled_maker: bytes) -> Callable[[Any], Any]:
+    """Return the function that ``make_task_function`` makes for tasks; if it raises, one that always raises the same."""
     try:
-        work: Callable[[Any], Any] = pickle.loads(begin)()
+        work: Callable[[Any], Any] = pickle.loads(pickled_maker)()
     except Exception as error:
         failure = error
 
@@ -177,15 +177,15 @@ def _task_function(begin: bytes) -> Callable[[Any], Any]:
     return work
 
 
-def _answer(work: Callable[[Any], Any], task: bytes) -> bytes:
+def _answer_message(work: Callable[[Any], Any], task: bytes) -> bytes:
     """Do a task; return a message with its answer, or with the exception that it raised."""
     try:
         return packed(("done", work(pickle.loads(task))))
     except Exception as error:
-        return packed(("raised", _portable(error)))
+        return packed(("raised", _picklable_error(error)))
 
 
-def _portable(error: Exception) -> Exception:
+def _picklable_error(error: Exception) -> Exception:
     """Return an error that can be sent to another process: one that cannot be pickled becomes a bug."""
     try:
         pickle.loads(pickle.dumps(error))
