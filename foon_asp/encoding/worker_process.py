@@ -14,7 +14,7 @@ from foon_asp.encoding.run import Ended, FoundAnswer, ProgramError
 from foon_asp.encoding.stated import Stated
 from foon_asp.errors import BugError, UserError
 from foon_asp.processes.pipe import OUT_OF_MEMORY, packed
-from foon_asp.processes.worker import DiedError, Worker, give_back, take
+from foon_asp.processes.worker import DiedError, Worker, give_back_worker, take_worker
 
 _KEY = "foon_asp.encoding.program_worker"
 _OF_MEMORY = {OUT_OF_MEMORY, -signal.SIGABRT, -9}
@@ -37,7 +37,7 @@ class WorkerProgram:
         deadline: Deadline,
     ) -> None:
         """Take a worker process, and wait until it has grounded the files and the text."""
-        self._worker = take(_KEY, _start)
+        self._worker = take_worker(_KEY, _start)
         self._give_back = weakref.finalize(self, _forget, self._worker)
         command = "ground", _folder(), list(files), text, list(arguments), products, _memory(deadline)
         self.deadline = deadline
@@ -70,7 +70,7 @@ class WorkerProgram:
 
 def derive(text: str, name: str, arity: int, deadline: Deadline) -> list[tuple[Value, ...]]:
     """Run :func:`foon_asp.encoding.derived.derive` in another process, which is killed at the limits."""
-    worker = take(_KEY, _start)
+    worker = take_worker(_KEY, _start)
     try:
         rows: list[tuple[Value, ...]] = _ask(worker, deadline, "derive", text, name, arity, _memory(deadline))
         return rows
@@ -93,7 +93,7 @@ def _folder() -> str | None:
 
 def prepare() -> None:
     """Start a process in advance, if none waits."""
-    give_back(_KEY, take(_KEY, _start))
+    give_back_worker(_KEY, take_worker(_KEY, _start))
 
 
 def _start() -> Worker:
@@ -105,7 +105,7 @@ def _forget(worker: Worker) -> None:
     """Make the process drop its program, and return it to the pool."""
     if worker.ready:
         worker.tell(packed(("forget",)))
-    give_back(_KEY, worker)
+    give_back_worker(_KEY, worker)
 
 
 def _ask(worker: Worker, deadline: Deadline, *command: object, handlers: _Handlers | None = None) -> Any:

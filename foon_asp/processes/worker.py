@@ -110,11 +110,11 @@ class Worker(PythonProcess):
 W = TypeVar("W", bound=Worker)
 
 # One worker for each key. Accesses are single atomic operations, and have no lock: the garbage collector may
-# call ``give_back`` at any time, also while the lock is held.
+# call ``give_back_worker`` at any time, also while the lock is held.
 _idle: dict[Hashable, Any] = {}
 
 
-def take(key: Hashable, start: Callable[[], W]) -> W:
+def take_worker(key: Hashable, start: Callable[[], W]) -> W:
     """Return the idle worker of a key, or start one."""
     worker: W | None = _idle.pop(key, None)
     if worker is not None and worker.ready:
@@ -124,7 +124,7 @@ def take(key: Hashable, start: Callable[[], W]) -> W:
     return start()
 
 
-def give_back(key: Hashable, worker: Worker) -> None:
+def give_back_worker(key: Hashable, worker: Worker) -> None:
     """Make a worker the idle one of a key; it is ended if it is not ready, or the key has an idle worker."""
     if not worker.ready or _idle.setdefault(key, worker) is not worker:
         worker.end()
