@@ -13,7 +13,7 @@ from foon_asp.encoding.derived import Value
 from foon_asp.encoding.run import Ended, FoundAnswer, ProgramError
 from foon_asp.encoding.stated import Stated
 from foon_asp.errors import BugError, UserError
-from foon_asp.processes.pipe import OUT_OF_MEMORY, packed
+from foon_asp.processes.pipe import OUT_OF_MEMORY, pack_message
 from foon_asp.processes.worker import DiedError, Worker, give_back_worker, take_worker
 
 _KEY = "foon_asp.encoding.program_worker"
@@ -104,7 +104,7 @@ def _start() -> Worker:
 def _forget(worker: Worker) -> None:
     """Make the process drop its program, and return it to the pool."""
     if worker.ready:
-        worker.tell(packed(("forget",)))
+        worker.tell(pack_message(("forget",)))
     give_back_worker(_KEY, worker)
 
 
@@ -114,7 +114,7 @@ def _ask(worker: Worker, deadline: Deadline, *command: object, handlers: _Handle
     Raises :class:`ProgramError` and :class:`UserError` as the program does, and :class:`LimitError`.
     """
     try:
-        kind, value = worker.ask(packed(command), deadline, handlers)
+        kind, value = worker.ask(pack_message(command), deadline, handlers)
     except DiedError as died:
         raise _cause(died.code, worker.has_spoken, deadline) from None
     if kind == "refused":

@@ -11,7 +11,7 @@ from typing import Any
 
 from foon_asp.deadline import Deadline
 from foon_asp.offered.offer import Offer, Raised
-from foon_asp.processes.pipe import CHUNK_BYTES, packed
+from foon_asp.processes.pipe import CHUNK_BYTES, pack_message
 from foon_asp.processes.worker import DiedError, Worker, give_back_worker, take_worker
 
 
@@ -25,7 +25,7 @@ def ask_offered(offer: Offer, deadline: Deadline, *arguments: object) -> Any:
     key = (offer.package, *sys.path)  # with the path, another version of the package may be found
     worker = take_worker(key, _start_worker)
     try:
-        kind, line = worker.ask(packed((offer, arguments)), deadline)
+        kind, line = worker.ask(pack_message((offer, arguments)), deadline)
     except DiedError as died:
         raise offer.fault(f"ended its process ({died.code})") from None
     if kind == "endless":

@@ -10,7 +10,7 @@ from foon_asp.deadline import Deadline, LimitError
 from foon_asp.errors import BugError, UserError
 from foon_asp.planning.schedule_task import ScheduleTask
 from foon_asp.planning.tool_order import first_schedule, tool_order
-from foon_asp.processes.pipe import packed
+from foon_asp.processes.pipe import pack_message
 from foon_asp.processes.worker import DiedError, Worker, give_back_worker, take_worker
 from foon_asp.proof.timetable import TimedStep, Tool, ToolName
 
@@ -66,7 +66,7 @@ def shortest(task: ScheduleTask, deadline: Deadline) -> BestSchedule:
     worker = take_worker(_WORKER_KEY, lambda: Worker(_WORKER_KEY, "schedules are found"))
     try:
         kind, status = worker.ask(
-            packed((task, incumbent)), deadline, {"found": improve, "bound": raise_bound}
+            pack_message((task, incumbent)), deadline, {"found": improve, "bound": raise_bound}
         )
     except LimitError:
         kind, status = "end", "limit"

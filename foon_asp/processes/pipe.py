@@ -24,7 +24,7 @@ CHUNK_BYTES = 1 << 20
 _LENGTH_HEADER = struct.Struct("!Q")
 
 
-def packed(value: object) -> bytes:
+def pack_message(value: object) -> bytes:
     """Return a value as the bytes of a message, which :func:`receive` reads."""
     content = pickle.dumps(value, pickle.HIGHEST_PROTOCOL)
     return _LENGTH_HEADER.pack(len(content)) + content
@@ -45,7 +45,7 @@ def write_if_open(pipe: RawIOBase, content: bytes) -> None:
 
 def send(pipe: RawIOBase, value: object) -> None:
     """Write a value as a message; raises ``OSError`` where the other end is closed."""
-    write(pipe, packed(value))
+    write(pipe, pack_message(value))
 
 
 def receive(pipe: RawIOBase) -> Any:

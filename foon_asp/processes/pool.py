@@ -11,7 +11,7 @@ from queue import Empty, SimpleQueue
 from typing import Any, Generic, NamedTuple, TypeVar
 
 from foon_asp.errors import BugError
-from foon_asp.processes.pipe import packed, receive, receive_packed, requests, send, write, write_if_open
+from foon_asp.processes.pipe import pack_message, receive, receive_packed, requests, send, write, write_if_open
 from foon_asp.processes.python_process import PythonProcess
 
 Task = TypeVar("Task")
@@ -64,7 +64,7 @@ def run_in_processes(
     returns the time limit of a task, ``None`` for no limit. A process that dies or exceeds this time is
     replaced by another one. The time of the first task of a process starts once ``make_task_function`` has returned.
     """
-    packed_maker, remaining, messages = packed(make_task_function), iter(tasks), _Messages()
+    packed_maker, remaining, messages = pack_message(make_task_function), iter(tasks), _Messages()
     workers: dict[int, _Worker[Task]] = {}
     started = 0
     try:
@@ -131,7 +131,7 @@ class _Worker(PythonProcess, Generic[Task]):
         self.is_late = False
         self.end_by: float | None = None
         self.start_thread(
-            write_if_open, self._out, packed_maker + packed(task)
+            write_if_open, self._out, packed_maker + pack_message(task)
         )  # waits until the process has started
         self.start_thread(_listen, self._in, number, messages)
 
@@ -143,7 +143,7 @@ class _Worker(PythonProcess, Generic[Task]):
         """Send the process another task; if it has died, its message ``lost`` follows."""
         self.task = task
         self.start_timer(seconds)
-        write_if_open(self._out, packed(task))
+        write_if_open(self._out, pack_message(task))
 
 
 def _listen(pipe: RawIOBase, number: int, messages: _Messages) -> None:
@@ -180,9 +180,9 @@ def _make_task_function(pickled_maker: bytes) -> Callable[[Any], Any]:
 def _answer_message(work: Callable[[Any], Any], task: bytes) -> bytes:
     """Do a task; return a message with its answer, or with the exception that it raised."""
     try:
-        return packed(("done", work(pickle.loads(task))))
+        return pack_message(("done", work(pickle.loads(task))))
     except Exception as error:
-        return packed(("raised", _picklable_error(error)))
+        return pack_message(("raised", _picklable_error(error)))
 
 
 def _picklable_error(error: Exception) -> Exception:
