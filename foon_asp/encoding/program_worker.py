@@ -10,12 +10,12 @@ from foon_asp.encoding.ground_program import GroundProgram
 from foon_asp.encoding.run import ProgramError
 from foon_asp.errors import UserError
 from foon_asp.processes.memory_limit import limit_own_memory
-from foon_asp.processes.pipe import OUT_OF_MEMORY, receive, requests, send
+from foon_asp.processes.pipe import OUT_OF_MEMORY, become_worker, receive, send
 
 
 def serve() -> None:
     """Execute the commands on standard input and answer on the original standard output."""
-    commands, answers = requests(receive)
+    commands, answers = become_worker(receive)
     program: GroundProgram | None = None
 
     def obey(command: str, *parameters: Any) -> object:

@@ -50,16 +50,16 @@ def send(pipe: RawIOBase, value: object) -> None:
 
 def receive(pipe: RawIOBase) -> Any:
     """Wait for a message, and return its value; raises ``EOFError`` where the other end is closed."""
-    return pickle.loads(receive_packed(pipe))
+    return pickle.loads(receive_pickled(pipe))
 
 
-def receive_packed(pipe: RawIOBase) -> bytes:
+def receive_pickled(pipe: RawIOBase) -> bytes:
     """Wait for a message, and return it pickled; raises ``EOFError`` where the other end is closed."""
-    (length,) = _LENGTH_HEADER.unpack(_exactly(pipe, _LENGTH_HEADER.size))
-    return _exactly(pipe, length)
+    (length,) = _LENGTH_HEADER.unpack(_read_exactly(pipe, _LENGTH_HEADER.size))
+    return _read_exactly(pipe, length)
 
 
-def requests(read: Callable[[RawIOBase], T]) -> "tuple[queue.SimpleQueue[T], FileIO]":
+def become_worker(read: Callable[[RawIOBase], T]) -> "tuple[queue.SimpleQueue[T], FileIO]":
     """Make this process a worker: return the queue of its requests, and the pipe for its answers.
 
     A thread reads requests from standard input, each by ``read``, and ends the process once its parent has
@@ -87,7 +87,7 @@ def requests(read: Callable[[RawIOBase], T]) -> "tuple[queue.SimpleQueue[T], Fil
     return received, answers
 
 
-def _exactly(pipe: RawIOBase, size: int) -> bytes:
+def _read_exactly(pipe: RawIOBase, size: int) -> bytes:
     """Read a number of bytes; raises ``EOFError`` where the pipe ends before."""
     chunks: list[bytes] = []
     while size:

@@ -11,7 +11,7 @@ from queue import Empty, SimpleQueue
 from typing import Any, Generic, NamedTuple, TypeVar
 
 from foon_asp.errors import BugError
-from foon_asp.processes.pipe import pack_message, receive, receive_packed, requests, send, write, write_if_open
+from foon_asp.processes.pipe import become_worker, pack_message, receive, receive_pickled, send, write, write_if_open
 from foon_asp.processes.python_process import PythonProcess
 
 Task = TypeVar("Task")
@@ -156,7 +156,7 @@ def _listen(pipe: RawIOBase, number: int, messages: _Messages) -> None:
 
 def serve() -> None:
     """Work as a child process of a pool: receive ``make_task_function`` and tasks, send answers, until the parent ends."""
-    received, answers = requests(receive_packed)
+    received, answers = become_worker(receive_pickled)
     work = _make_task_function(received.get())
     with contextlib.suppress(BrokenPipeError):  # the parent has ended
         send(answers, ("ready", None))
