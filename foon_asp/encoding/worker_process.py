@@ -103,7 +103,7 @@ def _start() -> Worker:
 
 def _forget(worker: Worker) -> None:
     """Make the process drop its program, and return it to the pool."""
-    if worker.ready:
+    if worker.is_ready:
         worker.tell(pack_message(("forget",)))
     give_back_worker(_KEY, worker)
 

@@ -81,7 +81,7 @@ def run_in_processes(
                 worker.start_timer(seconds(current))
                 continue
             if kind == "lost":
-                code = worker.end() if worker.is_late else worker.died()
+                code = worker.end() if worker.is_late else worker.wait_for_exit()
                 value = LostError(None if worker.is_late else code)
             for task in islice(remaining, 1):
                 if kind == "lost":

@@ -57,7 +57,7 @@ class PythonProcess:
         _all.add(self)
 
     @property
-    def alive(self) -> bool:
+    def is_alive(self) -> bool:
         """Whether the process runs."""
         with uninterrupted():  # Popen takes a lock, here and in what follows
             return self._process.poll() is None
@@ -81,7 +81,7 @@ class PythonProcess:
         self._close()
         return code
 
-    def died(self) -> int:
+    def wait_for_exit(self) -> int:
         """Return the exit code of a process that has closed its output; one that does not end is killed."""
         with uninterrupted(), contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(5.0)

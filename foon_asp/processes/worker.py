@@ -45,9 +45,9 @@ class Worker(PythonProcess):
         self.start_thread(_listen, self._in, read, self._messages)
 
     @property
-    def ready(self) -> bool:
+    def is_ready(self) -> bool:
         """Whether the process can answer a request."""
-        return not self._busy and self.alive
+        return not self._busy and self.is_alive
 
     def ask(
         self, request: bytes, deadline: Deadline, handlers: Mapping[str, Callable[[Any], None]] | None = None
@@ -91,7 +91,7 @@ class Worker(PythonProcess):
             with contextlib.suppress(queue.Empty):
                 message = self._messages.get(timeout=max(0.001, deadline.seconds_to_next_check()))
                 if message is None:
-                    raise DiedError(self.died())
+                    raise DiedError(self.wait_for_exit())
                 self.has_spoken = True
                 return message
             deadline.check()
@@ -117,7 +117,7 @@ _idle: dict[Hashable, Any] = {}
 def take_worker(key: Hashable, start: Callable[[], W]) -> W:
     """Return the idle worker of a key, or start one."""
     worker: W | None = _idle.pop(key, None)
-    if worker is not None and worker.ready:
+    if worker is not None and worker.is_ready:
         return worker
     if worker is not None:
         worker.end()
@@ -126,7 +126,7 @@ def take_worker(key: Hashable, start: Callable[[], W]) -> W:
 
 def give_back_worker(key: Hashable, worker: Worker) -> None:
     """Make a worker the idle one of a key; it is ended if it is not ready, or the key has an idle worker."""
-    if not worker.ready or _idle.setdefault(key, worker) is not worker:
+    if not worker.is_ready or _idle.setdefault(key, worker) is not worker:
         worker.end()
 
 
