@@ -259,7 +259,9 @@ class Deadline:
             return now >= self._end + self._tolerance
         if self._noticed is None:
             self._noticed = now
-        return now >= self._noticed + (_PACE.memory_tolerance_seconds if self.is_out_of_memory else self._tolerance)
+        return now >= self._noticed + (
+            _PACE.memory_tolerance_seconds if self.is_out_of_memory else self._tolerance
+        )
 
     @property
     def is_out_of_memory(self) -> bool:

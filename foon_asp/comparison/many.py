@@ -28,7 +28,7 @@ def compare_goals(
 ) -> Iterator[Comparison]:
     """Compare the searches on each goal by itself; yield the comparisons in order of the goals.
 
-    With more than one job, processes run_in_processes the goals; the results are those of one job. Optima keep to the
+    With more than one job, processes share the goals; the results are those of one job. Optima keep to the
     ``rules``; ``time_limit`` is in seconds for each optimum.
 
     Raises :class:`UserError` where a process dies, usually because memory is full.
@@ -39,7 +39,9 @@ def compare_goals(
         return
     ready: dict[int, Comparison] = {}  # comparisons that wait for the one of an earlier goal
     next_number = 0
-    for finished in run_in_processes(partial(partial, compare_goal), [*enumerate(goals)], min(jobs, len(goals))):
+    for finished in run_in_processes(
+        partial(partial, compare_goal), [*enumerate(goals)], min(jobs, len(goals))
+    ):
         number, goal = finished.task
         if isinstance(finished.error, LostError):
             raise UserError(

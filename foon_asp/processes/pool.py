@@ -11,7 +11,15 @@ from queue import Empty, SimpleQueue
 from typing import Any, Generic, NamedTuple, TypeVar
 
 from foon_asp.errors import BugError
-from foon_asp.processes.pipe import become_worker, pack_message, receive, receive_pickled, send, write, write_if_open
+from foon_asp.processes.pipe import (
+    become_worker,
+    pack_message,
+    receive,
+    receive_pickled,
+    send,
+    write,
+    write_if_open,
+)
 from foon_asp.processes.python_process import PythonProcess
 
 Task = TypeVar("Task")

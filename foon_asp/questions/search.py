@@ -197,7 +197,9 @@ def search(
     """
     (wanted,) = searched([search])
     deadline = begin(options)
-    settings = search_settings(ties, count, depth_limit, published, deadline.remaining_seconds, deadline.memory)
+    settings = search_settings(
+        ties, count, depth_limit, published, deadline.remaining_seconds, deadline.memory
+    )
     outcome = wanted.run(replace(problem, items=None), settings)
     stuck_at = None if outcome.stuck_at is None else node_of(problem.network, outcome.stuck_at)
     return Retrieved.of(problem, wanted, outcome.ending, outcome.units, stuck_at)
