@@ -55,7 +55,7 @@ if TYPE_CHECKING:  # plain answers do not need it
     from foon_asp.store.unit_distances import UnitDistances
 
 
-def ask(
+def pose_problem(
     data: Data, goals: Sequence[int], containers: str, origin: "Dataset", items: UsedUp | None = None
 ) -> Problem:
     """Return the problem of goals over ``data``, which is a part of the dataset ``origin``.
@@ -410,7 +410,7 @@ class Dataset:
         """Return the same problem over a part of the network that has its goals and the given units."""
         dataset = self.with_kitchen_of(problem)
         data, goals = dataset.part(_whole_goals(problem), tree=units)
-        return _with_own_rates(ask(data, goals, problem.containers, dataset, problem.items), problem)
+        return _with_own_rates(pose_problem(data, goals, problem.containers, dataset, problem.items), problem)
 
     def subject(self, everything: bool = True, goals: Iterable[int] = ()) -> "Subject":
         """Return the network, kitchen and prices that a certificate is about.
@@ -460,7 +460,7 @@ class Dataset:
         if steps and self.stand_ins is not None:
             from foon_asp.standins.repair import Repair  # noqa: PLC0415 (few questions have stand-ins)
 
-            posed = ask(self.for_goals(goals).data, goals, containers, self)
+            posed = pose_problem(self.for_goals(goals).data, goals, containers, self)
             problem = Repair.over(posed, tuple(steps), self.stand_ins).shown
         else:
             problem = self.problem(goals, containers, everything)
@@ -533,16 +533,16 @@ class Dataset:
         if self.stand_ins is not None:
             from foon_asp.standins import with_stand_ins  # noqa: PLC0415 (few questions have stand-ins)
 
-            posed = ask(dataset.data, goals, containers, self, items)
+            posed = pose_problem(dataset.data, goals, containers, self, items)
             return with_stand_ins(posed, self.stand_ins, everything)
         if everything:
-            return ask(dataset.data, goals, containers, self, items)
+            return pose_problem(dataset.data, goals, containers, self, items)
         # items of the stock may run out, and then have to be made
         stocked_ids = {self.names.object_id(node) for node in (items.stock if items else ())}
         kitchen = dataset.kitchen.changed((), [o for o in stocked_ids if o is not None])
         cone = self.source.cone(goals, container_rule(containers), self.utensils, kitchen, None)
         network = self.source.whole() if cone is None else self.source.part(cone.units, goals)
-        return ask(dataset._data_of(network), _local_ids(network, goals), containers, self, items)
+        return pose_problem(dataset._data_of(network), _local_ids(network, goals), containers, self, items)
 
     def nearby(
         self, goals: Sequence[int], containers: str, items: UsedUp | None = None, first: int = 1000
@@ -565,7 +565,7 @@ class Dataset:
     def among(self, units: Iterable[int], goals: Sequence[int], containers: str) -> Problem:
         """Return the problem of goals over a part of the network that has these units."""
         network = self.source.part(units, goals)
-        return ask(self.for_goals(goals)._data_of(network), _local_ids(network, goals), containers, self)
+        return pose_problem(self.for_goals(goals)._data_of(network), _local_ids(network, goals), containers, self)
 
     def unit_distances(self, containers: str, objective: Objective) -> "UnitDistances | None":
         """Return the distance of each unit of a store: a lower bound on the cost of trees with it.
