@@ -110,7 +110,7 @@ def load(
         definitions = read_measures(measures)
         named = find_data(folder, () if folder else paths, *side_files)
         with _counted(on_progress, size_of(named.network)) as tell, reporting_to(tell):
-            dataset = read_dataset(named, lenient, level).measured(definitions)
+            dataset = read_dataset(named, lenient, level).with_measures(definitions)
             if stand_ins:
                 folder_tables = () if named.stand_ins is None else (named.stand_ins,)
                 table = read_stand_ins(folder_tables) if isinstance(stand_ins, bool) else stand_ins
@@ -222,7 +222,7 @@ def build(
             goals_from=LAST if goals is None else "", amounts=stated.amounts_by_unit(network)
         )
         dataset = (
-            Dataset.of(data).with_remarks((), (), (), kitchen is not None).measured(read_measures(measures))
+            Dataset.of(data).with_remarks((), (), (), kitchen is not None).with_measures(read_measures(measures))
         )
         if goals is not None:
             nodes = [network.objects[o] for o in node_ids(dataset, goals, "goal")]
@@ -335,7 +335,7 @@ class Foon:
         data = Data(
             problem.network, problem.kitchen, (), (), rates, problem.utensils, (), 0, problem.unit_prices
         )
-        return cls(Dataset.of(data).measured(problem.measures), "a problem")
+        return cls(Dataset.of(data).with_measures(problem.measures), "a problem")
 
     def close(self) -> None:
         """Close the store, also for data varied from these; data that were read whole stay.

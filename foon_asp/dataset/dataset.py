@@ -312,7 +312,7 @@ class Dataset:
         all_remarks, brief_remarks = (*warnings, *remarks), (*brief, *remarks)
         return replace(self, remarks=all_remarks, brief=brief_remarks, has_kitchen=has_kitchen)
 
-    def measured(self, measures: Mapping[str, Measure]) -> "Dataset":
+    def with_measures(self, measures: Mapping[str, Measure]) -> "Dataset":
         """Return the same data with other user measures."""
         return replace(self, measures=measures)
 
@@ -366,7 +366,7 @@ class Dataset:
             # imports the facts for rules, which most questions do without
             from foon_asp.rules.measure import read_measures  # noqa: PLC0415
 
-            dataset = dataset.measured(read_measures(measures))
+            dataset = dataset.with_measures(read_measures(measures))
         if kitchen is None and not adding and not without:
             return dataset
         only = None
