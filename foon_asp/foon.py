@@ -442,7 +442,7 @@ class Foon:
             UserError: if an entry matches no object node.
         """
         try:
-            return tuple(map(self._dataset.names.node, dict.fromkeys(self._dataset.each_goal(()))))
+            return tuple(map(self._dataset.names.node, dict.fromkeys(self._dataset.goal_ids(()))))
         except GoalError as error:
             raise UserError(in_python(error)) from None
 

@@ -50,7 +50,7 @@ class BatchData:
             problem = dataset.problem((0,), containers, everything=True)
             return [str(problem.network.objects[goal]) for goal in makeable(problem)]
         names = dataset.names
-        goals = dict.fromkeys(dataset.each_goal(()))
+        goals = dict.fromkeys(dataset.goal_ids(()))
         if isinstance(names, Network):
             return [str(names.objects[goal]) for goal in goals]
         return [str(names.node(goal)) for goal in goals]

@@ -245,7 +245,7 @@ class Dataset:
                 "no functional unit makes anything, so there is no goal: expected a recipe or a network"
             )
         if not names and self.goals_from:
-            return tuple(dict.fromkeys(self.each_goal(())))
+            return tuple(dict.fromkeys(self.goal_ids(())))
         if not names and len(self.listed) == 1:
             return (node_of_entry(self.listed[0], self.names),)
         if not names:
@@ -253,7 +253,7 @@ class Dataset:
                 f"  --goal {shlex.quote(name)}" for name in entry_names(self.listed, self.names)
             )
             raise UserError("name a goal with --goal" + (f"; the goals file has\n{listed}" if listed else ""))
-        return tuple(dict.fromkeys(self.each_goal(names)))
+        return tuple(dict.fromkeys(self.goal_ids(names)))
 
     def assumed_goals(self) -> list[ObjectNode]:
         """Return the goals that were assumed because no file lists goals; empty if a file does."""
@@ -261,9 +261,9 @@ class Dataset:
 
     def listed_goals(self) -> list[ObjectNode]:
         """Return the goals of the goals file, or those that were assumed."""
-        return [self.names.node(o) for o in dict.fromkeys(self.each_goal(()))]
+        return [self.names.node(o) for o in dict.fromkeys(self.goal_ids(()))]
 
-    def each_goal(self, names: Sequence[str | ObjectNode]) -> list[int]:
+    def goal_ids(self, names: Sequence[str | ObjectNode]) -> list[int]:
         """Return the id of the goal for each name; without names, the ids of all nodes of the goals file."""
         if names:
             return [
@@ -476,7 +476,7 @@ class Dataset:
         if named:
             return named
         if self.goals_from:
-            assumed = self.each_goal(())
+            assumed = self.goal_ids(())
             if len(assumed) == 1:
                 return tuple(assumed)
             choices = ", ".join(repr(str(self.names.node(o))) for o in assumed)
