@@ -121,7 +121,7 @@ class Stores:
 def opened(store: Path, problem: Problem) -> Problem:
     """Ask a store for the same goals."""
     dataset = read_stored(DataFiles((store,)), 3)
-    return dataset.nearby(dataset.goals(problem.goal_nodes), problem.containers.value)
+    return dataset.nearby(dataset.command_goal_ids(problem.goal_nodes), problem.containers.value)
 
 
 class Measured(NamedTuple):

@@ -378,7 +378,7 @@ class Foon:
         Raises:
             UserError: for a name that means no object node or several, with candidates; or for another rule.
         """
-        ids = self._dataset.named_goals(goals)
+        ids = self._dataset.python_goal_ids(goals)
         of_goals = [amounts] if isinstance(amounts, int) else amounts
         used_up = items_for(self._dataset, ids, of_goals, items, stock, stays)
         return self._dataset.nearby(ids, containers, used_up)

@@ -61,7 +61,7 @@ class BatchData:
         if not dataset.wanted:
             return ITEMS[0]
         try:
-            return ITEMS[not dataset.wanted.keys().isdisjoint(dataset.goals(question.goals))]
+            return ITEMS[not dataset.wanted.keys().isdisjoint(dataset.command_goal_ids(question.goals))]
         except UserError:
             return ITEMS[0]  # the row of the question says what is wrong with its goals
 
@@ -75,7 +75,7 @@ class BatchData:
         dataset = self._dataset_with_kitchen(question.kitchen)
         files = question.stock, question.stays
         stock, stays = (None if file is None else NamedPath(file) for file in files)
-        goals = dataset.goals(question.goals)
+        goals = dataset.command_goal_ids(question.goals)
         items = items_for(dataset, goals, question.amounts, question.items, stock, stays)
         return dataset.nearby(goals, question.containers, items)
 

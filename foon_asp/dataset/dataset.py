@@ -235,7 +235,7 @@ class Dataset:
             return self
         return replace(self, kitchen=self.kitchen.changed(added, lacking))
 
-    def goals(self, names: Sequence[str | ObjectNode]) -> tuple[int, ...]:
+    def command_goal_ids(self, names: Sequence[str | ObjectNode]) -> tuple[int, ...]:
         """Return the ids of the goals with these names.
 
         Without names, returns all assumed goals; if a file lists goals, it has to list exactly one.
@@ -393,7 +393,7 @@ class Dataset:
     ) -> Problem:
         """Return a problem of this dataset with changes, as :meth:`Problem.vary` describes."""
         dataset = self.with_kitchen_of(problem).vary(changes)
-        ids = _whole_goals(problem) if goals is None else dataset.named_goals(goals)
+        ids = _whole_goals(problem) if goals is None else dataset.python_goal_ids(goals)
         items = problem.items
         if items is not None and changes.kitchen is not None:
             items = replace(items, stock=dict(dataset.stock))
@@ -467,7 +467,7 @@ class Dataset:
         values = problem.kitchen, problem.rates, problem.utensils, problem.unit_prices
         return Subject(problem.network, *values, stand_ins=self.stand_ins)
 
-    def named_goals(self, names: Names) -> tuple[int, ...]:
+    def python_goal_ids(self, names: Names) -> tuple[int, ...]:
         """Return the ids of the goals that a Python caller names, each once.
 
         Without a name, return the only goal of the goals file; raises :class:`UserError` if it has several.

@@ -90,7 +90,7 @@ def two_ways(folder: Path) -> Dataset:
 
 def test_what_is_taken_to_be_at_hand_is_in_no_answer(tmp_path: Path) -> None:
     dataset = two_ways(tmp_path)
-    near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
+    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=1))
     assert len(near.problem.network) == 2  # both ways, one unit each
     free = solve(near.relaxed)
     assert free.units is not None
@@ -112,7 +112,7 @@ def test_a_limit_gives_no_tree_that_may_not_be_one(tmp_path: Path, monkeypatch: 
 
     monkeypatch.setattr(nearby_optimum, "solve", stopped)
     dataset = two_ways(tmp_path)
-    near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
+    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=1))
     found = answered_nearby(near, [Objective.UNITS], Settings(deadline=Deadline(1)))
     assert (found.status, found.units, found.costs) == (Status.UNKNOWN, None, None)
     assert found.outcome.bounds[Objective.UNITS] == 1
@@ -125,7 +125,7 @@ def test_a_limit_gives_a_tree_of_what_was_read_and_the_bound(
         raise LimitError(Deadline(0))
 
     dataset = two_ways(tmp_path)
-    near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=5))
+    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=5))
     monkeypatch.setattr(Nearby, "grow", stopped)
     monkeypatch.setattr(Deadline, "watched", lambda *given, **late: nullcontext())
     found = answered_nearby(near, [Objective.UNITS], Settings())
@@ -133,7 +133,7 @@ def test_a_limit_gives_a_tree_of_what_was_read_and_the_bound(
     assert (found.status, found.proof, found.costs.units) == (Status.FEASIBLE, None, 3)
     assert found.outcome.bounds[Objective.UNITS] == 2  # the last two units of the longer way
     assert found.stopped is not None
-    near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
+    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=1))
     found = answered_nearby(near, [Objective.UNITS], Settings())
     assert (found.status, found.proof, found.units) == (Status.UNKNOWN, None, None)
     assert found.outcome.bounds[Objective.UNITS] == 1
@@ -157,7 +157,7 @@ def test_at_a_limit_the_tree_of_the_fewest_units_is_one_that_keeps_to_the_rules(
 
     monkeypatch.setattr(nearby_optimum, "solve", stopped)
     dataset = two_ways(tmp_path)
-    near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
+    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=1))
     how = Settings((Path("before"),), constants=("earlier_motion=serve", "later_motion=plate"))
     found = answered_nearby(near, [Objective.INPUTS], how)
     assert (found.stopped, found.proof) == ("a limit", None)
@@ -191,7 +191,7 @@ def test_a_limit_keeps_the_bound_of_what_was_asked_before(
 
     monkeypatch.setattr(nearby_optimum, "solve", stopped)
     dataset = two_ways(tmp_path)
-    near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
+    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=1))
     found = answered_nearby(near, [Objective.UNITS], Settings(rules))
     assert looks >= 4
     assert found.stopped == "a limit"
@@ -207,7 +207,7 @@ def test_a_limit_while_all_is_read_gives_the_tree_in_hand(
     monkeypatch.setattr("foon_asp.questions.answer.asked_with", stopped)
     dataset, order = two_ways(tmp_path), (Objective.UNITS,)
     how = Settings((RuleText(':- not 1 <= #count { U : use(U), motion(U,"cook 3") }.'),))
-    problem = dataset.problem(dataset.goals(["stew"]), "strict")
+    problem = dataset.problem(dataset.command_goal_ids(["stew"]), "strict")
     found = answered_under(problem, order, how)
     assert found.costs is not None
     assert (found.status, found.proof, found.costs.units) == (Status.FEASIBLE, None, 7)
@@ -223,7 +223,7 @@ def test_where_rules_leave_no_tree_that_is_said_even_at_a_limit(
         raise LimitError(Deadline(0))
 
     dataset = two_ways(tmp_path)
-    near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
+    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=1))
     if limited:
         monkeypatch.setattr(Nearby, "grow", stopped)
     forbidden = Settings(
@@ -431,7 +431,7 @@ def test_rules_see_the_kitchen_as_it_is(
 ) -> None:
     """What units that were not read may make is no item of the kitchen, nor is it there too early."""
     dataset = two_ways(tmp_path)
-    problem = dataset.nearby(dataset.goals(["stew"]), "strict", first=1)
+    problem = dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=1)
     monkeypatch.setattr(Nearby, "whole", None)
     found = answered_under(problem, [Objective.UNITS], Settings((rule,), constants=constants))
     assert found.status is Status.OPTIMAL
@@ -518,7 +518,7 @@ def test_the_optima_of_a_store_are_those_of_the_text(part: int, tmp_path: Path) 
 
 def test_a_problem_of_a_store_reads_no_more_than_is_looked_at(tmp_path: Path) -> None:
     dataset = two_ways(tmp_path)
-    goals = dataset.goals(["stew"])
+    goals = dataset.command_goal_ids(["stew"])
     problem = dataset.nearby(goals, "strict", None, 1)
     assert isinstance(problem, NearbyProblem)
     assert repr(problem) == "<Problem: stew (strict containers)>"

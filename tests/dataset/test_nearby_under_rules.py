@@ -63,7 +63,7 @@ def near_stew(
     )
     import_files(files, folder / "stew.foon")
     dataset = read_stored(DataFiles((folder / "stew.foon",)), 3)
-    return dataset.nearby(dataset.goals(["stew"]), "strict", first=first)
+    return dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=first)
 
 
 def read_little(problem: Problem) -> bool:
