@@ -187,7 +187,7 @@ class NearbyProblem(Problem):
         """Return a copy of the question over units near the goals; ``None`` if all units were read."""
         return None if self.start is None or "read" in vars(self) else self.start.copied()
 
-    def each_goal(self) -> list[Problem]:
+    def single_goal_problems(self) -> list[Problem]:
         """Return the question for each goal by itself, with about as many units read as for this question."""
         start = self.start
         if start is None or "read" in vars(self):

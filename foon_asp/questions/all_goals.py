@@ -178,5 +178,5 @@ def _in_order(problems: Sequence[Problem], solved: SolvedGoals) -> Iterator[tupl
 def _each_goal(problem: Problem, settings: Settings) -> list[Problem]:
     """Return a problem for each goal; without rules, only what an answer needs is read of a large store."""
     if isinstance(problem, NearbyProblem) and not settings.constraints and settings.replaced is None:
-        return problem.each_goal()
+        return problem.single_goal_problems()
     return for_each_goal(asked_with(problem, settings))

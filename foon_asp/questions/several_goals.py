@@ -49,7 +49,7 @@ def _solved_apart(answer: Answer, settings: Settings, posed: Problem) -> list[Ou
     """Return the optimum of each goal by itself."""
     together, problem, objectives = answer.outcome, answer.problem, answer.objectives
     if isinstance(posed, NearbyProblem):
-        single = posed.each_goal()
+        single = posed.single_goal_problems()
         apart = [
             answered_under(goal_problem, objectives, settings, Reporter()).outcome for goal_problem in single
         ]
