@@ -388,7 +388,7 @@ class Dataset:
         removed = frozenset(item_id(with_added, name) for name in listed(without))
         return with_added.varied((), removed, None) if removed else with_added
 
-    def posed_anew(
+    def problem_with_changes(
         self, problem: Problem, goals: Names | None, containers: str | None, changes: Changes
     ) -> Problem:
         """Return a problem of this dataset with changes, as :meth:`Problem.vary` describes."""
@@ -400,13 +400,13 @@ class Dataset:
         posed = dataset.nearby(ids, containers or problem.containers, items)
         return _with_own_rates(posed, problem)
 
-    def posed_whole(self, problem: Problem) -> Problem:
+    def problem_over_all_units(self, problem: Problem) -> Problem:
         """Return the same problem over the whole network of this dataset."""
         dataset = self.with_kitchen_of(problem)
         posed = dataset.problem(_whole_goals(problem), problem.containers, True, problem.items)
         return _with_own_rates(posed, problem)
 
-    def posed_about(self, problem: Problem, units: Iterable[FunctionalUnit]) -> Problem:
+    def problem_about_units(self, problem: Problem, units: Iterable[FunctionalUnit]) -> Problem:
         """Return the same problem over a part of the network that has its goals and the given units."""
         dataset = self.with_kitchen_of(problem)
         data, goals = dataset.part(_whole_goals(problem), tree=units)

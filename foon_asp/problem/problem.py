@@ -99,7 +99,7 @@ class Changes(NamedTuple):
 class Origin(Protocol):
     """The data from which a problem was made."""
 
-    def posed_anew(
+    def problem_with_changes(
         self, problem: "Problem", goals: Names | None, containers: str | None, changes: Changes
     ) -> "Problem":
         """Return a variation of a problem over the changed data; see :meth:`Problem.vary`."""
@@ -111,10 +111,10 @@ class Origin(Protocol):
     def unpriced(self) -> Sequence[Unpriced]:
         """Return the units of the whole network that have no price, by motion."""
 
-    def posed_whole(self, problem: "Problem") -> "Problem":
+    def problem_over_all_units(self, problem: "Problem") -> "Problem":
         """Return a problem over the whole network."""
 
-    def posed_about(self, problem: "Problem", units: Iterable[FunctionalUnit]) -> "Problem":
+    def problem_about_units(self, problem: "Problem", units: Iterable[FunctionalUnit]) -> "Problem":
         """Return a problem over a network that is relevant to its goals, and has these units."""
 
 
@@ -206,7 +206,7 @@ class Problem:
         """The same problem over the whole network; if this is a store, all of it is read."""
         nearest = self.stand_ins is not None and self.stand_ins.nearest
         is_part = self.network.object_numbers or nearest
-        return self.origin.posed_whole(self) if self.origin is not None and is_part else self
+        return self.origin.problem_over_all_units(self) if self.origin is not None and is_part else self
 
     @property
     def plain(self) -> "Problem":
@@ -224,7 +224,7 @@ class Problem:
             units: The units.
         """
         is_part = self.origin is not None and self.network.object_numbers
-        return self.origin.posed_about(self, units) if self.origin is not None and is_part else self
+        return self.origin.problem_about_units(self, units) if self.origin is not None and is_part else self
 
     @typed
     def vary(
@@ -261,7 +261,7 @@ class Problem:
         if self.origin is None:
             raise UserError("this problem was put together by hand: dataclasses.replace makes another of it")
         changes = Changes(kitchen, adding, without, rates, unit_prices, measures)
-        return self.origin.posed_anew(self, goals, containers, changes)
+        return self.origin.problem_with_changes(self, goals, containers, changes)
 
     def place(self, unit: FunctionalUnit) -> Source:
         """Return the source of the first copy of a unit; its file is ``-`` if the network lacks the unit.
