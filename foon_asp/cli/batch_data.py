@@ -58,10 +58,10 @@ class BatchData:
     def items(self, question: BatchQuestion) -> str:
         """Return ``used-up`` if the goals file has an amount for a goal of the question, else ``lasting``."""
         dataset = self._datasets[None]  # all kitchens have the same goals
-        if not dataset.wanted:
+        if not dataset.goal_amounts:
             return ITEMS[0]
         try:
-            return ITEMS[not dataset.wanted.keys().isdisjoint(dataset.command_goal_ids(question.goals))]
+            return ITEMS[not dataset.goal_amounts.keys().isdisjoint(dataset.command_goal_ids(question.goals))]
         except UserError:
             return ITEMS[0]  # the row of the question says what is wrong with its goals
 

@@ -283,7 +283,7 @@ class Dataset:
         return self._varied(kitchen=kitchen, kitchen_items=tuple(items), starting=False, stock=stock)
 
     @property
-    def wanted(self) -> dict[int, int]:
+    def goal_amounts(self) -> dict[int, int]:
         """The amounts that the goals file states, by the id of the goal."""
         return {
             o: entry.amount

@@ -36,17 +36,17 @@ def items_for(
     for amounts where items last.
     """
     if not amounts:
-        listed = dataset.wanted
+        listed = dataset.goal_amounts
         stated = {dataset.names.node(goal): listed[goal] for goal in goals if goal in listed}
         items = items or ("used-up" if stated else "lasting")
         return items_of(dataset, items, stock, stays, {} if items == "lasting" else stated)
-    wanted = _wanted(dataset, goals, amounts)
+    wanted = _amounts_by_goal(dataset, goals, amounts)
     if items == "lasting":
         raise UserError("an amount of a goal is for items that are used up: leave --items lasting out")
     return items_of(dataset, items or "used-up", stock, stays, wanted)
 
 
-def _wanted(dataset: Dataset, goals: Sequence[int], amounts: Sequence[int]) -> dict[ObjectNode, int]:
+def _amounts_by_goal(dataset: Dataset, goals: Sequence[int], amounts: Sequence[int]) -> dict[ObjectNode, int]:
     """Return the number of copies wanted of each goal; ``amounts`` has a number for each goal, in order.
 
     Raises :class:`UserError` for another number of amounts than of goals, and for an amount out of range.
