@@ -18,7 +18,7 @@ def kitchen_lines(dataset: Dataset, problems: Iterable[Problem], verbose: bool) 
         for problem in problems
         for o in kitchen_needed(problem)
     }
-    made_too = set(dataset.made_too(used))
+    made_too = set(dataset.made_by_units(used))
     count = f"{counted(len(used), 'item')} used" + ("" if verbose or not used else "; -v lists them")
     line = f"No kitchen given: assuming what the recipe does not make is available ({count})"
     if made_too:

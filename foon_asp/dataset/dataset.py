@@ -216,7 +216,7 @@ class Dataset:
         """Whether the kitchen has an object node, by id."""
         return o in self.kitchen
 
-    def made_too(self, objects: Iterable[int]) -> list[int]:
+    def made_by_units(self, objects: Iterable[int]) -> list[int]:
         """Return the nodes of a starting kitchen that a unit makes out of others."""
         return [o for o in objects if self.source.starting.makers(o)]
 

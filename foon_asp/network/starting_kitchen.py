@@ -152,7 +152,7 @@ class NetworkStartingKitchen(StartingKitchen[str]):
         return self._nodes
 
     @cached_property
-    def made_too(self) -> frozenset[int]:
+    def made_by_units(self) -> frozenset[int]:
         """The nodes of the kitchen that a unit makes out of others."""
         return frozenset(filter(self.makers, self.nodes))
 
