@@ -50,7 +50,7 @@ def slip_between(node: ObjectNode, other: ObjectNode | NodePattern) -> Slip | No
     return None
 
 
-def nearest(node: ObjectNode, others: Iterable[ObjectNode], max_nodes: int) -> list[ObjectNode]:
+def nearest_nodes(node: ObjectNode, others: Iterable[ObjectNode], max_nodes: int) -> list[ObjectNode]:
     """Return up to ``max_nodes`` nodes of the same label, those that differ in the fewest parts first."""
     parts = set(_parts(node, loose=False))
     ranked = sorted(

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 
 import foon_asp
 from foon_asp.network import FunctionalUnit, node_at_level, unit_at_level
-from foon_asp.network.near_nodes import nearest
+from foon_asp.network.near_nodes import nearest_nodes
 from foon_asp.network.near_units import nearest_units, unit_differences, units_kept_apart
 from foon_asp.pictures.page import digest
 from foon_asp.text.line_parser import parse_node
@@ -86,7 +86,7 @@ def test_the_nearest_nodes_have_the_same_label_and_most_else() -> None:
         "milk; hot; on [pot]; in [pot]",
     ]
     milk, *others = map(parse_node, ["milk; hot; in [pot]", *named])
-    assert [str(node) for node in nearest(milk, others, 2)] == ["milk; hot", "milk; hot; in [pot]; on [pot]"]
+    assert [str(node) for node in nearest_nodes(milk, others, 2)] == ["milk; hot", "milk; hot; in [pot]; on [pot]"]
 
 
 def test_units_kept_apart_differ_in_one_thing() -> None:
