@@ -123,7 +123,7 @@ def nearest_units(left: Iterable[FunctionalUnit], right: Iterable[FunctionalUnit
     return pairs
 
 
-def units_kept_apart(units: Iterable[FunctionalUnit]) -> list[NearUnits]:
+def units_with_one_difference(units: Iterable[FunctionalUnit]) -> list[NearUnits]:
     """Return the pairs of units in one list that have a single difference, which may be a slip.
 
     The difference is in the motion, a state or a relation, or it is between two names that are spelt almost
