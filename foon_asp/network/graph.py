@@ -92,7 +92,7 @@ def cycles(network: Network) -> list[list[int]]:
     return components
 
 
-def parts(network: Network) -> list[int]:
+def component_sizes(network: Network) -> list[int]:
     """Return the number of units of each connected component of the network, largest first (union-find)."""
     parent = list(range(len(network.objects)))
 

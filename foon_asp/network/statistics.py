@@ -5,7 +5,7 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from foon_asp.network.graph import UNREACHED, cycles, layers, parts
+from foon_asp.network.graph import UNREACHED, component_sizes, cycles, layers
 from foon_asp.network.network import Network
 from foon_asp.network.starting_kitchen import starting_kitchen
 
@@ -52,7 +52,7 @@ class Statistics:
     largest_part: int
 
 
-def count(network: Network, at_hand: Iterable[int] | None = None) -> Statistics:
+def network_statistics(network: Network, at_hand: Iterable[int] | None = None) -> Statistics:
     """Return the statistics of a network.
 
     Layers are counted from the object nodes ``at_hand``, by default from those of the starting kitchen.
@@ -62,7 +62,7 @@ def count(network: Network, at_hand: Iterable[int] | None = None) -> Statistics:
     start = list(at_hand)
     node_layer, unit_layer = layers(network, start)
     node_cycles = cycles(network)
-    unit_counts = parts(network)
+    unit_counts = component_sizes(network)
     producers = [len(makers) for makers in network.producers]
     objects = network.objects
     inputs, outputs = (

@@ -8,7 +8,7 @@ from msgspec import UNSET, UnsetType
 
 from foon_asp.dataset import Dataset
 from foon_asp.dataset.item_options import Stays, items_of
-from foon_asp.dataset.level_counts import count_levels
+from foon_asp.dataset.level_counts import statistics_by_level
 from foon_asp.dataset.paths import File
 from foon_asp.escapes import escaped
 from foon_asp.foon import Foon, load
@@ -149,7 +149,7 @@ class Stats(Result, frozen=True, kw_only=True, tag=schema_name("stats")):
             videos=tuple(dict.fromkeys(video for source in sources for video in source.videos)),
             reached_from="starting kitchen" if data.starting else "kitchen",
             starting_kitchen=_starting_nodes(network) if data.starting else None,
-            levels=tuple(count_levels(data)),
+            levels=tuple(statistics_by_level(data)),
             most_connected_labels=tuple(LabelUnits(*pair) for pair in labels),
             most_connected_objects=tuple(
                 ObjectUnits(node_of(network, o), *numbers) for o, *numbers in objects
