@@ -488,9 +488,9 @@ class Dataset:
 
     def with_kitchen_of(self, problem: Problem) -> "Dataset":
         """Return the same data with the kitchen of ``problem``, which is a problem of this dataset."""
-        from foon_asp.dataset.nearby import shown  # noqa: PLC0415 (few answers need it)
+        from foon_asp.dataset.nearby import without_reading_more  # noqa: PLC0415 (few answers need it)
 
-        added, removed = self.kitchen_changes(shown(problem), _whole_goals(problem))
+        added, removed = self.kitchen_changes(without_reading_more(problem), _whole_goals(problem))
         return self.varied(added, removed, None) if added or removed else self
 
     def kitchen_changes(
@@ -615,9 +615,9 @@ def left_out(count: int) -> str:
 
 def _whole_goals(problem: Problem) -> tuple[int, ...]:
     """Return the goals of a problem by their ids in the whole network."""
-    from foon_asp.dataset.nearby import shown  # noqa: PLC0415 (few answers need it)
+    from foon_asp.dataset.nearby import without_reading_more  # noqa: PLC0415 (few answers need it)
 
-    problem = shown(problem)
+    problem = without_reading_more(problem)
     return tuple(problem.network.object_number(goal) for goal in problem.goals)
 
 

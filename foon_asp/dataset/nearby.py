@@ -214,7 +214,7 @@ class NearbyProblem(Problem):
             self.first.require_known_for(objectives)
 
 
-def shown(problem: Problem) -> Problem:
+def without_reading_more(problem: Problem) -> Problem:
     """Return a problem with the same goals and kitchen whose access reads no more units of a store.
 
     For a :class:`NearbyProblem`, this is the question over the units read at first.

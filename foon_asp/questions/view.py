@@ -12,7 +12,7 @@ from msgspec import structs
 
 from foon_asp.asp import Settings
 from foon_asp.asp.postconditions import Postconditions
-from foon_asp.dataset.nearby import shown
+from foon_asp.dataset.nearby import without_reading_more
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
@@ -392,7 +392,7 @@ def _units_drawing(about: Problem | Foon, unit_ids: Sequence[int]) -> Drawing:
     """Draw units by id in the whole network; the goals of a problem are marked."""
     goal_ids: Sequence[int] = ()
     if isinstance(about, Problem):
-        posed = shown(about)
+        posed = without_reading_more(about)
         goal_ids = [posed.network.object_number(goal) for goal in posed.goals]
         about = Foon.of(about)
     data, goal_ids = about.dataset.part(goal_ids, unit_ids)
