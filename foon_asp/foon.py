@@ -10,7 +10,7 @@ from typing import Any, Self
 from foon_asp.argument_checks import typed
 from foon_asp.dataset import Dataset, read_dataset
 from foon_asp.dataset.item_options import Stays, Stock, items_for
-from foon_asp.dataset.paths import File, Files, files
+from foon_asp.dataset.paths import File, Files, as_paths
 from foon_asp.dataset.python_names import in_python, node_ids, stated_copies
 from foon_asp.deadline import Cancel, seconds, stoppable
 from foon_asp.errors import UserError
@@ -97,7 +97,7 @@ def load(
     """
     if level not in {1, 2, 3}:
         raise UserError(f"found level={level!r}, expected 1, 2 or 3")
-    paths = () if source is None else files(source)
+    paths = () if source is None else as_paths(source)
     one = isinstance(source, str | PathLike)
     folder = paths[0] if one and paths[0].is_dir() else None
     if source is not None and not paths:

@@ -10,7 +10,7 @@ File = str | PathLike[str]
 Files = File | Iterable[File]
 
 
-def files(paths: Files) -> tuple[Path, ...]:
+def as_paths(paths: Files) -> tuple[Path, ...]:
     """Return one path or several as a tuple."""
     is_single = isinstance(paths, str | PathLike)
     return tuple(map(as_path, [paths] if is_single else paths))  # type: ignore[arg-type]

@@ -6,7 +6,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from foon_asp.argument_checks import typed
-from foon_asp.dataset.paths import File, Files, as_path, files
+from foon_asp.dataset.paths import File, Files, as_path, as_paths
 from foon_asp.errors import UserError
 from foon_asp.network import Amounts, Network, NetworkBuilder, counted
 from foon_asp.network.near_units import units_with_one_difference
@@ -143,7 +143,7 @@ def merge(
         >>> merged.copies - merged.units
         0
     """
-    named = files(paths)
+    named = as_paths(paths)
     if not named:
         raise UserError("name the networks to merge")
     folder = named[0] if isinstance(paths, str | PathLike) and named[0].is_dir() else None

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Self, Unpack
 from msgspec import structs
 
 from foon_asp.asp import Reporter, Settings, Status
-from foon_asp.dataset.paths import File, Files, files
+from foon_asp.dataset.paths import File, Files, as_paths
 from foon_asp.deadline import Deadline
 from foon_asp.network import counted
 from foon_asp.planning.strips_task import DERIVED, StripsTask
@@ -219,7 +219,7 @@ def relax(
         ('9', 'optimal')
     """
     deadline = begin(limits)
-    relaxed = solved(read_task(files(task), deadline), deadline)
+    relaxed = solved(read_task(as_paths(task), deadline), deadline)
     if certificate_file is None:
         return relaxed
     certificate = _certificate(relaxed, deadline)
