@@ -532,7 +532,7 @@ def _resident(statm: Path) -> int:
         return 0
 
 
-def seconds(number: float | str, quantity: str = "the time limit") -> float:
+def parse_seconds(number: float | str, quantity: str = "the time limit") -> float:
     """Return a number of seconds, at least 0; raises :class:`UserError` about the ``quantity`` otherwise."""
     try:
         value = float(number)
@@ -543,7 +543,7 @@ def seconds(number: float | str, quantity: str = "the time limit") -> float:
     return value
 
 
-def memory_size(number: int | str, quantity: str = "the memory limit") -> int:
+def parse_memory_size(number: int | str, quantity: str = "the memory limit") -> int:
     """Return a size in bytes: an integer, or a text with K, M, G or T.
 
     Raises :class:`UserError` about the ``quantity`` for other values.

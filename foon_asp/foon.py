@@ -12,7 +12,7 @@ from foon_asp.dataset import Dataset, read_dataset
 from foon_asp.dataset.item_options import Stays, Stock, items_for
 from foon_asp.dataset.paths import File, Files, as_paths
 from foon_asp.dataset.python_names import in_python, node_ids, stated_copies
-from foon_asp.deadline import Cancel, seconds, stoppable
+from foon_asp.deadline import Cancel, parse_seconds, stoppable
 from foon_asp.errors import UserError
 from foon_asp.network import (
     FunctionalUnit,
@@ -144,7 +144,7 @@ def _limited(
     """Return a context that stops its ``with`` block at a time limit or by a token; neither is no limit."""
     if time_limit is None and cancel is None:
         return contextlib.nullcontext()
-    return stoppable(None if time_limit is None else seconds(time_limit), cancel, doing)
+    return stoppable(None if time_limit is None else parse_seconds(time_limit), cancel, doing)
 
 
 PlainUnit = FunctionalUnit | tuple[str, Names, Names] | Mapping[str, Any]
