@@ -52,7 +52,7 @@ class Progress(Reporter):
         """End the thread that shows the line, and wait until the line is gone."""
         self._finished.put(None)
         if self._thread is not None:
-            self._thread.ended(_DELAY_SECONDS)  # so that the line does not overwrite the answer
+            self._thread.wait_for_end(_DELAY_SECONDS)  # so that the line does not overwrite the answer
 
     def begin(self) -> None:
         """Start the time of the search, and the thread that shows the line."""

@@ -64,7 +64,7 @@ class PythonProcess:
 
     def start_thread(self, target: Callable[..., None], *arguments: object) -> None:
         """Start a thread that reads from or writes to the process, and ends with it."""
-        self._threads = [thread for thread in self._threads if not thread.ended(0)]
+        self._threads = [thread for thread in self._threads if not thread.wait_for_end(0)]
         self._threads.append(DaemonThread(target, *arguments))
 
     def end(self) -> int:
@@ -77,7 +77,7 @@ class PythonProcess:
             self._process.kill()
             code = self._process.wait()
         for thread in self._threads:
-            thread.ended(5.0)  # before another file gets the descriptor that it reads
+            thread.wait_for_end(5.0)  # before another file gets the descriptor that it reads
         self._close()
         return code
 
