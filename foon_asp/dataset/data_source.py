@@ -86,7 +86,7 @@ class Source:
         """Return the whole network; for a store, one that reads each unit and node on access."""
         return self._network
 
-    def part(self, units: Iterable[int], objects: Iterable[int]) -> Network:
+    def network_part(self, units: Iterable[int], objects: Iterable[int]) -> Network:
         """Return a network that has at least these units and object nodes."""
         return self._network
 

@@ -409,7 +409,7 @@ class Dataset:
     def problem_about_units(self, problem: Problem, units: Iterable[FunctionalUnit]) -> Problem:
         """Return the same problem over a part of the network that has its goals and the given units."""
         dataset = self.with_kitchen_of(problem)
-        data, goals = dataset.part(_whole_goals(problem), tree=units)
+        data, goals = dataset.data_part(_whole_goals(problem), tree=units)
         return _with_own_rates(pose_problem(data, goals, problem.containers, dataset, problem.items), problem)
 
     def subject(self, everything: bool = True, goals: Iterable[int] = ()) -> "Subject":
@@ -541,7 +541,7 @@ class Dataset:
         stocked_ids = {self.names.object_id(node) for node in (items.stock if items else ())}
         kitchen = dataset.kitchen.changed((), [o for o in stocked_ids if o is not None])
         cone = self.source.cone(goals, container_rule(containers), self.utensils, kitchen, None)
-        network = self.source.whole() if cone is None else self.source.part(cone.units, goals)
+        network = self.source.whole() if cone is None else self.source.network_part(cone.units, goals)
         return pose_problem(dataset._data_of(network), _local_ids(network, goals), containers, self, items)
 
     def nearby(
@@ -564,7 +564,7 @@ class Dataset:
 
     def among(self, units: Iterable[int], goals: Sequence[int], containers: str) -> Problem:
         """Return the problem of goals over a part of the network that has these units."""
-        network = self.source.part(units, goals)
+        network = self.source.network_part(units, goals)
         return pose_problem(self.for_goals(goals)._data_of(network), _local_ids(network, goals), containers, self)
 
     def unit_distances(self, containers: str, objective: Objective) -> "UnitDistances | None":
@@ -579,7 +579,7 @@ class Dataset:
             self.kitchen.ids, self.utensils if implied else (), self.rates, objective
         )
 
-    def part(
+    def data_part(
         self, goals: Sequence[int], units: Iterable[int] = (), tree: Iterable[FunctionalUnit] = ()
     ) -> tuple[Data, tuple[int, ...]]:
         """Return a part of the data, and the ids that the goals have in it.
@@ -596,7 +596,7 @@ class Dataset:
         tree_ids = [number for unit in tree if (number := names.unit_id(unit)) is not None]
         nodes = {node for unit in tree for node in (*unit.inputs, *unit.outputs)}
         objects = [o for node in nodes if (o := names.object_id(node)) is not None]
-        network = self.source.part([*units, *tree_ids], [*goals, *objects])
+        network = self.source.network_part([*units, *tree_ids], [*goals, *objects])
         return self.for_goals(goals)._data_of(network), _local_ids(network, goals)
 
 

@@ -104,7 +104,7 @@ class StoreSource(Source):
         with self._timed():
             return self.names.cone(goals, containers, utensils, available, max_units)
 
-    def part(self, units: Iterable[int], objects: Iterable[int]) -> Network:
+    def network_part(self, units: Iterable[int], objects: Iterable[int]) -> Network:
         """Read a network that has the given units with their nodes, and the given further nodes."""
         with self._timed():
             return self.names.part(units, objects)

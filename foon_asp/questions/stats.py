@@ -314,7 +314,7 @@ def _listed(
 ) -> ListedUnits:
     """Return the units with the given ids, or all; if ``explains``, with the fate of their inputs."""
     items = items_of(dataset, "used-up", None, stays) if explains else None
-    network = (dataset.part((), numbers)[0] if numbers else dataset.data).network
+    network = (dataset.data_part((), numbers)[0] if numbers else dataset.data).network
     unit_ids = [network.unit_of_number(number) for number in numbers]
     ids = [u for u in unit_ids if u is not None] if numbers else range(len(network))
     listed = tuple(_explained(network, u, rule, dataset.utensils, items) for u in ids)

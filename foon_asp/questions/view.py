@@ -395,7 +395,7 @@ def _units_drawing(about: Problem | Foon, unit_ids: Sequence[int]) -> Drawing:
         posed = without_reading_more(about)
         goal_ids = [posed.network.object_number(goal) for goal in posed.goals]
         about = Foon.of(about)
-    data, goal_ids = about.dataset.part(goal_ids, unit_ids)
+    data, goal_ids = about.dataset.data_part(goal_ids, unit_ids)
     network = data.network
     units = [unit for unit in map(network.unit_of_number, unit_ids) if unit is not None]
     caption = f"Functional units {', '.join(map(str, unit_ids))}"
@@ -412,7 +412,7 @@ def _drawing_without_goals(
     if isinstance(tree, str | PathLike):
         tree = [unit for unit, _ in read_listed(Path(tree), lambda: foon.dataset.whole_network)[0]]
     read = TaskTree(tuple(dict.fromkeys(unit_at_level(unit, foon.level) for unit in tree)))
-    data, _ = foon.dataset.part((), tree=read)
+    data, _ = foon.dataset.data_part((), tree=read)
     kitchen = {data.network.objects[o] for o in data.kitchen}
     return tree_drawing(read, kitchen, (), rule, data.utensils, data.network)
 
