@@ -280,7 +280,7 @@ class Dataset:
         patterns = [pattern_at_level(item.pattern, names.level) for item in items]
         kitchen = Kitchen(frozenset(o for pattern in patterns for o in names.find(pattern)))
         stock = amounts_of_items(names, items)
-        return self._varied(kitchen=kitchen, kitchen_items=tuple(items), starting=False, stock=stock)
+        return self._with_fields(kitchen=kitchen, kitchen_items=tuple(items), starting=False, stock=stock)
 
     @property
     def goal_amounts(self) -> dict[int, int]:
@@ -294,14 +294,14 @@ class Dataset:
 
     def with_goals(self, goals: Sequence[ListedObject]) -> "Dataset":
         """Return the same data with other entries of a goals file."""
-        return self._varied(listed=tuple(goals), goals_from="", has_kitchen=self.has_kitchen)
+        return self._with_fields(listed=tuple(goals), goals_from="", has_kitchen=self.has_kitchen)
 
     def with_starting_kitchen(self) -> "Dataset":
         """Return the same data with the starting kitchen."""
         kitchen = Kitchen(self.source.starting.nodes)
-        return self._varied(kitchen=kitchen, kitchen_items=(), starting=True, stock={})
+        return self._with_fields(kitchen=kitchen, kitchen_items=(), starting=True, stock={})
 
-    def _varied(self, **changes: Any) -> "Dataset":
+    def _with_fields(self, **changes: Any) -> "Dataset":
         """Return a copy with some fields changed, and without remarks on assumptions made while reading."""
         return replace(self, **{"remarks": (), "brief": (), "has_kitchen": True, **changes})
 
@@ -328,7 +328,7 @@ class Dataset:
             goals = [goal for goal in goals if copies and goal.source.file == copies[0].file] or goals
         return replace(self, stand_ins=table, listed=goals)
 
-    def varied(
+    def with_kitchen_changes(
         self,
         added: Collection[int],
         removed: Collection[int],
@@ -340,10 +340,10 @@ class Dataset:
         """
         if only is not None:
             kitchen = Kitchen(only, added, removed)
-            return self._varied(kitchen=kitchen, kitchen_items=(), starting=False, stock={})
+            return self._with_fields(kitchen=kitchen, kitchen_items=(), starting=False, stock={})
         endless = set(map(self.names.node, added)) if self.stock else set()
         stock = {node: amount for node, amount in self.stock.items() if node not in endless}
-        return self._varied(kitchen=self.kitchen.changed(added, removed), stock=stock)
+        return self._with_fields(kitchen=self.kitchen.changed(added, removed), stock=stock)
 
     def with_rates_and_prices(
         self, rates: Mapping[str, Number] | None, unit_prices: UnitPricesNamed | None
@@ -356,7 +356,7 @@ class Dataset:
             listed_prices = UnitPrices(motions or {}, units)
             motions, units = changed_prices(listed_prices, unit_prices, self.motions, self.names)
             prices = prices._replace(motions=motions, units=units)
-        return self._varied(rates=changed_rates(self.rates, rates, self.motions), prices=prices)
+        return self._with_fields(rates=changed_rates(self.rates, rates, self.motions), prices=prices)
 
     def vary(self, changes: Changes) -> "Dataset":
         """Return the same data with another kitchen, other success rates or other prices."""
@@ -382,11 +382,11 @@ class Dataset:
         elif kitchen is not None:
             only = frozenset(node_ids(self, kitchen, "kitchen item"))
         added = frozenset(node_ids(self, adding, "kitchen item"))
-        with_added = dataset.varied(added, frozenset(), only)
+        with_added = dataset.with_kitchen_changes(added, frozenset(), only)
         if isinstance(kitchen, Mapping):
             with_added = replace(with_added, stock=stated_copies(dataset, kitchen, "kitchen item"))
         removed = frozenset(item_id(with_added, name) for name in listed(without))
-        return with_added.varied((), removed, None) if removed else with_added
+        return with_added.with_kitchen_changes((), removed, None) if removed else with_added
 
     def problem_with_changes(
         self, problem: Problem, goals: Names | None, containers: str | None, changes: Changes
@@ -491,7 +491,7 @@ class Dataset:
         from foon_asp.dataset.nearby import without_reading_more  # noqa: PLC0415 (few answers need it)
 
         added, removed = self.kitchen_changes(without_reading_more(problem), _whole_goals(problem))
-        return self.varied(added, removed, None) if added or removed else self
+        return self.with_kitchen_changes(added, removed, None) if added or removed else self
 
     def kitchen_changes(
         self, problem: Problem, goals: Iterable[int]
@@ -562,7 +562,7 @@ class Dataset:
 
         return NearbyProblem.of(Nearby(self, cone, containers), first)
 
-    def among(self, units: Iterable[int], goals: Sequence[int], containers: str) -> Problem:
+    def problem_of_units(self, units: Iterable[int], goals: Sequence[int], containers: str) -> Problem:
         """Return the problem of goals over a part of the network that has these units."""
         network = self.source.network_part(units, goals)
         return pose_problem(self.for_goals(goals)._data_of(network), _local_ids(network, goals), containers, self)

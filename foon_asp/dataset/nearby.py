@@ -20,7 +20,7 @@ class UnreadData(Protocol):
     def problem(self, goals: Sequence[int], containers: str) -> Problem:
         """Return the problem of goals over all units that they can need."""
 
-    def among(self, units: Iterable[int], goals: Sequence[int], containers: str) -> Problem:
+    def problem_of_units(self, units: Iterable[int], goals: Sequence[int], containers: str) -> Problem:
         """Return the problem of goals over a part of the network that has these units."""
 
     def nearby(self, goals: Sequence[int], containers: str, items: UsedUp | None, first: int) -> Problem:
@@ -62,12 +62,12 @@ class Nearby:
     def problem(self) -> Problem:
         """The question over the units read so far; each of its trees is also a tree of the whole network."""
         if self._problem is None:
-            self._problem = self.among(self._cone.units)
+            self._problem = self.problem_of_units(self._cone.units)
         return self._problem
 
-    def among(self, units: Iterable[int]) -> Problem:
+    def problem_of_units(self, units: Iterable[int]) -> Problem:
         """Return the question over the given units, by id in the whole network."""
-        return self.data.among(units, self.goals, self.containers)
+        return self.data.problem_of_units(units, self.goals, self.containers)
 
     def unit_distances(self, objective: Objective) -> "UnitDistances | None":
         """Return the distance of each unit by an objective, ``None`` if they are not known."""

@@ -138,7 +138,7 @@ class _Search:
         for max_units, max_steps in NEARBY.widths:
             with self._settings.begun.watched("reading"):
                 units, least_distances = distances.nearest(kinds, tree, max_units, max_steps)
-                problem = self._nearby.among({*tree, *units})
+                problem = self._nearby.problem_of_units({*tree, *units})
             outcome = self._solved(problem)
             if outcome.units is not None or outcome.stopped:
                 return outcome
@@ -165,7 +165,7 @@ class _Search:
             far_units = [] if near_units is None else distances.relevant(kinds, near_units, max_cost)
             if near_units is None or len(far_units) > NEARBY.max_units:
                 return None
-            return self._nearby.among({*near_units, *far_units, *_numbers(tree)})
+            return self._nearby.problem_of_units({*near_units, *far_units, *_numbers(tree)})
 
     def _read_near_units(self, costs: Costs) -> set[int] | None:
         """Read all units that a tree for the goals can have if it costs at most ``costs``.
