@@ -52,7 +52,7 @@ class Nearby:
         """The goals, by id in the whole network."""
         return self._cone.goals
 
-    def copied(self) -> "Nearby":
+    def copy(self) -> "Nearby":
         """Return a copy with the same units read; reading more units in one does not affect the other."""
         other = Nearby(self.data, self._cone.copied(), self.containers)
         other._problem, other._relaxed = self._problem, self._relaxed
@@ -77,12 +77,12 @@ class Nearby:
         """Return the network and kitchen that a certificate of the answer is about."""
         return self.data.subject(False, self.goals)
 
-    def whole(self) -> Problem:
+    def full_problem(self) -> Problem:
         """Return the question over all units that the goals can need."""
         return self.data.problem(self.goals, self.containers) if self._cone.open else self.problem
 
     @property
-    def relaxed(self) -> Problem:
+    def relaxation(self) -> Problem:
         """The relaxation of the question in which all open nodes are available.
 
         In any tree of the whole network, the units that were read are a tree of the relaxation: each of their
@@ -99,7 +99,7 @@ class Nearby:
             self._relaxed = replace(problem, kitchen=kitchen, as_seen=problem, origin=None)
         return self._relaxed
 
-    def lacking(self, units: Iterable[int]) -> list[int]:
+    def open_nodes_used(self, units: Iterable[int]) -> list[int]:
         """Return the open nodes that a tree of the relaxation uses without making them.
 
         ``units`` are in an order that executes in the relaxation; the ids returned are those of the whole
@@ -122,30 +122,30 @@ class Nearby:
         self._problem = self._relaxed = None
 
     @property
-    def units(self) -> int:
+    def unit_count(self) -> int:
         """The number of units read."""
         return len(self._cone.units)
 
-    def open_to(self, units: Iterable[int]) -> list[int]:
+    def open_nodes_needed(self, units: Iterable[int]) -> list[int]:
         """Return the open nodes among the goals and the inputs of units, by id in the whole network."""
         problem, open_nodes = self.problem, self._cone.open
         needed = {o for unit in units for o in problem.needs[unit]}.union(problem.goals)
         return sorted(open_nodes.intersection(map(problem.network.object_number, needed)))
 
 
-class _ReadLater:
+class _FieldReadLater:
     """A field of a problem that is read at its first access, unless it was set."""
 
     def __set_name__(self, owner: type, name: str) -> None:
-        self._name, self._own = name, f"_own_{name}"
+        self._name, self._own_name = name, f"_own_{name}"
 
     def __get__(self, problem: "NearbyProblem | None", owner: type) -> Any:
         if problem is None:
             return self
-        return getattr(problem, self._own) if problem.start is None else getattr(problem.read, self._name)
+        return getattr(problem, self._own_name) if problem.start is None else getattr(problem.full_problem, self._name)
 
     def __set__(self, problem: "NearbyProblem", value: object) -> None:
-        object.__setattr__(problem, self._own, value)  # a problem is frozen
+        object.__setattr__(problem, self._own_name, value)  # a problem is frozen
 
 
 class NearbyProblem(Problem):
@@ -155,10 +155,10 @@ class NearbyProblem(Problem):
     with changed fields has the values passed to it, and reads nothing.
     """
 
-    network: Network = _ReadLater()  # type: ignore[assignment]
-    kitchen: frozenset[int] = _ReadLater()  # type: ignore[assignment]
-    goals: tuple[int, ...] = _ReadLater()  # type: ignore[assignment]
-    unit_prices: UnitPrices | None = _ReadLater()  # type: ignore[assignment]
+    network: Network = _FieldReadLater()  # type: ignore[assignment]
+    kitchen: frozenset[int] = _FieldReadLater()  # type: ignore[assignment]
+    goals: tuple[int, ...] = _FieldReadLater()  # type: ignore[assignment]
+    unit_prices: UnitPrices | None = _FieldReadLater()  # type: ignore[assignment]
 
     start: Nearby | None = None
     """The question over the units read at first; ``None`` for a problem with its own values."""
@@ -173,24 +173,24 @@ class NearbyProblem(Problem):
         return problem
 
     @property
-    def first(self) -> Problem | None:
+    def first_problem(self) -> Problem | None:
         """The question over the units read at first."""
         return None if self.start is None else self.start.problem
 
     @cached_property
-    def read(self) -> Problem:
+    def full_problem(self) -> Problem:
         """The question over all units that the goals can need."""
         assert self.start is not None
-        return self.start.whole()
+        return self.start.full_problem()
 
     def nearby(self) -> Nearby | None:
         """Return a copy of the question over units near the goals; ``None`` if all units were read."""
-        return None if self.start is None or "read" in vars(self) else self.start.copied()
+        return None if self.start is None or "full_problem" in vars(self) else self.start.copy()
 
     def single_goal_problems(self) -> list[Problem]:
         """Return the question for each goal by itself, with about as many units read as for this question."""
         start = self.start
-        if start is None or "read" in vars(self):
+        if start is None or "full_problem" in vars(self):
             return [replace(self, goals=(goal,)) for goal in self.goals]
         return [
             start.data.nearby((goal,), start.containers, None, self.units_at_first) for goal in start.goals
@@ -199,19 +199,19 @@ class NearbyProblem(Problem):
     @property
     def goal_nodes(self) -> tuple[ObjectNode, ...]:
         """The goals as object nodes."""
-        return super().goal_nodes if self.first is None else self.first.goal_nodes
+        return super().goal_nodes if self.first_problem is None else self.first_problem.goal_nodes
 
     @property
     def conditions(self) -> str:
         """The conditions of every claim about this question, in a few words."""
-        return super().conditions if self.first is None else self.first.conditions
+        return super().conditions if self.first_problem is None else self.first_problem.conditions
 
     def require_known_for(self, objectives: Collection[Objective]) -> None:
         """Require the rates and prices that objectives need, as :meth:`Problem.require_known_for` does."""
-        if self.first is None:
+        if self.first_problem is None:
             super().require_known_for(objectives)
         else:
-            self.first.require_known_for(objectives)
+            self.first_problem.require_known_for(objectives)
 
 
 def without_reading_more(problem: Problem) -> Problem:
@@ -220,5 +220,5 @@ def without_reading_more(problem: Problem) -> Problem:
     For a :class:`NearbyProblem`, this is the question over the units read at first.
     """
     if isinstance(problem, NearbyProblem):
-        return problem.first or problem
+        return problem.first_problem or problem
     return problem

@@ -83,14 +83,14 @@ def solve_nearby(
         ]
     while True:
         problem = nearby.problem
-        outcome = solve(nearby.relaxed, objectives, with_rules, _OnlyWarnings(reporter), units_of_rules)
+        outcome = solve(nearby.relaxation, objectives, with_rules, _OnlyWarnings(reporter), units_of_rules)
         if outcome.status is Status.INFEASIBLE:
             rules_alone = unconstrained is not None or (
                 bool(settings.constraints) and _has_tree(nearby, deadline)
             )
             return outcome._replace(problem=nearby.problem) if rules_alone else None
         bounds_found += [bound for objective, bound in outcome.bounds.items() if objective == first_objective]
-        lacking = [] if outcome.units is None else nearby.lacking(outcome.units)
+        lacking = [] if outcome.units is None else nearby.open_nodes_used(outcome.units)
         if lacking and outcome.status is Status.OPTIMAL:
             try:
                 with deadline.watched("reading"):  # stops early, so that time for a tree remains
@@ -132,12 +132,12 @@ def solve_nearby(
 def _has_tree(nearby: "Nearby", deadline: Deadline) -> bool:
     """Whether a tree exists without rules; reads units until that is known. Also true at a limit."""
     while True:
-        relaxed = nearby.relaxed
+        relaxed = nearby.relaxation
         reached = reach(relaxed)
         tree = follow(relaxed.goals, reached.makers, relaxed.needs, relaxed.kitchen)
         if tree is None:
             return False
-        lacking = nearby.lacking(unit for unit in reached.units if unit in tree)
+        lacking = nearby.open_nodes_used(unit for unit in reached.units if unit in tree)
         if not lacking:
             return True
         try:
@@ -156,10 +156,10 @@ def _read_smallest_tree(nearby: "Nearby", settings: Settings, units_of_rules: se
     ``units_of_rules`` collects the units on which the rules depend.
     """
     while True:
-        outcome = solve(nearby.relaxed, (Objective.UNITS,), settings, mattered=units_of_rules)
+        outcome = solve(nearby.relaxation, (Objective.UNITS,), settings, mattered=units_of_rules)
         if outcome.status is not Status.OPTIMAL or outcome.units is None:
             return []
-        lacking = nearby.lacking(outcome.units)
+        lacking = nearby.open_nodes_used(outcome.units)
         if not lacking:
             return [*map(nearby.problem.network.unit_number, outcome.units)]
         try:
@@ -178,15 +178,15 @@ def _read_more(
     If many units were read before and there are no rules, repeat this for trees found by ``h_add``, until one
     lacks no node. Such trees mostly lead to the units of an optimal tree, in a tenth of the time of a proof.
     """
-    many_read = nearby.units > REFINEMENT.proved_units
+    many_read = nearby.unit_count > REFINEMENT.proved_units
     long_rounds = many_read or leave_unsettled(settings)
     nearby.grow(lacking, REFINEMENT.wide_step if long_rounds else REFINEMENT.narrow_step)
     if not many_read or settings.constraints:
         return
-    while (tree := h_add_tree(nearby.relaxed, levels(tuple(objectives)))) is not None:
-        order = executable_order(nearby.relaxed, tree)
+    while (tree := h_add_tree(nearby.relaxation, levels(tuple(objectives)))) is not None:
+        order = executable_order(nearby.relaxation, tree)
         assert order is not None
-        lacking = nearby.lacking(order)
+        lacking = nearby.open_nodes_used(order)
         if not lacking:
             return
         nearby.grow(lacking, REFINEMENT.narrow_step)

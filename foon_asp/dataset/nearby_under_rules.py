@@ -173,8 +173,8 @@ class _Search:
         Return their ids in the whole network, maybe with a few more units; ``None`` if they are too many.
         """
         nearby, deadline = self._nearby, self._settings.begun
-        while nearby.units <= NEARBY.max_units:
-            relaxed = nearby.relaxed
+        while nearby.unit_count <= NEARBY.max_units:
+            relaxed = nearby.relaxation
             relaxed_bound = reduce_under_rules(
                 relaxed, self._order, expired=lambda: deadline.passed, course=BOUND
             )
@@ -183,7 +183,7 @@ class _Search:
                 return None
             units = subproblem.units_within(subproblem.costs.of(costs), lambda: deadline.passed)
             deadline.check()
-            open_nodes = nearby.open_to(units)
+            open_nodes = nearby.open_nodes_needed(units)
             if not open_nodes:
                 return {*map(relaxed.network.unit_number, units)}
             nearby.grow(open_nodes, REFINEMENT.wide_step)

@@ -554,7 +554,7 @@ def answered_nearby(nearby: "Nearby", objectives: Sequence[Objective], settings:
     if outcome is not None:
         return _answer_of(outcome)
     with reading():
-        problem = nearby.whole()
+        problem = nearby.full_problem()
     return answered_under(problem, objectives, settings)
 
 

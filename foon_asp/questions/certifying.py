@@ -49,7 +49,7 @@ def certified(
         proved = answer.problem
     else:
         answer = answered_nearby(nearby, objectives, settings)
-        proved = nearby.relaxed
+        proved = nearby.relaxation
     certificate = None
     with contextlib.suppress(KeyboardInterrupt), deadline.watched("looking for a certificate"):
         outcome, certificate = certify_outcome(

@@ -92,16 +92,16 @@ def test_what_is_taken_to_be_at_hand_is_in_no_answer(tmp_path: Path) -> None:
     dataset = two_ways(tmp_path)
     near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=1))
     assert len(near.problem.network) == 2  # both ways, one unit each
-    free = solve(near.relaxed)
+    free = solve(near.relaxation)
     assert free.units is not None
     assert len(free.units) == 1
-    assert near.lacking(free.units) != []
+    assert near.open_nodes_used(free.units) != []
     assert solve(near.problem).status is Status.INFEASIBLE
     found = answered_nearby(near, [Objective.UNITS], Settings())
     assert found.status is Status.OPTIMAL
     assert found.tree is not None
     assert [unit.motion for unit in found.tree.units] == ["boil", "plate", "serve"]
-    assert found.problem.kitchen < near.relaxed.kitchen, "the other way was read to its end"
+    assert found.problem.kitchen < near.relaxation.kitchen, "the other way was read to its end"
     assert not any(map(found.problem.at_hand, found.problem.goal_nodes))
 
 
@@ -238,7 +238,7 @@ def test_where_rules_leave_no_tree_that_is_said_even_at_a_limit(
 def from_one_unit(monkeypatch: pytest.MonkeyPatch) -> None:
     """Have questions begin with one unit near the goals, and nobody read all that these need."""
     monkeypatch.setattr(Dataset.nearby, "__defaults__", (None, 1))
-    monkeypatch.setattr(Nearby, "whole", None)
+    monkeypatch.setattr(Nearby, "full_problem", None)
 
 
 @pytest.mark.usefixtures("from_one_unit")
@@ -349,7 +349,7 @@ def test_random_problems_under_rules(rule: ContainerRule, part: int, tmp_path: P
             continue
         objectives = rng.choice(LISTS)
         found = answered_nearby(near, objectives, how)
-        whole = near.whole()
+        whole = near.full_problem()
         expected, free = solve(whole, objectives, how), solve(whole, objectives)
         assert_same(found.outcome, expected, objectives, seed, drawn)
         compared += 1
@@ -399,7 +399,7 @@ def test_random_problems_under_rules_that_see_the_kitchen(part: int, tmp_path: P
         assert_same(found.outcome, expected, objectives, seed, how)
         compared += 1
         mattered += (free.status, free.costs) != (expected.status, expected.costs)
-        little += len(found.problem.network) < len(near.whole().network)
+        little += len(found.problem.network) < len(near.full_problem().network)
     assert compared > 22 // part
     assert mattered > compared // 4
     assert little > compared // 4
@@ -432,7 +432,7 @@ def test_rules_see_the_kitchen_as_it_is(
     """What units that were not read may make is no item of the kitchen, nor is it there too early."""
     dataset = two_ways(tmp_path)
     problem = dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=1)
-    monkeypatch.setattr(Nearby, "whole", None)
+    monkeypatch.setattr(Nearby, "full_problem", None)
     found = answered_under(problem, [Objective.UNITS], Settings((rule,), constants=constants))
     assert found.status is Status.OPTIMAL
     assert found.units is not None

@@ -67,7 +67,7 @@ def near_stew(
 
 
 def read_little(problem: Problem) -> bool:
-    return isinstance(problem, NearbyProblem) and "read" not in vars(problem)
+    return isinstance(problem, NearbyProblem) and "full_problem" not in vars(problem)
 
 
 def test_a_unit_more_near_the_goals_is_proved_with_the_rest_unread(tmp_path: Path) -> None:
