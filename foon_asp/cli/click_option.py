@@ -82,7 +82,7 @@ def click_option(option: Option) -> Callable[[Command], Command]:
         Kind.WHOLE: int if option.least is None else click.IntRange(min=option.least),
         Kind.FILE: click.Path(path_type=NamedPath),
         Kind.WRITTEN: WrittenPath(),
-        Kind.SECONDS: seconds,
+        Kind.SECONDS: parse_seconds,
         Kind.SIZE: parse_memory_size,
         Kind.WEIGHTS: None,
         Kind.CONSTRAINT: _constraint,
