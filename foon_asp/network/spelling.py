@@ -5,17 +5,17 @@ from collections import defaultdict
 from collections.abc import Iterable
 
 _DOUBLED = r"([^\W\d_])\1+"
-_BETWEEN = r"[\s\-_'’.]+"
+_SEPARATORS = r"[\s\-_'’.]+"
 
 
-def joined(name: str) -> str:
+def without_separators(name: str) -> str:
     """Return a name without capitals, blanks, hyphens and the like."""
-    return re.sub(_BETWEEN, "", name.casefold()) or name
+    return re.sub(_SEPARATORS, "", name.casefold()) or name
 
 
 def without_doubles(name: str) -> str:
-    """Return a name as :func:`joined` does, with doubled letters written once."""
-    return re.sub(_DOUBLED, r"\1", joined(name))
+    """Return a name as :func:`without_separators` does, with doubled letters written once."""
+    return re.sub(_DOUBLED, r"\1", without_separators(name))
 
 
 def one_letter_apart(word: str, other: str) -> bool:
