@@ -129,13 +129,13 @@ def stoppable(seconds: float | None, token: Cancel | None, doing: str) -> Iterat
                 yield deadline
         except KeyboardInterrupt as stop:
             if isinstance(stop, LimitError) or (deadline.passed and not deadline.interrupted):
-                raise StoppedError(_reason(stop, deadline)) from None
+                raise StoppedError(_stop_reason(stop, deadline)) from None
             raise
     finally:
         _CANCEL.reset(reset_token)
 
 
-def _reason(stop: KeyboardInterrupt, deadline: "Deadline") -> str:
+def _stop_reason(stop: KeyboardInterrupt, deadline: "Deadline") -> str:
     """Return why work was stopped, in words: it was cancelled, or a limit was reached."""
     token = _CANCEL.get()
     if token is not None and token.cancelled:
@@ -313,7 +313,7 @@ class Deadline:
 
     def memory_in_use(self) -> int:
         """Return the resident memory of this process and of the counted ones, in bytes."""
-        return sum(_resident(Path(f"/proc/{pid}/statm")) for pid in ("self", *self._workers))
+        return sum(_resident_bytes(Path(f"/proc/{pid}/statm")) for pid in ("self", *self._workers))
 
     def count_memory_of(self, process: int) -> None:
         """Count the memory of another process, by its id, as well."""
@@ -421,13 +421,13 @@ class Watch:
         """Start the background thread; raises :class:`LimitError` if the deadline allows no more work."""
         deadline = self._deadline
         deadline.doing = self._doing
-        if self._due or (deadline.passed and deadline.is_out_of_memory and not self._begins):
+        if self._is_due or (deadline.passed and deadline.is_out_of_memory and not self._begins):
             raise LimitError(deadline)
         if deadline.is_limited:
             try:
                 if not self._is_woken_by_signals:
                     import ctypes  # noqa: F401, PLC0415 (imported before it is needed for an interrupt)
-                DaemonThread(_watch, weakref.ref(self), self._wake)
+                DaemonThread(_poll_until_end, weakref.ref(self), self._wake)
             except BaseException:
                 self._end()
                 raise
@@ -462,7 +462,7 @@ class Watch:
             time.sleep(_PACE.handover_seconds)
 
     @property
-    def _due(self) -> bool:
+    def _is_due(self) -> bool:
         due = self._deadline.overdue if self._late else self._deadline.passed
         return due and time.monotonic() >= self._earliest
 
@@ -474,7 +474,7 @@ class Watch:
         """
         if self._finished or interrupts == _PACE.interrupts:
             return None
-        if not self._due:
+        if not self._is_due:
             return max(_PACE.poll_seconds, self._deadline.seconds_to_next_check()), interrupts
         _targets.append(self._thread)
         try:
@@ -509,7 +509,7 @@ class Watch:
         )
 
 
-def _watch(watching: "weakref.ref[Watch]", wake: "SimpleQueue[None]") -> None:
+def _poll_until_end(watching: "weakref.ref[Watch]", wake: "SimpleQueue[None]") -> None:
     """Poll a watch until its end, or until it is garbage collected because an interrupt prevented its end."""
     pause, interrupts = _PACE.poll_seconds, 0
     while True:
@@ -524,7 +524,7 @@ def _watch(watching: "weakref.ref[Watch]", wake: "SimpleQueue[None]") -> None:
         pause, interrupts = following
 
 
-def _resident(statm: Path) -> int:
+def _resident_bytes(statm: Path) -> int:
     """Return the resident memory of a process, in bytes, from its file in /proc; 0 after its end."""
     try:
         return int(statm.read_bytes().split()[1]) * _PAGE_BYTES

@@ -11,7 +11,7 @@ from foon_asp.argument_checks import typed
 from foon_asp.dataset import Dataset, read_dataset
 from foon_asp.dataset.item_options import Stays, Stock, items_for
 from foon_asp.dataset.paths import File, Files, as_paths
-from foon_asp.dataset.python_names import in_python, node_ids, stated_copies
+from foon_asp.dataset.python_names import node_ids, python_error_text, stated_copies
 from foon_asp.deadline import Cancel, parse_seconds, stoppable
 from foon_asp.errors import UserError
 from foon_asp.network import (
@@ -106,10 +106,10 @@ def load(
         None if file is None else Path(file)
         for file in (kitchen, rates, utensils, goals, unit_prices, unit_amounts)
     ]
-    with _limited(time_limit, cancel, "reading"):
+    with _time_limit_context(time_limit, cancel, "reading"):
         definitions = read_measures(measures)
         named = find_data(folder, () if folder else paths, *side_files)
-        with _counted(on_progress, size_of(named.network)) as tell, reporting_to(tell):
+        with _progress_counter(on_progress, size_of(named.network)) as tell, reporting_to(tell):
             dataset = read_dataset(named, lenient, level).with_measures(definitions)
             if stand_ins:
                 folder_tables = () if named.stand_ins is None else (named.stand_ins,)
@@ -123,7 +123,7 @@ def load(
 
 
 @contextlib.contextmanager
-def _counted(on_progress: OnProgress | None, total: int) -> Iterator[Callable[[int], None]]:
+def _progress_counter(on_progress: OnProgress | None, total: int) -> Iterator[Callable[[int], None]]:
     """Yield a function that adds to the progress of a ``with`` block; its end completes the progress."""
     done = 0
 
@@ -138,7 +138,7 @@ def _counted(on_progress: OnProgress | None, total: int) -> Iterator[Callable[[i
         report(total - done)
 
 
-def _limited(
+def _time_limit_context(
     time_limit: float | None, cancel: Cancel | None, doing: str
 ) -> contextlib.AbstractContextManager[object]:
     """Return a context that stops its ``with`` block at a time limit or by a token; neither is no limit."""
@@ -153,7 +153,7 @@ PlainUnit = FunctionalUnit | tuple[str, Names, Names] | Mapping[str, Any]
 
 @typed
 def build(
-    units: "Network | Iterable[PlainUnit]",  # quoted: _network reports other types itself
+    units: "Network | Iterable[PlainUnit]",  # quoted: _build_network reports other types itself
     *,
     kitchen: Names | None = None,
     goals: Names | None = None,
@@ -207,11 +207,11 @@ def build(
         >>> foon_asp.solve(foon.problem())
         <Answer: optimal by units (strict containers): 2 units, 3 inputs>
     """
-    with _limited(time_limit, cancel, "building"):
+    with _time_limit_context(time_limit, cancel, "building"):
         total = len(units) if isinstance(units, Sized) else 0
-        with _counted(on_progress, total) as tell:
+        with _progress_counter(on_progress, total) as tell:
             stated = StatedAmounts()
-            network = units if isinstance(units, Network) else _network(units, stated, tell)
+            network = units if isinstance(units, Network) else _build_network(units, stated, tell)
         making = [unit for unit, outputs in enumerate(network.outputs) if outputs]
         last = {making[-1]: Source("the units", making[-1] + 1)} if making else {}
         entries = tuple(entry for entry in last_goals(network, last)) if goals is None else ()
@@ -222,7 +222,9 @@ def build(
             goals_from=LAST if goals is None else "", amounts=stated.amounts_by_unit(network)
         )
         dataset = (
-            Dataset.of(data).with_remarks((), (), (), kitchen is not None).with_measures(read_measures(measures))
+            Dataset.of(data)
+            .with_remarks((), (), (), kitchen is not None)
+            .with_measures(read_measures(measures))
         )
         if goals is not None:
             nodes = [network.objects[o] for o in node_ids(dataset, goals, "goal")]
@@ -239,7 +241,9 @@ def build(
     return foon
 
 
-def _network(units: Iterable[PlainUnit], amounts: StatedAmounts, tell: Callable[[int], None]) -> Network:
+def _build_network(
+    units: Iterable[PlainUnit], amounts: StatedAmounts, tell: Callable[[int], None]
+) -> Network:
     """Build a network of units as callers write them; the place of a unit is its number, from 1.
 
     A node that is listed several times is taken or made in as many copies, recorded in ``amounts``.
@@ -263,7 +267,7 @@ def _network(units: Iterable[PlainUnit], amounts: StatedAmounts, tell: Callable[
         if not isinstance(motion, str) or not motion.strip():
             raise UserError(f"found the motion {motion!r} of unit {number}, expected a name; {_UNIT}")
         source = Source("the units", number)
-        sides = [*_nodes(inputs, number)], [*_nodes(outputs, number)]
+        sides = [*_parse_nodes(inputs, number)], [*_parse_nodes(outputs, number)]
         builder.add(motion, *sides, source)
         if counted := counted_amounts(*([(node, 1) for node in side] for side in sides)):
             amounts.add(FunctionalUnit.of(motion, *sides), counted, source)
@@ -275,7 +279,7 @@ def _network(units: Iterable[PlainUnit], amounts: StatedAmounts, tell: Callable[
     return builder.build()
 
 
-def _nodes(names: object, number: int) -> Iterator[ObjectNode]:
+def _parse_nodes(names: object, number: int) -> Iterator[ObjectNode]:
     """Yield the inputs or the outputs of a unit as object nodes."""
     several = [names] if isinstance(names, str | ObjectNode) else names
     if not isinstance(several, Iterable):
@@ -444,7 +448,7 @@ class Foon:
         try:
             return tuple(map(self._dataset.names.node, dict.fromkeys(self._dataset.goal_ids(()))))
         except GoalError as error:
-            raise UserError(in_python(error)) from None
+            raise UserError(python_error_text(error)) from None
 
     @property
     def rates(self) -> dict[str, Fraction] | None:

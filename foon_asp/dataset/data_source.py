@@ -6,7 +6,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from foon_asp.dataset.prices import DataPrices
-from foon_asp.dataset.python_names import NamesAndUnits
+from foon_asp.dataset.python_names import NodeAndUnitNames
 from foon_asp.network import (
     NO_AMOUNTS,
     DataAmounts,
@@ -40,7 +40,7 @@ class Source:
 
     kitchen: Collection[int] | None = None
     prices: DataPrices | None = None
-    names: NamesAndUnits
+    names: NodeAndUnitNames
 
     def __init__(
         self,
@@ -65,7 +65,7 @@ class Source:
         return MappingProxyType({})
 
     @property
-    def starting(self) -> StartingKitchen[Any]:
+    def starting_kitchen(self) -> StartingKitchen[Any]:
         """The starting kitchen."""
         return starting_kitchen(self._network)
 
@@ -78,11 +78,11 @@ class Source:
         """Return pairs of a motion and a place of a unit with it; each motion's first place is among them."""
         return first_places(self._network)
 
-    def whole(self) -> Network:
+    def whole_network(self) -> Network:
         """Return the whole network."""
         return self._network
 
-    def touched(self) -> Network:
+    def network_read_on_access(self) -> Network:
         """Return the whole network; for a store, one that reads each unit and node on access."""
         return self._network
 
@@ -117,7 +117,7 @@ class Source:
         """
         return None
 
-    def true_digests(self) -> dict[str, str]:
+    def checked_digests(self) -> dict[str, str]:
         """Compute the digests that a store states; raises :class:`UserError` if a stated digest is wrong."""
         return {}
 

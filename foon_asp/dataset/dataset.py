@@ -12,11 +12,11 @@ from foon_asp.dataset.data_source import Source
 from foon_asp.dataset.kitchen import Kitchen
 from foon_asp.dataset.prices import NO_PRICES, DataPrices
 from foon_asp.dataset.python_names import (
-    NamesAndUnits,
+    NodeAndUnitNames,
     changed_prices,
     changed_rates,
     item_id,
-    listed,
+    names_as_list,
     node_id,
     node_ids,
     stated_copies,
@@ -138,7 +138,7 @@ class Dataset:
         self.source.close()
 
     @property
-    def names(self) -> NamesAndUnits:
+    def names(self) -> NodeAndUnitNames:
         """The names of object nodes and units."""
         return self.source.names
 
@@ -160,18 +160,18 @@ class Dataset:
     @cached_property
     def data(self) -> Data:
         """All data; from a store, everything is read."""
-        network = self.source.whole()
+        network = self.source.whole_network()
         items = self.source.kitchen_items() if self.kitchen_items is None else self.kitchen_items
-        return self._data(network, self.kitchen.ids)._replace(kitchen_items=items)
+        return self._data_with(network, self.kitchen.ids)._replace(kitchen_items=items)
 
-    def _data_of(self, network: Network) -> Data:
+    def _data_of_network(self, network: Network) -> Data:
         """Return the data of a part of the network, or of all of it where it is in memory."""
         if network is self.names:
             return self.data
         kitchen = (local_id for local_id, o in enumerate(network.object_numbers) if o in self.kitchen)
-        return self._data(network, frozenset(kitchen))
+        return self._data_with(network, frozenset(kitchen))
 
-    def _data(self, network: Network, kitchen: frozenset[int]) -> Data:
+    def _data_with(self, network: Network, kitchen: frozenset[int]) -> Data:
         """Return the data of this dataset with another network and kitchen."""
         return Data(
             network,
@@ -200,7 +200,7 @@ class Dataset:
     @property
     def whole_network(self) -> Network:
         """The whole network; of a store, units and nodes are read on access."""
-        return self.source.touched()
+        return self.source.network_read_on_access()
 
     @property
     def unit_prices(self) -> UnitPrices | None:
@@ -218,7 +218,7 @@ class Dataset:
 
     def made_by_units(self, objects: Iterable[int]) -> list[int]:
         """Return the nodes of a starting kitchen that a unit makes out of others."""
-        return [o for o in objects if self.source.starting.makers(o)]
+        return [o for o in objects if self.source.starting_kitchen.makers(o)]
 
     def for_goals(self, goals: Iterable[int]) -> "Dataset":
         """Return the dataset with the kitchen for some goals.
@@ -227,13 +227,13 @@ class Dataset:
         """
         if not self.starting:
             return self
-        starting = self.source.starting
+        starting = self.source.starting_kitchen
         added, lacking = starting.changes(goals)
         # nodes that the user removed stay removed
         added = frozenset(o for o in added if o in self.kitchen or o not in starting.nodes)
         if not added and not lacking:
             return self
-        return replace(self, kitchen=self.kitchen.changed(added, lacking))
+        return replace(self, kitchen=self.kitchen.with_changes(added, lacking))
 
     def command_goal_ids(self, names: Sequence[str | ObjectNode]) -> tuple[int, ...]:
         """Return the ids of the goals with these names.
@@ -298,7 +298,7 @@ class Dataset:
 
     def with_starting_kitchen(self) -> "Dataset":
         """Return the same data with the starting kitchen."""
-        kitchen = Kitchen(self.source.starting.nodes)
+        kitchen = Kitchen(self.source.starting_kitchen.nodes)
         return self._with_fields(kitchen=kitchen, kitchen_items=(), starting=True, stock={})
 
     def _with_fields(self, **changes: Any) -> "Dataset":
@@ -343,7 +343,7 @@ class Dataset:
             return self._with_fields(kitchen=kitchen, kitchen_items=(), starting=False, stock={})
         endless = set(map(self.names.node, added)) if self.stock else set()
         stock = {node: amount for node, amount in self.stock.items() if node not in endless}
-        return self._with_fields(kitchen=self.kitchen.changed(added, removed), stock=stock)
+        return self._with_fields(kitchen=self.kitchen.with_changes(added, removed), stock=stock)
 
     def with_rates_and_prices(
         self, rates: Mapping[str, Number] | None, unit_prices: UnitPricesNamed | None
@@ -385,7 +385,7 @@ class Dataset:
         with_added = dataset.with_kitchen_changes(added, frozenset(), only)
         if isinstance(kitchen, Mapping):
             with_added = replace(with_added, stock=stated_copies(dataset, kitchen, "kitchen item"))
-        removed = frozenset(item_id(with_added, name) for name in listed(without))
+        removed = frozenset(item_id(with_added, name) for name in names_as_list(without))
         return with_added.with_kitchen_changes((), removed, None) if removed else with_added
 
     def problem_with_changes(
@@ -393,7 +393,7 @@ class Dataset:
     ) -> Problem:
         """Return a problem of this dataset with changes, as :meth:`Problem.vary` describes."""
         dataset = self.with_kitchen_of(problem).vary(changes)
-        ids = _whole_goals(problem) if goals is None else dataset.python_goal_ids(goals)
+        ids = _whole_goal_ids(problem) if goals is None else dataset.python_goal_ids(goals)
         items = problem.items
         if items is not None and changes.kitchen is not None:
             items = replace(items, stock=dict(dataset.stock))
@@ -403,13 +403,13 @@ class Dataset:
     def problem_over_all_units(self, problem: Problem) -> Problem:
         """Return the same problem over the whole network of this dataset."""
         dataset = self.with_kitchen_of(problem)
-        posed = dataset.problem(_whole_goals(problem), problem.containers, True, problem.items)
+        posed = dataset.problem(_whole_goal_ids(problem), problem.containers, True, problem.items)
         return _with_own_rates(posed, problem)
 
     def problem_about_units(self, problem: Problem, units: Iterable[FunctionalUnit]) -> Problem:
         """Return the same problem over a part of the network that has its goals and the given units."""
         dataset = self.with_kitchen_of(problem)
-        data, goals = dataset.data_part(_whole_goals(problem), tree=units)
+        data, goals = dataset.data_part(_whole_goal_ids(problem), tree=units)
         return _with_own_rates(pose_problem(data, goals, problem.containers, dataset, problem.items), problem)
 
     def subject(self, everything: bool = True, goals: Iterable[int] = ()) -> "Subject":
@@ -425,8 +425,8 @@ class Dataset:
         rates = None if self.unrated else self.rates
         own_prices = self.prices == source.prices
         everything = everything or self.starting or not own_prices or not source.digests
-        stated = dict(source.true_digests() if everything else source.digests)
-        if not self.kitchen.is_all_of(source.kitchen):
+        stated = dict(source.checked_digests() if everything else source.digests)
+        if not self.kitchen.is_exactly(source.kitchen):
             stated.pop("kitchen", None)
         if not own_prices:
             stated.pop("prices", None)
@@ -436,7 +436,7 @@ class Dataset:
             return Subject(
                 data.network, kitchen, rates, self.utensils, prices, stated, trusted, data.amounts.units
             )
-        network = source.touched()
+        network = source.network_read_on_access()
         return Subject(
             network,
             stocked.kitchen,
@@ -490,7 +490,7 @@ class Dataset:
         """Return the same data with the kitchen of ``problem``, which is a problem of this dataset."""
         from foon_asp.dataset.nearby import without_reading_more  # noqa: PLC0415 (few answers need it)
 
-        added, removed = self.kitchen_changes(without_reading_more(problem), _whole_goals(problem))
+        added, removed = self.kitchen_changes(without_reading_more(problem), _whole_goal_ids(problem))
         return self.with_kitchen_changes(added, removed, None) if added or removed else self
 
     def kitchen_changes(
@@ -539,10 +539,12 @@ class Dataset:
             return pose_problem(dataset.data, goals, containers, self, items)
         # items of the stock may run out, and then have to be made
         stocked_ids = {self.names.object_id(node) for node in (items.stock if items else ())}
-        kitchen = dataset.kitchen.changed((), [o for o in stocked_ids if o is not None])
+        kitchen = dataset.kitchen.with_changes((), [o for o in stocked_ids if o is not None])
         cone = self.source.cone(goals, container_rule(containers), self.utensils, kitchen, None)
-        network = self.source.whole() if cone is None else self.source.network_part(cone.units, goals)
-        return pose_problem(dataset._data_of(network), _local_ids(network, goals), containers, self, items)
+        network = self.source.whole_network() if cone is None else self.source.network_part(cone.units, goals)
+        return pose_problem(
+            dataset._data_of_network(network), _local_ids(network, goals), containers, self, items
+        )
 
     def nearby(
         self, goals: Sequence[int], containers: str, items: UsedUp | None = None, first: int = 1000
@@ -565,7 +567,9 @@ class Dataset:
     def problem_of_units(self, units: Iterable[int], goals: Sequence[int], containers: str) -> Problem:
         """Return the problem of goals over a part of the network that has these units."""
         network = self.source.network_part(units, goals)
-        return pose_problem(self.for_goals(goals)._data_of(network), _local_ids(network, goals), containers, self)
+        return pose_problem(
+            self.for_goals(goals)._data_of_network(network), _local_ids(network, goals), containers, self
+        )
 
     def unit_distances(self, containers: str, objective: Objective) -> "UnitDistances | None":
         """Return the distance of each unit of a store: a lower bound on the cost of trees with it.
@@ -597,7 +601,7 @@ class Dataset:
         nodes = {node for unit in tree for node in (*unit.inputs, *unit.outputs)}
         objects = [o for node in nodes if (o := names.object_id(node)) is not None]
         network = self.source.network_part([*units, *tree_ids], [*goals, *objects])
-        return self.for_goals(goals)._data_of(network), _local_ids(network, goals)
+        return self.for_goals(goals)._data_of_network(network), _local_ids(network, goals)
 
 
 def _local_ids(network: Network, goals: Sequence[int]) -> tuple[int, ...]:
@@ -608,12 +612,12 @@ def _local_ids(network: Network, goals: Sequence[int]) -> tuple[int, ...]:
     return tuple(local_ids[goal] for goal in goals)
 
 
-def left_out(count: int) -> str:
+def left_out_warning(count: int) -> str:
     """Return a warning that ``count`` lines were not understood and left out."""
     return f"warning: {counted(count, 'line')} left out"
 
 
-def _whole_goals(problem: Problem) -> tuple[int, ...]:
+def _whole_goal_ids(problem: Problem) -> tuple[int, ...]:
     """Return the goals of a problem by their ids in the whole network."""
     from foon_asp.dataset.nearby import without_reading_more  # noqa: PLC0415 (few answers need it)
 

@@ -86,10 +86,10 @@ def items_of(
             raise UserError(f"{option} is for items that are used up: add --items used-up (items='used-up')")
         return None
     require_contents(dataset.names.level)
-    exceptions = {} if stays is None else _exceptions(dataset, stays)
+    exceptions = {} if stays is None else _read_exceptions(dataset, stays)
     copies = {node: n for node, n in dataset.stock.items() if dataset.at_hand(node_id(dataset, node, "item"))}
     if stock is not None:
-        copies |= _copies(dataset, stock)
+        copies |= _read_stock_copies(dataset, stock)
     return UsedUp(exceptions, copies, {node: amount for node, amount in wanted.items() if amount > 1})
 
 
@@ -102,7 +102,7 @@ def require_contents(level: int) -> None:
         )
 
 
-def _exceptions(dataset: Dataset, stays: Stays) -> dict[str | ObjectNode, bool]:
+def _read_exceptions(dataset: Dataset, stays: Stays) -> dict[str | ObjectNode, bool]:
     """Return, by label or node, whether items stay when they are used, from a file or a mapping of names."""
     if isinstance(stays, str | PathLike):
         exceptions = STAYS.read(Path(stays))
@@ -121,7 +121,7 @@ def _exceptions(dataset: Dataset, stays: Stays) -> dict[str | ObjectNode, bool]:
     return exceptions
 
 
-def _copies(dataset: Dataset, stock: Stock) -> dict[ObjectNode, int]:
+def _read_stock_copies(dataset: Dataset, stock: Stock) -> dict[ObjectNode, int]:
     """Return the number of copies of nodes in the stock, from a file or a mapping of names."""
     if isinstance(stock, str | PathLike):
         copies = read_stock(Path(stock))

@@ -13,11 +13,11 @@ class Kitchen(Collection[int]):
     def __init__(self, base: Collection[int], added: Iterable[int] = (), removed: Iterable[int] = ()) -> None:
         self._base, self._added, self._removed = base, frozenset(added), frozenset(removed)
 
-    def changed(self, added: Collection[int], removed: Collection[int]) -> "Kitchen":
+    def with_changes(self, added: Collection[int], removed: Collection[int]) -> "Kitchen":
         """Return a copy with further nodes added and removed."""
         return Kitchen(self, added, removed) if added or removed else self
 
-    def is_all_of(self, base: Collection[int] | None) -> bool:
+    def is_exactly(self, base: Collection[int] | None) -> bool:
         """Whether the kitchen is this base, without added or removed nodes."""
         return self._base is base and not self._added and not self._removed
 

@@ -142,7 +142,11 @@ class _FieldReadLater:
     def __get__(self, problem: "NearbyProblem | None", owner: type) -> Any:
         if problem is None:
             return self
-        return getattr(problem, self._own_name) if problem.start is None else getattr(problem.full_problem, self._name)
+        return (
+            getattr(problem, self._own_name)
+            if problem.start is None
+            else getattr(problem.full_problem, self._name)
+        )
 
     def __set__(self, problem: "NearbyProblem", value: object) -> None:
         object.__setattr__(problem, self._own_name, value)  # a problem is frozen

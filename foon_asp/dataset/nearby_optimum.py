@@ -75,7 +75,7 @@ def solve_nearby(
     smallest: list[int] | None = None  # with the rules, by number; ``None`` before the search
     unconstrained: Outcome | None = None
     if leave_unsettled(settings):  # the optimum without rules is needed anyway, and read quickly
-        unconstrained = solve_nearby(nearby, objectives, without_rules, _OnlyWarnings(reporter))
+        unconstrained = solve_nearby(nearby, objectives, without_rules, _WarningsAndBounds(reporter))
         if unconstrained is None:
             return None
         bounds_found += [
@@ -83,7 +83,9 @@ def solve_nearby(
         ]
     while True:
         problem = nearby.problem
-        outcome = solve(nearby.relaxation, objectives, with_rules, _OnlyWarnings(reporter), units_of_rules)
+        outcome = solve(
+            nearby.relaxation, objectives, with_rules, _WarningsAndBounds(reporter), units_of_rules
+        )
         if outcome.status is Status.INFEASIBLE:
             rules_alone = unconstrained is not None or (
                 bool(settings.constraints) and _has_tree(nearby, deadline)
@@ -111,7 +113,7 @@ def solve_nearby(
         )
         outcome = outcome._replace(problem=problem, bounds=bounds)
         if lacking:  # at a limit: the bound holds, and the units read may have a tree
-            tree = solve(problem, objectives, with_rules, _OnlyWarnings(Reporter()))
+            tree = solve(problem, objectives, with_rules, _WarningsAndBounds(Reporter()))
             status = Status.UNKNOWN if tree.units is None else Status.FEASIBLE
             outcome = outcome._replace(status=status, units=tree.units, costs=tree.costs)
         if outcome.status is Status.UNKNOWN and smallest:
@@ -204,7 +206,7 @@ def least_with_more(
     return tuple(least_costs.values())
 
 
-class _OnlyWarnings(Reporter):
+class _WarningsAndBounds(Reporter):
     """A reporter that passes on only warnings and bounds; they hold for the whole network, unlike trees."""
 
     def __init__(self, reporter: Reporter) -> None:

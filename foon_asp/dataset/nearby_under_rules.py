@@ -59,7 +59,7 @@ def solve_nearby_under(
         return None
     program_of(nearby.problem, settings, reporter.warning)
     if unconstrained.status is not Status.OPTIMAL:
-        return _unknown(nearby, unconstrained)
+        return _outcome_without_tree(nearby, unconstrained)
     search = _Search(nearby, unconstrained, settings, reporter)
     try:
         outcome = search.result()
@@ -81,7 +81,7 @@ class _Search:
         self._nearby, self._unconstrained = nearby, unconstrained
         self._settings, self._reporter = settings, reporter
         self._order = levels(unconstrained.objectives)
-        self.best = _unknown(nearby, unconstrained)  # the incumbent, without a proof
+        self.best = _outcome_without_tree(nearby, unconstrained)  # the incumbent, without a proof
 
     def result(self) -> Outcome | None:
         """Return the optimum, or the incumbent if a limit is reached or optimality is not proved.
@@ -103,20 +103,20 @@ class _Search:
             requests = rules.wanted
             kinds = None if requests is None else [distances.matching(request.rows) for request in requests]
         if requests is None or kinds is None:  # the rules depend only on the units of a tree
-            tree = self._solved(nearby.problem)
+            tree = self._solve_part(nearby.problem)
         else:
-            tree = self._some_tree(distances, kinds, [request.always for request in requests])
+            tree = self._find_tree(distances, kinds, [request.always for request in requests])
             if tree.status is Status.INFEASIBLE:
                 return tree
-        problem = None if tree.stopped else self._with_better_trees(tree, distances, kinds)
+        problem = None if tree.stopped else self._problem_of_better_trees(tree, distances, kinds)
         if problem is None:
             return self.best._replace(stopped=tree.stopped)
-        outcome = self._solved(problem)
+        outcome = self._solve_part(problem)
         if outcome.status is not Status.OPTIMAL:
             return self.best._replace(stopped=outcome.stopped)
-        return self._proved(outcome)
+        return self._as_proved(outcome)
 
-    def _solved(self, problem: Problem) -> Outcome:
+    def _solve_part(self, problem: Problem) -> Outcome:
         """Solve the question over a part of the network; if there is a tree, make it the incumbent."""
         outcome = solve(problem, self._unconstrained.objectives, self._settings)
         if outcome.units is not None:
@@ -125,7 +125,7 @@ class _Search:
             )
         return outcome
 
-    def _some_tree(
+    def _find_tree(
         self, distances: UnitDistances, kinds: Sequence[Mask], is_required: Sequence[bool]
     ) -> Outcome:
         """Search for a tree that keeps the rules, first among few units, then among more.
@@ -134,12 +134,12 @@ class _Search:
         can require. If no tree is found, the status of the outcome is ``infeasible`` if a required kind has
         no unit that can execute, else ``unknown``.
         """
-        tree = _numbers(self._unconstrained)
+        tree = _whole_unit_ids(self._unconstrained)
         for max_units, max_steps in NEARBY.widths:
             with self._settings.begun.watched("reading"):
                 units, least_distances = distances.nearest(kinds, tree, max_units, max_steps)
                 problem = self._nearby.problem_of_units({*tree, *units})
-            outcome = self._solved(problem)
+            outcome = self._solve_part(problem)
             if outcome.units is not None or outcome.stopped:
                 return outcome
             if any(
@@ -149,7 +149,7 @@ class _Search:
                 return outcome
         return outcome._replace(status=Status.UNKNOWN)
 
-    def _with_better_trees(
+    def _problem_of_better_trees(
         self, tree: Outcome, distances: UnitDistances, kinds: Sequence[Mask] | None
     ) -> Problem | None:
         """Return the question over all units that a tree as good as ``tree``, or better, can have.
@@ -165,7 +165,7 @@ class _Search:
             far_units = [] if near_units is None else distances.relevant(kinds, near_units, max_cost)
             if near_units is None or len(far_units) > NEARBY.max_units:
                 return None
-            return self._nearby.problem_of_units({*near_units, *far_units, *_numbers(tree)})
+            return self._nearby.problem_of_units({*near_units, *far_units, *_whole_unit_ids(tree)})
 
     def _read_near_units(self, costs: Costs) -> set[int] | None:
         """Read all units that a tree for the goals can have if it costs at most ``costs``.
@@ -201,7 +201,7 @@ class _Search:
             return FAR - 1
         return next(extra for extra in count() if key <= least_with_more(least_costs, order, extra + 1))
 
-    def _proved(self, outcome: Outcome) -> Outcome:
+    def _as_proved(self, outcome: Outcome) -> Outcome:
         """Return the outcome as proved for the whole network.
 
         Its cuts are omitted, because they hold only for a part of the network.
@@ -213,12 +213,12 @@ class _Search:
         return outcome._replace(proof=proof, cuts=(), cases=None)
 
 
-def _numbers(outcome: Outcome) -> list[int]:
+def _whole_unit_ids(outcome: Outcome) -> list[int]:
     """Return the units of the tree of an outcome, by id in the whole network; empty without a tree."""
     return [*map(outcome.problem.network.unit_number, outcome.units or ())]
 
 
-def _unknown(nearby: Nearby, unconstrained: Outcome) -> Outcome:
+def _outcome_without_tree(nearby: Nearby, unconstrained: Outcome) -> Outcome:
     """Return an outcome without a tree, whose bound is that of the optimum without rules."""
     first_objective = levels(unconstrained.objectives)[0]
     bounds = {

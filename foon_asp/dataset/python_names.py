@@ -13,7 +13,7 @@ from foon_asp.text.node_lookup import GoalError, NodeNames, Wording, find_goal
 from foon_asp.text.object_list import ListedObject
 
 
-class Named(Protocol):
+class NamedData(Protocol):
     """Data that names are looked up in."""
 
     @property
@@ -28,14 +28,14 @@ class Named(Protocol):
         """Whether the kitchen has an object node, by id."""
 
 
-class NamesAndUnits(NodeNames, Protocol):
+class NodeAndUnitNames(NodeNames, Protocol):
     """The names of object nodes and units."""
 
     def unit_id(self, unit: FunctionalUnit) -> int | None:
         """Return the id of a unit, or ``None`` where the network does not have it."""
 
 
-def node_id(dataset: Named, name: str | ObjectNode, what: str) -> int:
+def node_id(dataset: NamedData, name: str | ObjectNode, what: str) -> int:
     """Return the id of a named node in the whole network; ``what`` is its noun, such as ``kitchen item``.
 
     Raises :class:`UserError` with candidates for a name that means no object node, or several.
@@ -49,16 +49,16 @@ def node_id(dataset: Named, name: str | ObjectNode, what: str) -> int:
     try:
         return find_goal(name, names, dataset.listed if what == "goal" else (), Wording(what, ""))
     except GoalError as error:
-        raise UserError(in_python(error)) from None
+        raise UserError(python_error_text(error)) from None
 
 
-def node_ids(dataset: Named, names: Names, what: str) -> list[int]:
+def node_ids(dataset: NamedData, names: Names, what: str) -> list[int]:
     """Return the ids of named object nodes, each found as by :func:`node_id`."""
-    return [node_id(dataset, name, what) for name in listed(names)]
+    return [node_id(dataset, name, what) for name in names_as_list(names)]
 
 
 def stated_copies(
-    dataset: Named, amounts: Mapping[Any, int | None], what: str, least: int = 1
+    dataset: NamedData, amounts: Mapping[Any, int | None], what: str, least: int = 1
 ) -> dict[ObjectNode, int]:
     """Return amounts by object node, from amounts by name; names with the amount ``None`` are left out.
 
@@ -78,13 +78,13 @@ def stated_copies(
     return copies
 
 
-def item_id(dataset: Named, name: str | ObjectNode) -> int:
+def item_id(dataset: NamedData, name: str | ObjectNode) -> int:
     """Return the id of a kitchen item; a label means the node with nothing else, or the only item with it.
 
     Raises :class:`UserError` for a name that is no item, and with candidates for a label of several items.
     """
     names = dataset.names
-    label = None if isinstance(name, ObjectNode) else _label(name)
+    label = None if isinstance(name, ObjectNode) else _bare_label(name)
     if label is not None:
         bare_node = names.object_id(ObjectNode(label))
         if bare_node is not None and dataset.at_hand(bare_node):
@@ -95,7 +95,7 @@ def item_id(dataset: Named, name: str | ObjectNode) -> int:
         items = [o for o in ids if dataset.at_hand(o)]
         if len(items) > 1:
             message = f"the kitchen has {len(items)} items with the label {label!r}; name those you mean"
-            raise UserError(in_python(GoalError(message, [str(names.node(o)) for o in items])))
+            raise UserError(python_error_text(GoalError(message, [str(names.node(o)) for o in items])))
         if count:
             if not items:
                 raise UserError(f"the kitchen has nothing with the label {label!r}")
@@ -106,7 +106,7 @@ def item_id(dataset: Named, name: str | ObjectNode) -> int:
     return item
 
 
-def _label(name: str) -> str | None:
+def _bare_label(name: str) -> str | None:
     """Return the label in a name that has nothing but a label; ``None`` for a name of a whole node.
 
     A name that is not valid notation counts as a label, as written.
@@ -141,7 +141,7 @@ def changed_rates(
 
 
 def changed_prices(
-    prices: UnitPrices, changed: UnitPricesNamed, motions: Collection[str], names: NamesAndUnits
+    prices: UnitPrices, changed: UnitPricesNamed, motions: Collection[str], names: NodeAndUnitNames
 ) -> UnitPrices:
     """Return ``prices`` with some prices changed, by the name of a motion or by unit.
 
@@ -170,13 +170,13 @@ def changed_prices(
     return UnitPrices(by_motion, by_unit)
 
 
-def listed(names: Names) -> list[str | ObjectNode]:
+def names_as_list(names: Names) -> list[str | ObjectNode]:
     """Return one name or several as a list."""
     # a node is a tuple, and so could pass for several names
     return [names] if isinstance(names, str | ObjectNode) else list(names)
 
 
-def in_python(error: GoalError) -> str:
+def python_error_text(error: GoalError) -> str:
     """Return the text of an error, whose candidates are written as Python strings."""
     lines = [error.message, *(f"  {candidate!r}" for candidate in error.candidates)]
     return "\n".join(lines + ([f"  ... and {error.hidden} more"] if error.hidden else []))

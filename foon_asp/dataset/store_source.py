@@ -41,27 +41,27 @@ class StoreSource(Source):
         self.unit_count, self.left_out, self.repeated = store.units, store.left_out, store.repeated
         self.kitchen = StoredIds(store, "kitchen")
         self.prices = DataPrices(store.motion_prices, {}, from_file=True)
-        self._starting = StoredStartingKitchen(store)
+        self._starting_kitchen = StoredStartingKitchen(store)
 
     @cached_property
-    def _amounts_and_unmatched(self) -> tuple[DataAmounts, list[Diagnostic]]:
+    def _amounts_and_warnings(self) -> tuple[DataAmounts, list[Diagnostic]]:
         units = self.names.with_motions({row.name[0] for row in self._table}) if self._table else ()
         return apply_amount_table(self.names.amounts, self._table, units)
 
     @property
     def amounts(self) -> DataAmounts:
         """The amounts of units."""
-        return self._amounts_and_unmatched[0] if self._table else self.names.amounts
+        return self._amounts_and_warnings[0] if self._table else self.names.amounts
 
     @property
     def unmatched_amounts(self) -> list[Diagnostic]:
         """Warnings about rows of the table of amounts that match no unit."""
-        return self._amounts_and_unmatched[1] if self._table else []
+        return self._amounts_and_warnings[1] if self._table else []
 
     @property
-    def starting(self) -> StoredStartingKitchen:
+    def starting_kitchen(self) -> StoredStartingKitchen:
         """The starting kitchen."""
-        return self._starting
+        return self._starting_kitchen
 
     @property
     def motions(self) -> Collection[str]:
@@ -74,23 +74,27 @@ class StoreSource(Source):
         return self.names.digests
 
     @contextmanager
-    def _timed(self) -> Iterator[None]:
+    def _add_reading_time(self) -> Iterator[None]:
         began = time.perf_counter()
         yield
         self.seconds += time.perf_counter() - began
 
     @cached_property
-    def _whole(self) -> tuple[Network, frozenset[int]]:
-        with self._timed():
+    def _network_and_kitchen(self) -> tuple[Network, frozenset[int]]:
+        with self._add_reading_time():
             return self.names.whole()
 
-    def whole(self) -> Network:
+    def whole_network(self) -> Network:
         """Read the whole network."""
-        return self._whole[0]
+        return self._network_and_kitchen[0]
 
-    def touched(self) -> Network:
+    def network_read_on_access(self) -> Network:
         """Return the whole network: in memory if it was read, otherwise one that reads on access."""
-        return self._whole[0] if "_whole" in vars(self) else TouchedNetwork.of(self.names)
+        return (
+            self._network_and_kitchen[0]
+            if "_network_and_kitchen" in vars(self)
+            else TouchedNetwork.of(self.names)
+        )
 
     def cone(
         self,
@@ -101,12 +105,12 @@ class StoreSource(Source):
         max_units: int | None,
     ) -> Cone:
         """Read the cone of goals, or about ``max_units`` units of it."""
-        with self._timed():
+        with self._add_reading_time():
             return self.names.cone(goals, containers, utensils, available, max_units)
 
     def network_part(self, units: Iterable[int], objects: Iterable[int]) -> Network:
         """Read a network that has the given units with their nodes, and the given further nodes."""
-        with self._timed():
+        with self._add_reading_time():
             return self.names.part(units, objects)
 
     def unit_distances(
@@ -126,11 +130,11 @@ class StoreSource(Source):
         available, skipped = outline.nodes(kitchen), outline.labelled(utensils)
         return UnitDistances(outline, available, skipped, rates, objective)
 
-    def true_digests(self) -> dict[str, str]:
+    def checked_digests(self) -> dict[str, str]:
         """Compute the digests that the store states; raises :class:`UserError` if one is not true."""
         from foon_asp.proof.verifier import Subject  # noqa: PLC0415 (few answers need it)
 
-        store, (network, kitchen) = self.names, self._whole
+        store, (network, kitchen) = self.names, self._network_and_kitchen
         single = self.unit_prices(network, self.prices.from_file)
         has_prices = self.prices.motions is not None or single is not None
         prices = UnitPrices(self.prices.motions or {}, single or {}) if has_prices else None

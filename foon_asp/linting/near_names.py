@@ -105,7 +105,9 @@ def _spelt_two_ways(counts: dict[str, int], known_words: Collection[str]) -> Ite
             continue
         usual = max(names, key=lambda name: (not _unknown(name, known_words), counts[name]))
         for name in names:
-            if name != usual and (len(skeleton) >= _SLIPS.long or without_separators(name) == without_separators(usual)):
+            if name != usual and (
+                len(skeleton) >= _SLIPS.long or without_separators(name) == without_separators(usual)
+            ):
                 yield name, usual
 
 

@@ -38,7 +38,7 @@ def dead_cycles(network: Network, available: Collection[int] = ()) -> list[DeadC
     component = _components(network, made, waiting)
     if not component:
         return []
-    dead = _unreachable(network, made, component)
+    dead = _dead_nodes(network, made, component)
     component = {node: number for node, number in component.items() if node in dead}
     roots = _components(network, made, dead)
     members: dict[int, set[int]] = {}
@@ -73,7 +73,7 @@ def _components(network: Network, made: list[tuple[int, ...]], nodes: Collection
     return {node: number for number, component in enumerate(cycles(subnetwork)) for node in component}
 
 
-def _unreachable(network: Network, made: list[tuple[int, ...]], component: dict[int, int]) -> set[int]:
+def _dead_nodes(network: Network, made: list[tuple[int, ...]], component: dict[int, int]) -> set[int]:
     """Return the nodes of each component that cannot be made even if all nodes outside are available."""
     lacking: dict[tuple[int, int], int] = {}  # inputs that a unit lacks, within a component of its outputs
     for unit, outputs in enumerate(made):

@@ -30,7 +30,7 @@ def slip_between(node: ObjectNode, other: ObjectNode | NodePattern) -> Slip | No
     (``in [bowl]``, ``on [bowl]``) are one edit apart, too.
     """
     loose = isinstance(other, NodePattern) and not other.relations
-    remaining, other_remaining = list(_parts(node, loose)), list(_parts(other, loose))
+    remaining, other_remaining = list(_named_parts(node, loose)), list(_named_parts(other, loose))
     for part in list(remaining):
         if part in other_remaining:
             remaining.remove(part)
@@ -52,16 +52,16 @@ def slip_between(node: ObjectNode, other: ObjectNode | NodePattern) -> Slip | No
 
 def nearest_nodes(node: ObjectNode, others: Iterable[ObjectNode], max_nodes: int) -> list[ObjectNode]:
     """Return up to ``max_nodes`` nodes of the same label, those that differ in the fewest parts first."""
-    parts = set(_parts(node, loose=False))
+    parts = set(_named_parts(node, loose=False))
     ranked = sorted(
-        (len(parts.symmetric_difference(_parts(other, loose=False))), str(other), other)
+        (len(parts.symmetric_difference(_named_parts(other, loose=False))), str(other), other)
         for other in others
         if other.label == node.label and other != node
     )
     return [other for _, _, other in ranked[:max_nodes]]
 
 
-def _parts(node: ObjectNode | NodePattern, loose: bool) -> Iterator[_NodePart]:
+def _named_parts(node: ObjectNode | NodePattern, loose: bool) -> Iterator[_NodePart]:
     """Yield the names of a node with their kinds.
 
     If ``loose``, the objects of relations are yielded as containers, without the words.

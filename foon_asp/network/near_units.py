@@ -92,7 +92,7 @@ def unit_differences(left: FunctionalUnit, right: FunctionalUnit) -> tuple[UnitD
         # a label that differs does so as a container and as an ingredient, too
         if (
             difference.kind not in {"ingredient", "relation"}
-            or (_object(difference.left), _object(difference.right)) not in labels
+            or (_related_object(difference.left), _related_object(difference.right)) not in labels
         ):
             distinct.setdefault(difference[:3], difference)
     return tuple(distinct.values())
@@ -105,7 +105,7 @@ def nearest_units(left: Iterable[FunctionalUnit], right: Iterable[FunctionalUnit
     least one of the common features is rare.
     """
     lefts, rights = list(left), list(right)
-    candidates = _candidates(lefts, rights)
+    candidates = _candidate_indices(lefts, rights)
     ranked_pairs = []
     for i, unit in enumerate(lefts):
         for j in candidates[i]:
@@ -131,7 +131,7 @@ def units_with_one_difference(units: Iterable[FunctionalUnit]) -> list[NearUnits
     """
     listed = list(units)
     pairs = []
-    for i, others in enumerate(_candidates(listed, listed)):
+    for i, others in enumerate(_candidate_indices(listed, listed)):
         for j in sorted(others):
             one, other = listed[i], listed[j]
             sizes = len(one.inputs) == len(other.inputs) and len(one.outputs) == len(other.outputs)
@@ -142,7 +142,7 @@ def units_with_one_difference(units: Iterable[FunctionalUnit]) -> list[NearUnits
     return pairs
 
 
-def _candidates(
+def _candidate_indices(
     lefts: Sequence[FunctionalUnit],
     rights: Sequence[FunctionalUnit],
     max_candidates: int = 12,
@@ -190,10 +190,10 @@ def _features(unit: FunctionalUnit) -> Iterator[object]:
     yield unit.motion
     for side, nodes in enumerate((unit.inputs, unit.outputs)):
         for node in nodes:
-            yield from ((side, node.label, node_part) for node_part in _parts(node))
+            yield from ((side, node.label, node_part) for node_part in _named_parts(node))
 
 
-def _parts(node: ObjectNode) -> list[_NodePart]:
+def _named_parts(node: ObjectNode) -> list[_NodePart]:
     """Return the names in a node, each with its kind."""
     return [
         ("label", node.label),
@@ -205,7 +205,7 @@ def _parts(node: ObjectNode) -> list[_NodePart]:
 
 def _node_differences(node: ObjectNode, other: ObjectNode) -> tuple[UnitDifference, ...]:
     """Return the differences of two nodes; different names of a kind are paired if equally many."""
-    parts, other_parts = Counter(_parts(node)), Counter(_parts(other))
+    parts, other_parts = Counter(_named_parts(node)), Counter(_named_parts(other))
     differences = []
     for kind in ("label", "state", "relation", "ingredient"):
         names, other_names = (
@@ -226,6 +226,6 @@ def _may_correspond(node: ObjectNode, other: ObjectNode, differences: Sequence[U
     return node.label == other.label or len(differences) <= 2
 
 
-def _object(part: str) -> str:
+def _related_object(part: str) -> str:
     """Return the object of a relation; an ingredient is returned unchanged."""
     return part.partition(" [")[2].rstrip("]") or part

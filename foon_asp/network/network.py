@@ -243,12 +243,12 @@ class Network:
     @cached_property
     def producers(self) -> tuple[tuple[int, ...], ...]:
         """For each object node, the units that have it as an output, in order."""
-        return _invert(self.outputs, len(self.objects))
+        return _lists_containing(self.outputs, len(self.objects))
 
     @cached_property
     def consumers(self) -> tuple[tuple[int, ...], ...]:
         """For each object node, the units that have it as an input, in order."""
-        return _invert(self.inputs, len(self.objects))
+        return _lists_containing(self.inputs, len(self.objects))
 
     @cached_property
     def by_label(self) -> dict[str, tuple[int, ...]]:
@@ -381,7 +381,7 @@ class NetworkBuilder:
         )
 
 
-def _invert(lists: Sequence[Sequence[int]], size: int) -> tuple[tuple[int, ...], ...]:
+def _lists_containing(lists: Sequence[Sequence[int]], size: int) -> tuple[tuple[int, ...], ...]:
     """Return for each number below ``size`` the indexes of the lists that hold it, in order."""
     owners: list[list[int]] = [[] for _ in range(size)]
     for owner, members in enumerate(lists):

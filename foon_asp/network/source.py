@@ -20,14 +20,14 @@ class Source(NamedTuple):
     videos: tuple[str, ...] = ()
 
     def __str__(self) -> str:
-        return f"{_in_a_line(self.file)}:{self.line}"
+        return f"{_without_line_breaks(self.file)}:{self.line}"
 
     @property
     def short(self) -> str:
         """The file and line for a step of a tree; of an absolute path only the file name."""
-        file = _in_a_line(self.file)
+        file = _without_line_breaks(self.file)
         return f"{file.rpartition('/')[2] if file.startswith('/') else file}:{self.line}"
 
 
-def _in_a_line(file: str) -> str:
+def _without_line_breaks(file: str) -> str:
     return file.replace("\n", "\\n")  # whatever a file is called

@@ -97,7 +97,7 @@ class StandInTable(NamedTuple):
             served: The node in whose place it is used, another one.
         """
         differences: list[Difference] = []
-        for edit, served_part, serving_part, price in self._edits(serving, served):
+        for edit, served_part, serving_part, price in self._node_edits(serving, served):
             if price is None:
                 return None
             differences.append(Difference(edit, served_part, serving_part, price))
@@ -113,7 +113,7 @@ class StandInTable(NamedTuple):
         word = edit, name
         return self.words[word] if word in self.words else self.edits[edit]
 
-    def _edits(
+    def _node_edits(
         self, serving: ObjectNode, served: ObjectNode
     ) -> Iterator[tuple[Edit, str, str, Fraction | None]]:
         """Yield the edits between two nodes: kind, parts of served and serving node, price."""
@@ -125,41 +125,43 @@ class StandInTable(NamedTuple):
             yield Edit.SPELLING, served.label, serving.label, self.edits[Edit.SPELLING]
         elif serving.label != served.label:
             yield Edit.LABEL, served.label, serving.label, self.pairs.get(labels)
-        yield from self._of_contents(serving, served)
+        yield from self._content_edits(serving, served)
         for state in sorted(served.states - serving.states):
             yield Edit.FEWER_STATE, state, "", self.price(Edit.FEWER_STATE, state)
         for state in sorted(serving.states - served.states):
             yield Edit.MORE_STATE, "", state, self.price(Edit.MORE_STATE, state)
-        ours = sorted(served.relations - serving.relations)
-        theirs = sorted(serving.relations - served.relations)
-        for relation in list(ours):
-            other = next((same for same in theirs if same.object == relation.object), None)
+        served_parts = sorted(served.relations - serving.relations)
+        serving_parts = sorted(serving.relations - served.relations)
+        for relation in list(served_parts):
+            other = next((same for same in serving_parts if same.object == relation.object), None)
             if other is not None:
-                ours.remove(relation)
-                theirs.remove(other)
+                served_parts.remove(relation)
+                serving_parts.remove(other)
                 yield Edit.WORD, str(relation), str(other), self.edits[Edit.WORD]
-        for position in range(max(len(ours), len(theirs))):
-            texts = [str(side[position]) if position < len(side) else "" for side in (ours, theirs)]
+        for position in range(max(len(served_parts), len(serving_parts))):
+            texts = [
+                str(side[position]) if position < len(side) else "" for side in (served_parts, serving_parts)
+            ]
             yield Edit.CONTAINER, texts[0], texts[1], self.edits[Edit.CONTAINER]
 
-    def _of_contents(
+    def _content_edits(
         self, serving: ObjectNode, served: ObjectNode
     ) -> Iterator[tuple[Edit, str, str, Fraction | None]]:
         """Yield the edits between the contents of two nodes."""
         if serving.contents == served.contents:
             return
-        ours, theirs = Counter(served.ingredients), Counter(serving.ingredients)
-        if ours == theirs:
+        served_parts, serving_parts = Counter(served.ingredients), Counter(serving.ingredients)
+        if served_parts == serving_parts:
             words = [" and ".join(contents.word for contents in node.contents) for node in (served, serving)]
             yield Edit.WORD, words[0], words[1], self.edits[Edit.WORD]
             return
-        common = (ours & theirs).total()
-        if 2 * common <= max(ours.total(), theirs.total()):
+        common = (served_parts & serving_parts).total()
+        if 2 * common <= max(served_parts.total(), serving_parts.total()):
             texts = ["; ".join(map(str, node.contents)) for node in (served, serving)]
             yield Edit.CONTENTS, texts[0], texts[1], self.edits[Edit.CONTENTS]
-        for item in sorted((ours - theirs).elements()):
+        for item in sorted((served_parts - serving_parts).elements()):
             yield Edit.FEWER_INGREDIENT, item, "", self.price(Edit.FEWER_INGREDIENT, item)
-        for item in sorted((theirs - ours).elements()):
+        for item in sorted((serving_parts - served_parts).elements()):
             yield Edit.MORE_INGREDIENT, "", item, self.price(Edit.MORE_INGREDIENT, item)
 
 

@@ -134,7 +134,7 @@ class NetworkStartingKitchen(StartingKitchen[str]):
         self._network = network
         self._files: dict[str, list[int]] = {}
         for unit, sources in enumerate(network.sources):
-            for file in _files(sources):
+            for file in _files_of_sources(sources):
                 self._files.setdefault(file, []).append(unit)
         self._granting: dict[int, list[str]] = {}
         nodes: set[int] = set()
@@ -172,7 +172,7 @@ class NetworkStartingKitchen(StartingKitchen[str]):
 
     def files_of(self, units: Iterable[int]) -> Iterator[str]:
         """Yield the files that units are from."""
-        return (file for unit in units for file in _files(self._network.sources[unit]))
+        return (file for unit in units for file in _files_of_sources(self._network.sources[unit]))
 
     def units_of(self, file: str) -> Iterator[tuple[Sequence[int], Sequence[int]]]:
         """Yield the inputs and outputs of the units of a file, in its order."""
@@ -180,7 +180,7 @@ class NetworkStartingKitchen(StartingKitchen[str]):
         return ((network.inputs[unit], network.outputs[unit]) for unit in self._files[file])
 
 
-def _files(sources: Iterable[Source]) -> Iterable[str]:
+def _files_of_sources(sources: Iterable[Source]) -> Iterable[str]:
     return dict.fromkeys(source.file for source in sources) or ("",)
 
 

@@ -21,10 +21,10 @@ class UnitPrices(NamedTuple):
         all have a price.
         """
         if network.detailed is None:
-            return self._at_own_level(network)
-        detail_prices = self._at_own_level(network.detailed)
+            return self._own_level_prices(network)
+        detail_prices = self._own_level_prices(network.detailed)
         prices_by_unit = ([detail_prices[detail] for detail in details] for details in network.stands_for)
-        return tuple(map(_least, prices_by_unit))
+        return tuple(map(_least_price, prices_by_unit))
 
     def price(self, unit: FunctionalUnit, network: Network | None = None) -> Fraction | None:
         """Return the price of a unit at the level of a network, ``None`` where it has none.
@@ -36,9 +36,11 @@ class UnitPrices(NamedTuple):
         number = network.unit_id(unit)
         if number is None:
             return self.motions.get(unit.motion)
-        return _least([self.price(network.detailed.unit(detail)) for detail in network.stands_for[number]])
+        return _least_price(
+            [self.price(network.detailed.unit(detail)) for detail in network.stands_for[number]]
+        )
 
-    def _at_own_level(self, network: Network) -> tuple[Fraction | None, ...]:
+    def _own_level_prices(self, network: Network) -> tuple[Fraction | None, ...]:
         """Return the price of each unit of a network, looked up by the unit itself; ``None`` for none."""
         priced_motions = {unit.motion for unit in self.units}  # spares looking up units of other motions
         return tuple(
@@ -47,6 +49,6 @@ class UnitPrices(NamedTuple):
         )
 
 
-def _least(prices: list[Fraction | None]) -> Fraction | None:
+def _least_price(prices: list[Fraction | None]) -> Fraction | None:
     present = [price for price in prices if price is not None]
     return min(present) if len(present) == len(prices) else None

@@ -66,11 +66,13 @@ def run_in_processes(
     jobs: int,
     seconds: Callable[[Task], float | None] = lambda _: None,
 ) -> "Iterator[FinishedTask[Task, Answer]]":
-    """Do tasks in up to ``jobs`` child processes, and yield each with its answer as soon as it is done.
+    """Run tasks in up to ``jobs`` child processes, and yield each result as soon as it is there, in any
+    order.
 
-    ``make_task_function`` runs once in each process, and returns the function that does the tasks there. ``seconds``
-    returns the time limit of a task, ``None`` for no limit. A process that dies or exceeds this time is
-    replaced by another one. The time of the first task of a process starts once ``make_task_function`` has returned.
+    Each process calls ``make_task_function`` once; the function that it returns does the tasks. ``seconds``
+    returns the time limit of a task, ``None`` for no limit. The time of the first task of a process begins
+    when ``make_task_function`` has returned. A process that dies or exceeds the time is replaced, and its
+    task is yielded with a :class:`LostError`. All processes are ended when the iterator is closed.
     """
     packed_maker, remaining, messages = pack_message(make_task_function), iter(tasks), _Messages()
     workers: dict[int, _Worker[Task]] = {}
@@ -141,7 +143,7 @@ class _Worker(PythonProcess, Generic[Task]):
         self.start_thread(
             write_if_open, self._out, packed_maker + pack_message(task)
         )  # waits until the process has started
-        self.start_thread(_listen, self._in, number, messages)
+        self.start_thread(_queue_messages, self._in, number, messages)
 
     def start_timer(self, seconds: float | None) -> None:
         """Start the time of the current task; ``None`` is no limit."""
@@ -154,7 +156,7 @@ class _Worker(PythonProcess, Generic[Task]):
         write_if_open(self._out, pack_message(task))
 
 
-def _listen(pipe: RawIOBase, number: int, messages: _Messages) -> None:
+def _queue_messages(pipe: RawIOBase, number: int, messages: _Messages) -> None:
     """Put each message of a worker into the queue of all messages, until its output ends."""
     with contextlib.suppress(EOFError):
         while True:
@@ -163,7 +165,10 @@ def _listen(pipe: RawIOBase, number: int, messages: _Messages) -> None:
 
 
 def serve() -> None:
-    """Work as a child process of a pool: receive ``make_task_function`` and tasks, send answers, until the parent ends."""
+    """Run in a child process of a pool: do the tasks on standard input, until the parent process ends.
+
+    The first message is ``make_task_function``. Each later one is a task, which is answered by a message.
+    """
     received, answers = become_worker(receive_pickled)
     work = _make_task_function(received.get())
     with contextlib.suppress(BrokenPipeError):  # the parent has ended
@@ -173,7 +178,10 @@ def serve() -> None:
 
 
 def _make_task_function(pickled_maker: bytes) -> Callable[[Any], Any]:
-    """Return the function that ``make_task_function`` makes for tasks; if it raises, one that always raises the same."""
+    """Unpickle ``make_task_function`` and call it; return the function that does tasks.
+
+    If it raises an exception, return a function that raises this exception for every task.
+    """
     try:
         work: Callable[[Any], Any] = pickle.loads(pickled_maker)()
     except Exception as error:

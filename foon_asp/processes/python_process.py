@@ -78,7 +78,7 @@ class PythonProcess:
             code = self._process.wait()
         for thread in self._threads:
             thread.wait_for_end(5.0)  # before another file gets the descriptor that it reads
-        self._close()
+        self._close_pipes()
         return code
 
     def wait_for_exit(self) -> int:
@@ -92,9 +92,9 @@ class PythonProcess:
         self._process.returncode = 0
         self._group_ended = True
         self._threads = []  # which a copy does not have
-        self._close()
+        self._close_pipes()
 
-    def _close(self) -> None:
+    def _close_pipes(self) -> None:
         for pipe in (self._out, self._in):
             with contextlib.suppress(OSError):
                 pipe.close()

@@ -42,7 +42,7 @@ class Worker(PythonProcess):
         self.has_spoken = False
         self._busy = False  # from a request until its answer, and after the end
         self._messages: queue.SimpleQueue[Message | None] = queue.SimpleQueue()
-        self.start_thread(_listen, self._in, read, self._messages)
+        self.start_thread(_queue_messages, self._in, read, self._messages)
 
     @property
     def is_ready(self) -> bool:
@@ -66,7 +66,7 @@ class Worker(PythonProcess):
         try:
             self.start_thread(write_if_open, self._out, request)
             while True:
-                kind, value = self._next(deadline)
+                kind, value = self._next_message(deadline)
                 if handlers is None or kind not in handlers:
                     break
                 handlers[kind](value)
@@ -85,7 +85,7 @@ class Worker(PythonProcess):
         """Send a request without an answer, short enough for the buffer of the pipe."""
         write_if_open(self._out, request)
 
-    def _next(self, deadline: Deadline) -> Message:
+    def _next_message(self, deadline: Deadline) -> Message:
         """Wait for a message; raises :class:`DiedError` or :class:`LimitError`."""
         while True:
             with contextlib.suppress(queue.Empty):
@@ -130,7 +130,7 @@ def give_back_worker(key: Hashable, worker: Worker) -> None:
         worker.end()
 
 
-def _listen(
+def _queue_messages(
     pipe: RawIOBase, read: Callable[[RawIOBase], Message], messages: "queue.SimpleQueue[Message | None]"
 ) -> None:
     """Put the messages of a process into a queue, and ``None`` at the end of its output."""

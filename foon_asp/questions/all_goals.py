@@ -159,7 +159,9 @@ def solve_all_goals(
             outcomes_of[number].append(outcome)
     outcomes = [outcome for number in range(len(outcomes_of)) for outcome in outcomes_of[number]]
     objectives_of_all = dict.fromkeys(objective for outcome in outcomes for objective in outcome.objectives)
-    return Optima(**head_of(without_reading_more(problem), objectives_of_all), answers=tuple(map(Answer.of, outcomes)))
+    return Optima(
+        **head_of(without_reading_more(problem), objectives_of_all), answers=tuple(map(Answer.of, outcomes))
+    )
 
 
 def _in_order(problems: Sequence[Problem], solved: SolvedGoals) -> Iterator[tuple[int, Problem]]:

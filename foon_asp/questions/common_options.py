@@ -67,4 +67,6 @@ def begin(options: Limits) -> Deadline:
 def limits_of(options: Limits) -> tuple[float | None, int | None]:
     """Return the time limit in seconds and the memory limit in bytes; ``None`` is unlimited."""
     time, memory = options.get("time_limit"), options.get("memory_limit")
-    return None if time is None else parse_seconds(time), None if memory is None else parse_memory_size(memory)
+    return None if time is None else parse_seconds(time), None if memory is None else parse_memory_size(
+        memory
+    )

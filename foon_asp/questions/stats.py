@@ -344,6 +344,7 @@ def _starting_nodes(network: Network) -> StartingNodes:
     """Return the starting kitchen of a network: what no unit makes, and what units make too."""
     kitchen = starting_kitchen(network)
     not_made, made_too = (
-        nodes_of(network, sorted(nodes)) for nodes in (kitchen.nodes - kitchen.made_by_units, kitchen.made_by_units)
+        nodes_of(network, sorted(nodes))
+        for nodes in (kitchen.nodes - kitchen.made_by_units, kitchen.made_by_units)
     )
     return StartingNodes(kitchen.file_count, not_made, made_too)

@@ -23,7 +23,7 @@ from foon_asp.cli.batch_data import BatchData
 from foon_asp.dataset import Dataset, nearby_optimum
 from foon_asp.dataset.nearby import Nearby, NearbyProblem
 from foon_asp.dataset.nearby_optimum import RefinementTuning, near_goals
-from foon_asp.dataset.reading_store import read_stored
+from foon_asp.dataset.reading_store import read_store
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.foon import Foon
 from foon_asp.problem import ContainerRule, Objective, Problem, levels, reach
@@ -49,7 +49,7 @@ LISTS = (
 
 def stored(problem: Problem, folder: Path) -> Dataset:
     """Import a problem, and give the data that its store has, with the rates and utensils of the problem."""
-    dataset = read_stored(DataFiles((import_problem(problem, folder),)), 3)
+    dataset = read_store(DataFiles((import_problem(problem, folder),)), 3)
     return replace(dataset, rates=problem.rates, utensils=problem.utensils)
 
 
@@ -85,7 +85,7 @@ def two_ways(folder: Path) -> Dataset:
     file.write_text(units, encoding="utf-8")
     kitchen.write_text("O\twater\nO\tbones\n", encoding="utf-8")
     import_files(DataFiles((file,), kitchen), folder / "stew.foon")
-    return read_stored(DataFiles((folder / "stew.foon",)), 3)
+    return read_store(DataFiles((folder / "stew.foon",)), 3)
 
 
 def test_what_is_taken_to_be_at_hand_is_in_no_answer(tmp_path: Path) -> None:

@@ -15,7 +15,7 @@ from foon_asp.asp.outcome import Outcome
 from foon_asp.dataset import nearby_under_rules
 from foon_asp.dataset.nearby import NearbyProblem
 from foon_asp.dataset.nearby_under_rules import NEARBY, solve_nearby_under
-from foon_asp.dataset.reading_store import read_stored
+from foon_asp.dataset.reading_store import read_store
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, levels
 from foon_asp.questions.answer import Answer, answered_under
@@ -62,7 +62,7 @@ def near_stew(
         (folder / "stew.txt",), folder / "kitchen.txt", folder / "motion.txt" if rates else None
     )
     import_files(files, folder / "stew.foon")
-    dataset = read_stored(DataFiles((folder / "stew.foon",)), 3)
+    dataset = read_store(DataFiles((folder / "stew.foon",)), 3)
     return dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=first)
 
 

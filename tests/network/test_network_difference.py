@@ -86,7 +86,10 @@ def test_the_nearest_nodes_have_the_same_label_and_most_else() -> None:
         "milk; hot; on [pot]; in [pot]",
     ]
     milk, *others = map(parse_node, ["milk; hot; in [pot]", *named])
-    assert [str(node) for node in nearest_nodes(milk, others, 2)] == ["milk; hot", "milk; hot; in [pot]; on [pot]"]
+    assert [str(node) for node in nearest_nodes(milk, others, 2)] == [
+        "milk; hot",
+        "milk; hot; in [pot]; on [pot]",
+    ]
 
 
 def test_units_kept_apart_differ_in_one_thing() -> None:
@@ -98,7 +101,8 @@ def test_units_kept_apart_differ_in_one_thing() -> None:
         unit("chop: onoin; whole + knife → onoin; chopped + knife"),  # a slip
     ]
     found = [
-        (listed.index(p.left), listed.index(p.right), *p.differences[0][:3]) for p in units_with_one_difference(listed)
+        (listed.index(p.left), listed.index(p.right), *p.differences[0][:3])
+        for p in units_with_one_difference(listed)
     ]
     assert found == [
         (0, 1, "motion", "chop", "dice"),
