@@ -9,11 +9,11 @@ from foon_asp.network.graph import cycles
 
 
 class DeadCycle(NamedTuple):
-    """A set of object nodes, each made only by units that need one of the set.
+    """A set of object nodes, each made only by units that need a node of the set.
 
-    ``steps`` are a shortest cycle through the node that is needed first in the order of the units. Each step
-    is a node and the unit that needs it and makes the node of the next step; the last unit makes the node of
-    the first step. ``nodes`` is the whole set.
+    ``nodes`` are the ids of the set. ``steps`` are a shortest cycle in it, which begins with the node that
+    the earliest unit needs. Each step is the id of a node and the id of a unit that needs the node. The unit
+    makes the node of the next step; the last unit makes the node of the first step.
     """
 
     steps: tuple[tuple[int, int], ...]
@@ -21,13 +21,13 @@ class DeadCycle(NamedTuple):
 
 
 def dead_cycles(network: Network, available: Collection[int] = ()) -> list[DeadCycle]:
-    """Find the dead cycles among nodes that are not ``available``, in time linear in the size of the network.
+    """Return the dead cycles among nodes that are not ``available``, in time linear in the network.
 
     A node that a unit needs, such as the knife that chops, does not count as made by this unit. Nodes that no
-    unit makes are available too. If no dead cycle is found, every node can be made.
+    unit makes count as available. If there is no dead cycle, every node can be made.
 
-    From each strongly connected component, the nodes that can be made are removed. The dead cycles of the
-    component are those components of the remainder that need no other component of the remainder.
+    Algorithm: nodes that can be made are removed from each strongly connected component. The rest of the
+    component falls into components of its own. Such a component is a dead cycle if it needs no other one.
     """
     inputs = [frozenset(nodes) for nodes in network.inputs]
     made = [
@@ -61,9 +61,10 @@ def dead_cycles(network: Network, available: Collection[int] = ()) -> list[DeadC
 
 
 def _components(network: Network, made: list[tuple[int, ...]], nodes: Collection[int]) -> dict[int, int]:
-    """Return the number of the strongly connected component of each node on a cycle, by node.
+    """Map each node on a cycle to the number of its strongly connected component.
 
-    Only ``nodes`` count. ``made`` has for each unit the nodes that it makes out of others.
+    Only ``nodes`` and the edges between them count. ``made`` has for each unit the nodes that it makes and
+    does not need.
     """
     subnetwork = replace(
         network,
@@ -74,7 +75,10 @@ def _components(network: Network, made: list[tuple[int, ...]], nodes: Collection
 
 
 def _dead_nodes(network: Network, made: list[tuple[int, ...]], component: dict[int, int]) -> set[int]:
-    """Return the nodes of each component that cannot be made even if all nodes outside are available."""
+    """Return the nodes that cannot be made even if all nodes outside of their component are available.
+
+    ``component`` maps each node on a cycle to the number of its component.
+    """
     lacking: dict[tuple[int, int], int] = {}  # inputs that a unit lacks, within a component of its outputs
     for unit, outputs in enumerate(made):
         for number in {component[node] for node in outputs if node in component}:
@@ -99,10 +103,10 @@ def _dead_nodes(network: Network, made: list[tuple[int, ...]], component: dict[i
 def _shortest_cycle(
     network: Network, made: list[tuple[int, ...]], nodes: frozenset[int], producers: list[int]
 ) -> DeadCycle:
-    """Return the dead cycle of strongly connected ``nodes``, its steps found by breadth-first search.
+    """Return the dead cycle of strongly connected ``nodes``, with a shortest cycle as its steps.
 
-    ``producers`` are the units that make a node of the set, in order. The search begins at the node that they
-    need first.
+    ``producers`` are the units that make a node of the set, in order. The cycle is found by breadth-first
+    search from the node that the first of them needs.
     """
     consumers: dict[int, list[int]] = {}
     for unit in producers:

@@ -36,7 +36,7 @@ class FunctionalUnit:
 
     @property
     def identity(self) -> tuple[str, frozenset[ObjectNode], frozenset[ObjectNode]]:
-        """The motion, the set of inputs and the set of outputs, which identify the unit."""
+        """The motion, the set of inputs and the set of outputs: units are equal if these are."""
         return self.motion, frozenset(self.inputs), frozenset(self.outputs)
 
     def __eq__(self, other: object) -> bool:

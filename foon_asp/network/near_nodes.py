@@ -12,9 +12,9 @@ _NodePart = tuple[str, str]
 
 
 class Slip(NamedTuple):
-    """The only name in which two nodes differ.
+    """The only name in which two nodes differ, spelled ``name`` in the one and ``other`` in the other node.
 
-    ``kind`` is label, state, relation, container or ingredient.
+    ``kind`` is the kind of name: label, state, relation, container or ingredient.
     """
 
     kind: str
@@ -23,11 +23,14 @@ class Slip(NamedTuple):
 
 
 def slip_between(node: ObjectNode, other: ObjectNode | NodePattern) -> Slip | None:
-    """Return the only name in which two nodes differ, if its two spellings are one edit apart, else ``None``.
+    """Return the only name in which two nodes differ if its spellings are one edit apart, else ``None``.
 
-    One edit adds, omits or changes a letter, or swaps it with the next. Differences in doubled letters,
+    An edit adds, omits or changes a letter, or swaps it with the next. Differences in doubled letters,
     capitals, blanks and hyphens count as one edit together. Two relations to one object by different words
     (``in [bowl]``, ``on [bowl]``) are one edit apart, too.
+
+    If ``other`` is an entry of a kitchen or goals file without relations, only the objects of relations are
+    compared, as containers.
     """
     loose = isinstance(other, NodePattern) and not other.relations
     remaining, other_remaining = list(_named_parts(node, loose)), list(_named_parts(other, loose))
@@ -51,7 +54,10 @@ def slip_between(node: ObjectNode, other: ObjectNode | NodePattern) -> Slip | No
 
 
 def nearest_nodes(node: ObjectNode, others: Iterable[ObjectNode], max_nodes: int) -> list[ObjectNode]:
-    """Return up to ``max_nodes`` nodes of the same label, those that differ in the fewest parts first."""
+    """Return up to ``max_nodes`` of the ``others`` with the label of a node, most similar first.
+
+    Nodes with the fewest different parts are the most similar. The node itself is left out.
+    """
     parts = set(_named_parts(node, loose=False))
     ranked = sorted(
         (len(parts.symmetric_difference(_named_parts(other, loose=False))), str(other), other)
@@ -62,9 +68,9 @@ def nearest_nodes(node: ObjectNode, others: Iterable[ObjectNode], max_nodes: int
 
 
 def _named_parts(node: ObjectNode | NodePattern, loose: bool) -> Iterator[_NodePart]:
-    """Yield the names of a node with their kinds.
+    """Yield the names in a node, each after its kind: ``("state", "chopped")``.
 
-    If ``loose``, the objects of relations are yielded as containers, without the words.
+    If ``loose``, the object of a relation is yielded as a container, without the word of the relation.
     """
     yield "label", node.label
     yield from (("state", state) for state in sorted(node.states))

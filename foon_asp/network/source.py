@@ -24,10 +24,11 @@ class Source(NamedTuple):
 
     @property
     def short(self) -> str:
-        """The file and line for a step of a tree; of an absolute path only the file name."""
+        """The file and line, as steps of a tree have them; of an absolute path only the file name."""
         file = _without_line_breaks(self.file)
         return f"{file.rpartition('/')[2] if file.startswith('/') else file}:{self.line}"
 
 
 def _without_line_breaks(file: str) -> str:
+    """Return the name of a file in one line, each line break as a backslash and ``n``."""
     return file.replace("\n", "\\n")  # whatever a file is called

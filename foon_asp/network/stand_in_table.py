@@ -14,7 +14,7 @@ STAND_IN = "stand in"
 
 
 class Edit(StrEnum):
-    """A way in which the node that is used differs from the node that it is used for."""
+    """A way in which the node that is used differs from the node in whose place it is used."""
 
     WORD = "word"
     """The same place or the same ingredients, by another word: ``on [plate]`` for ``in [plate]``."""
@@ -39,9 +39,10 @@ class Edit(StrEnum):
 
 
 class Difference(NamedTuple):
-    """One edit between two nodes: its kind, the differing parts of the nodes, and its price.
+    """An edit between two nodes, with its price.
 
-    ``served`` and ``serving`` are the parts as texts, empty for a node that lacks the part.
+    ``served`` is the different part of the node that is wanted, ``serving`` that of the node used in its
+    place. They are texts, and empty if the node lacks the part.
     """
 
     edit: Edit
@@ -54,12 +55,15 @@ Pairs = Mapping[tuple[str | ObjectNode, str | ObjectNode], Fraction | None]
 
 
 class StandInTable(NamedTuple):
-    """Prices of edits, and of pairs of labels or nodes; all are above 0, and ``None`` means never.
+    """The prices of using one object node in place of another.
 
-    ``edits`` has the price of each kind of edit. ``words`` has prices of edits of single states and
-    ingredients, by kind and name, which take precedence over the price of the kind. ``pairs`` has prices by
-    the label or node that serves and the label or node that is served. The price of a pair of nodes is the
-    whole price; the price of a pair of labels is added to the prices of other edits.
+    A price is above 0; ``None`` means that a difference is never allowed. ``edits`` has a price for each kind
+    of edit. ``words`` has prices for single states and ingredients, by kind of edit and name. They take
+    precedence over the price of the kind.
+
+    ``pairs`` has prices for pairs of labels or of nodes: the one that is used, and the one in whose place it
+    is used. The price of a pair of nodes is the whole price. The price of a pair of labels is added to the
+    prices of the other edits.
 
     Example:
         >>> table = foon_asp.StandInTable.usual()
@@ -116,7 +120,10 @@ class StandInTable(NamedTuple):
     def _node_edits(
         self, serving: ObjectNode, served: ObjectNode
     ) -> Iterator[tuple[Edit, str, str, Fraction | None]]:
-        """Yield the edits between two nodes: kind, parts of served and serving node, price."""
+        """Yield the edits between two nodes: kind, part of the served node, part of the serving one, price.
+
+        The price is ``None`` if the edit is never allowed.
+        """
         if (serving, served) in self.pairs:
             yield Edit.NODE, str(served), str(serving), self.pairs[serving, served]
             return
@@ -147,7 +154,7 @@ class StandInTable(NamedTuple):
     def _content_edits(
         self, serving: ObjectNode, served: ObjectNode
     ) -> Iterator[tuple[Edit, str, str, Fraction | None]]:
-        """Yield the edits between the contents of two nodes."""
+        """Yield the edits between the contents of two nodes, as :meth:`_node_edits` does."""
         if serving.contents == served.contents:
             return
         served_parts, serving_parts = Counter(served.ingredients), Counter(serving.ingredients)
@@ -169,12 +176,15 @@ _PLURALS = {"sses": "ss", "shes": "sh", "ches": "ch", "ies": "y", "oes": "o", "s
 
 
 def spelled_alike(label: str, other: str) -> bool:
-    """Return whether two labels differ only in number, blanks, hyphens and capitals."""
+    """Whether two labels differ at most in singular or plural, blanks, hyphens and capitals."""
     return spelling_key(label) == spelling_key(other)
 
 
 def spelling_key(label: str) -> str:
-    """Return a key that is equal for labels that differ only in number, blanks, hyphens and capitals."""
+    """Return a label in lower case and in the singular, without blanks and hyphens, to be compared.
+
+    The key of ``Cherry tomatoes`` is ``cherrytomato``.
+    """
     letters = label.casefold().replace(" ", "").replace("-", "").replace("_", "")
     for plural, singular in _PLURALS.items():
         if letters.endswith(plural) and len(letters) > (5 if singular else 3) and not letters.endswith("ss"):

@@ -13,10 +13,10 @@ File = TypeVar("File", bound=Hashable)
 
 
 class RecipeKitchen(NamedTuple):
-    """The starting kitchen of one file, by id of nodes.
+    """The starting kitchen of one file, as ids of object nodes.
 
-    ``raw`` nodes are made by no unit. ``granted`` nodes are made by a unit, but are assumed to be available
-    so that all units can execute.
+    ``raw`` nodes are made by no unit out of others. ``granted`` nodes are made by a unit, but are assumed to
+    be available so that all units can execute.
     """
 
     raw: list[int]
@@ -28,11 +28,12 @@ def recipe_kitchen(
 ) -> RecipeKitchen:
     """Return the starting kitchen of one file, in time linear in its size; items are not used up.
 
-    ``units`` are the inputs and outputs of each unit in the order of the file, as ids of object nodes. Nodes
-    that no unit makes out of others are available. Then units execute as far as they can. When none can, the
-    missing inputs of the first unit in the file that lacks any are granted, except ``goals``. This repeats
-    until only goals are lacking. Then goals are granted in the same way, for example if two goals need each
-    other.
+    ``units`` has the inputs and the outputs of each unit, in the order of the file. They are ids of object
+    nodes, as ``goals`` are.
+
+    Nodes that no unit makes out of others are available. Then units execute as far as they can. When none
+    can, the first unit in the file that lacks inputs is granted these, except ``goals``. This repeats until
+    only goals are lacking. Then goals are granted in the same way, for example if two goals need each other.
     """
     unit_sides = list(units)
     missing = [len(inputs) for inputs, _ in unit_sides]  # by unit: how many inputs are not available yet
@@ -86,25 +87,24 @@ class StartingKitchen(ABC, Generic[File]):
 
     @abstractmethod
     def makers(self, o: int) -> Sequence[int]:
-        """Return the units that make a node out of others."""
+        """Return the ids of the units that make a node and do not need it."""
 
     @abstractmethod
     def granting_files(self, o: int) -> Iterable[File]:
-        """Return the files whose starting kitchen grants a node although a unit of the file makes it."""
+        """Return the files in whose starting kitchen a node is granted, although a unit of the file makes it."""
 
     @abstractmethod
     def files_of(self, units: Iterable[int]) -> Iterable[File]:
-        """Return the files that units are from."""
+        """Return the files in which units were read, with repetitions."""
 
     @abstractmethod
     def units_of(self, file: File) -> Iterable[tuple[Sequence[int], Sequence[int]]]:
-        """Return the inputs and outputs of the units of a file, in its order."""
+        """Return the inputs and the outputs of each unit of a file, in its order."""
 
     def changes(self, goals: Iterable[int]) -> tuple[frozenset[int], frozenset[int]]:
         """Return the nodes that these goals add to the kitchen, and those that they remove from it.
 
-        A goal that a unit can make from other nodes is not assumed to be available; other nodes may be
-        granted in its place.
+        A goal that a unit can make from other nodes is removed; other nodes may be granted in its place.
         """
         goals = [goal for goal in goals if goal in self.nodes and self.makers(goal)]
         kitchens = {
@@ -122,6 +122,7 @@ class StartingKitchen(ABC, Generic[File]):
         return frozenset(added - lacking), frozenset(lacking)
 
     def _nodes_of_file(self, file: File, goals: Collection[int]) -> set[int]:
+        """Return the nodes of the starting kitchen of one file for these goals."""
         raw, granted = recipe_kitchen(self.units_of(file), goals)
         return {*raw, *granted}
 
@@ -153,39 +154,43 @@ class NetworkStartingKitchen(StartingKitchen[str]):
 
     @cached_property
     def made_by_units(self) -> frozenset[int]:
-        """The nodes of the kitchen that a unit makes out of others."""
+        """The nodes of the kitchen that a unit makes and does not need."""
         return frozenset(filter(self.makers, self.nodes))
 
     @property
     def file_count(self) -> int:
-        """The number of files that the units are from."""
+        """The number of files in which units were read."""
         return len(self._files)
 
     def makers(self, o: int) -> list[int]:
-        """Return the units that make a node out of others."""
+        """Return the ids of the units that make a node and do not need it."""
         inputs = self._network.inputs
         return [unit for unit in self._network.producers[o] if o not in inputs[unit]]
 
     def granting_files(self, o: int) -> Sequence[str]:
-        """Return the files whose starting kitchen grants a node although a unit of the file makes it."""
+        """Return the files in whose starting kitchen a node is granted, although a unit of the file makes it."""
         return self._granting.get(o, ())
 
     def files_of(self, units: Iterable[int]) -> Iterator[str]:
-        """Yield the files that units are from."""
+        """Yield the files in which units were read, with repetitions."""
         return (file for unit in units for file in _files_of_sources(self._network.sources[unit]))
 
     def units_of(self, file: str) -> Iterator[tuple[Sequence[int], Sequence[int]]]:
-        """Yield the inputs and outputs of the units of a file, in its order."""
+        """Yield the inputs and the outputs of each unit of a file, in its order."""
         network = self._network
         return ((network.inputs[unit], network.outputs[unit]) for unit in self._files[file])
 
 
 def _files_of_sources(sources: Iterable[Source]) -> Iterable[str]:
+    """Return the files of the sources of a unit, each once; a unit without a source has the file ``""``."""
     return dict.fromkeys(source.file for source in sources) or ("",)
 
 
 def _first_position(network: Network, unit: int, file: str) -> tuple[int, int]:
-    """Return the first line and column at which a file has a unit."""
+    """Return the first line and column at which a file has a unit.
+
+    A unit without a source has its id in place of the line.
+    """
     return min(
         ((source.line, source.column) for source in network.sources[unit] if source.file == file),
         default=(unit, 0),
@@ -194,12 +199,12 @@ def _first_position(network: Network, unit: int, file: str) -> tuple[int, int]:
 
 @lru_cache(maxsize=4)  # successive questions are about one network
 def starting_kitchen(network: Network) -> NetworkStartingKitchen:
-    """Return the starting kitchen of a network."""
+    """Return the starting kitchen of a network; those of the last four networks are cached."""
     return NetworkStartingKitchen(network)
 
 
 def starting_nodes(network: Network, goals: Collection[int] = ()) -> frozenset[int]:
-    """Return the ids of the nodes of the starting kitchen for these goals."""
+    """Return the ids of the nodes that are assumed to be available for these goals."""
     kitchen = starting_kitchen(network)
     added, lacking = kitchen.changes(goals)
     return kitchen.nodes.union(added).difference(lacking)

@@ -53,9 +53,9 @@ class Statistics:
 
 
 def network_statistics(network: Network, at_hand: Iterable[int] | None = None) -> Statistics:
-    """Return the statistics of a network.
+    """Return the statistics of a network whose available nodes are ``at_hand``, by id.
 
-    Layers are counted from the object nodes ``at_hand``, by default from those of the starting kitchen.
+    ``None`` means the starting kitchen.
     """
     if at_hand is None:
         at_hand = starting_kitchen(network).nodes
@@ -105,7 +105,7 @@ def network_statistics(network: Network, at_hand: Iterable[int] | None = None) -
 
 
 def most_connected_labels(network: Network, shown: int) -> list[tuple[str, int]]:
-    """Return the labels that the most units have, with their numbers of units.
+    """Return the ``shown`` labels that the most units have, each with the number of these units.
 
     Labels with equal numbers are in alphabetical order.
     """
@@ -117,9 +117,10 @@ def most_connected_labels(network: Network, shown: int) -> list[tuple[str, int]]
 
 
 def most_connected_objects(network: Network, shown: int) -> list[tuple[int, int, int]]:
-    """Return the object nodes that most units touch: id, units that need it, units that make it.
+    """Return the ``shown`` object nodes that the most units need or make.
 
-    Nodes with equal numbers are in the order in which they were read.
+    Each is an id, the number of units that need the node, and the number of units that make it. Nodes with
+    equal numbers are in order of id.
     """
     sizes = [
         (len({*users, *makers}), -node)

@@ -66,13 +66,14 @@ def run_in_processes(
     jobs: int,
     seconds: Callable[[Task], float | None] = lambda _: None,
 ) -> "Iterator[FinishedTask[Task, Answer]]":
-    """Run tasks in up to ``jobs`` child processes, and yield each result as soon as it is there, in any
-    order.
+    """Run tasks in up to ``jobs`` child processes; yield each result as soon as it is there, in any order.
 
     Each process calls ``make_task_function`` once; the function that it returns does the tasks. ``seconds``
     returns the time limit of a task, ``None`` for no limit. The time of the first task of a process begins
-    when ``make_task_function`` has returned. A process that dies or exceeds the time is replaced, and its
-    task is yielded with a :class:`LostError`. All processes are ended when the iterator is closed.
+    when ``make_task_function`` has returned.
+
+    If a process dies or exceeds the time, the result of its task is a :class:`LostError`, and another process
+    is started. All processes are ended when the iterator is closed.
     """
     packed_maker, remaining, messages = pack_message(make_task_function), iter(tasks), _Messages()
     workers: dict[int, _Worker[Task]] = {}
