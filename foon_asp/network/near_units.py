@@ -34,9 +34,9 @@ class UnitDifference(NamedTuple):
         They are one letter apart, or differ only in doubled letters, capitals, blanks and the like. Neither
         is empty.
         """
-        one, other = self.left, self.right
-        return bool(one and other) and (
-            one_letter_apart(one, other) or without_doubles(one) == without_doubles(other)
+        return bool(self.left and self.right) and (
+            one_letter_apart(self.left, self.right)
+            or without_doubles(self.left) == without_doubles(self.right)
         )
 
 
@@ -141,8 +141,8 @@ def units_with_one_difference(units: Iterable[FunctionalUnit]) -> list[NearUnits
     for i, others in enumerate(_candidate_indices(listed, listed)):
         for j in sorted(others):
             one, other = listed[i], listed[j]
-            sizes = len(one.inputs) == len(other.inputs) and len(one.outputs) == len(other.outputs)
-            if i < j and sizes and len(differences := unit_differences(one, other)) == 1:
+            same_sizes = len(one.inputs) == len(other.inputs) and len(one.outputs) == len(other.outputs)
+            if i < j and same_sizes and len(differences := unit_differences(one, other)) == 1:
                 (only,) = differences
                 if only.kind in {"motion", "state", "relation"} or only.is_slip:
                     pairs.append(NearUnits(one, other, differences))
@@ -224,15 +224,17 @@ def _node_differences(node: ObjectNode, other: ObjectNode) -> tuple[UnitDifferen
     differences = []
     for kind in ("label", "state", "relation", "ingredient"):
         names, other_names = (
-            sorted(name for part_kind, name in (one - two).elements() if part_kind == kind)
-            for one, two in ((parts, other_parts), (other_parts, parts))
+            sorted(name for part_kind, name in (minuend - subtrahend).elements() if part_kind == kind)
+            for minuend, subtrahend in ((parts, other_parts), (other_parts, parts))
         )
-        of = "" if kind == "label" else node.label
+        label = "" if kind == "label" else node.label
         if len(names) == len(other_names):
-            differences += [UnitDifference(kind, *pair, of) for pair in zip(names, other_names, strict=True)]
+            differences += [
+                UnitDifference(kind, *pair, label) for pair in zip(names, other_names, strict=True)
+            ]
         else:
-            differences += [UnitDifference(kind, name, "", of) for name in names]
-            differences += [UnitDifference(kind, "", name, of) for name in other_names]
+            differences += [UnitDifference(kind, name, "", label) for name in names]
+            differences += [UnitDifference(kind, "", name, label) for name in other_names]
     return tuple(differences)
 
 

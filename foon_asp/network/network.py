@@ -29,13 +29,13 @@ class Network:
     ``inputs[u]`` and ``outputs[u]`` are node ids, and ``sources[u]`` lists where each copy of it was read. A
     :class:`NetworkBuilder` makes networks.
 
-    A network below ``level`` 3 has in ``detailed`` the network of level 3 that it was made from.
-    ``stands_for[u]`` are the ids there of the units that ``u`` stands for, ``objects_stand_for[o]`` those of
-    the nodes.
+    A network below ``level`` 3 was made from a network of level 3, which is ``detailed``. Unit ``u`` stands
+    for the detailed units with the ids ``stands_for[u]``, and node ``o`` for the detailed nodes with the ids
+    ``objects_stand_for[o]``.
 
     A network may be a part of a larger one that was not read in full. ``unit_numbers`` and
-    ``object_numbers`` are then the ids in the larger one, in rising order; these are the ids to show. They
-    are empty if the network is whole.
+    ``object_numbers`` then have the ids of its units and nodes in the larger one, in rising order. Users are
+    shown these ids. Both are empty if the network is whole.
 
     Example:
         >>> network = foon_asp.load().network

@@ -36,7 +36,7 @@ class NodePattern(NamedTuple):
 
     @property
     def lookup_key(self) -> LookupKey:
-        """The key under which matching nodes are looked up: each of them has it in its :func:`lookup_keys`."""
+        """The key of the entry, which each matching node has among its :func:`lookup_keys`."""
         related_object = self.container
         if related_object is None and self.relations:
             related_object = min(self.relations).object

@@ -32,7 +32,7 @@ class Contents(NamedTuple):
 
 
 class ObjectNode(NamedTuple):
-    """An object in a state; two nodes are the same if all four parts are (level 3 of FOON).
+    """An object in a state; two nodes are equal if all four parts are, as at level 3 of FOON.
 
     ``label`` is its name, ``states`` the set of its states, ``relations`` what it is in or on, ``contents``
     what it contains. Motion flags, times and ids belong to the line that was read and are no part of it.

@@ -6,8 +6,8 @@ from typing import NamedTuple
 class Source(NamedTuple):
     """The place in a ``file`` where a unit or an item was read.
 
-    ``line`` and ``column`` count from 1. ``videos`` are the addresses from the ``# Source:`` lines at the
-    top of the file, which the annotator worked from.
+    ``line`` and ``column`` count from 1. ``videos`` are the addresses in the ``# Source:`` lines at the
+    top of the file, of the videos that were annotated.
 
     Example:
         >>> str(foon_asp.Source("recipe.txt", 12))

@@ -17,25 +17,25 @@ class Edit(StrEnum):
     """A way in which the node that is used differs from the node in whose place it is used."""
 
     WORD = "word"
-    """The same place or the same ingredients, by another word: ``on [plate]`` for ``in [plate]``."""
+    """The same container or ingredients with another word: ``on [plate]`` for ``in [plate]``."""
     CONTAINER = "container"
-    """Something that it is in or on, more, fewer or another: ``in [bowl]`` for ``in [pot]``."""
+    """Another container or surface, an additional or a missing one: ``in [bowl]`` for ``in [pot]``."""
     MORE_STATE = "more state"
-    """A state that the other does not have."""
+    """A state that only the node that is used has."""
     FEWER_STATE = "fewer state"
-    """A state that it lacks."""
+    """A state that the node that is used lacks."""
     MORE_INGREDIENT = "more ingredient"
-    """An ingredient that the other does not have."""
+    """An ingredient that only the node that is used has."""
     FEWER_INGREDIENT = "fewer ingredient"
-    """An ingredient that it lacks."""
+    """An ingredient that the node that is used lacks."""
     CONTENTS = "other contents"
-    """Contents of which not more than half are in common: an empty bowl for a full one."""
+    """Contents with at most half of the ingredients in common: an empty bowl for a full one."""
     SPELLING = "spelling"
     """The same label in the plural, or with other blanks, hyphens or capitals: ``cherrytomatoes``."""
     LABEL = "label"
-    """Another label, as a list of pairs has it."""
+    """Another label; the table has the pair of labels."""
     NODE = "node"
-    """Another object node, as a list of pairs has it."""
+    """Another object node; the table has the pair of nodes."""
 
 
 class Difference(NamedTuple):
@@ -140,7 +140,7 @@ class StandInTable(NamedTuple):
         served_parts = sorted(served.relations - serving.relations)
         serving_parts = sorted(serving.relations - served.relations)
         for relation in list(served_parts):
-            other = next((same for same in serving_parts if same.object == relation.object), None)
+            other = next((part for part in serving_parts if part.object == relation.object), None)
             if other is not None:
                 served_parts.remove(relation)
                 serving_parts.remove(other)
@@ -202,8 +202,8 @@ _EDITS: Mapping[Edit, Fraction | None] = {
     Edit.FEWER_INGREDIENT: Fraction(5),
     Edit.CONTENTS: None,
 }
-# What somebody has to do first is not made up for by a price.
-_DONE = (
+# States that an action has to bring about: nodes without them never stand in.
+_STATES_OF_ACTIONS = (
     *(
         "cooked",
         "baked",
@@ -231,6 +231,6 @@ _DONE = (
     *("peeled", "mashed", "ground", "melted", "beaten", "whipped", "kneaded", "hot"),
 )
 _WORDS: Mapping[tuple[Edit, str], Fraction | None] = {
-    **{(Edit.FEWER_STATE, state): None for state in _DONE},
+    **{(Edit.FEWER_STATE, state): None for state in _STATES_OF_ACTIONS},
     **{(Edit.MORE_STATE, state): None for state in ("dirty", "burnt", "rotten")},
 }

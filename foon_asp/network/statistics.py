@@ -9,7 +9,7 @@ from foon_asp.network.graph import UNREACHED, component_sizes, cycles, layers
 from foon_asp.network.network import Network
 from foon_asp.network.starting_kitchen import starting_kitchen
 
-MANY = 4  # producers; object nodes with as many or more are counted together
+MANY = 4  # units that make a node; nodes with as many or more are counted together
 
 
 @dataclass(frozen=True)
@@ -17,11 +17,13 @@ class Statistics:
     """The counts of a network at one level; every mean is over units.
 
     ``producers[n]`` is the number of object nodes that exactly ``n`` units make; its last entry counts the
-    nodes that ``MANY`` or more units make. A cycle is a set of object nodes that need each other;
-    ``in_cycles`` counts the nodes in all cycles, ``largest_cycle`` those in the largest one. ``at_hand``
-    counts the available nodes. ``depth`` is the highest layer reached from them, and ``median_depth`` the
-    median layer of the units reached. ``parts`` counts the connected components, and ``largest_part`` the
-    units of the largest one.
+    nodes that ``MANY`` or more units make. ``unused`` counts the object nodes that no unit needs, and
+    ``unchanged`` the units whose inputs are their outputs.
+
+    A cycle is a set of object nodes that need each other. ``in_cycles`` counts the nodes in all cycles,
+    ``largest_cycle`` those in the largest one. ``at_hand`` counts the available nodes. ``depth`` is the
+    highest layer reached from them, and ``median_depth`` the median layer of the units reached. ``parts``
+    counts the connected components, and ``largest_part`` the units of the largest one.
     """
 
     level: int

@@ -54,5 +54,5 @@ class UnitPrices(NamedTuple):
 
 def _least_price(prices: list[Fraction | None]) -> Fraction | None:
     """Return the least price, or ``None`` if one of the prices is ``None``."""
-    present = [price for price in prices if price is not None]
-    return min(present) if len(present) == len(prices) else None
+    known_prices = [price for price in prices if price is not None]
+    return min(known_prices) if len(known_prices) == len(prices) else None
