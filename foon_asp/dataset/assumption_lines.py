@@ -9,9 +9,9 @@ from foon_asp.text.assumed_goals import MARKED
 
 
 def kitchen_lines(dataset: Dataset, problems: Iterable[Problem], verbose: bool) -> Iterator[str]:
-    """Yield one line on the starting kitchen, with the number of items that the goals can use.
+    """Yield a line on the starting kitchen, with the number of its items that the problems can use.
 
-    The line also names the items that some unit makes. ``verbose`` adds a line for each item.
+    The line names up to six of the items that some unit makes. ``verbose`` adds a line for each item.
     """
     used = {
         problem.network.object_number(o): problem.network.objects[o]
@@ -33,7 +33,10 @@ def kitchen_lines(dataset: Dataset, problems: Iterable[Problem], verbose: bool) 
 
 
 def goal_lines(dataset: Dataset, goals: Sequence[ObjectNode], verbose: bool) -> Iterator[str]:
-    """Yield one line on the goals assumed and their origin; ``verbose`` adds a line for each of several."""
+    """Yield a line on the goals that were assumed, and on their origin.
+
+    With ``verbose``, a line for each goal follows if there are several.
+    """
     origin = {"": "of the goals file", MARKED: "marked in the files"}.get(dataset.goals_from)
     if len(goals) == 1:
         assumed = f"the goal {origin}" if origin else "what the last unit makes"

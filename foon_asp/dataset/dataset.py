@@ -58,10 +58,13 @@ if TYPE_CHECKING:  # plain answers do not need it
 def pose_problem(
     data: Data, goals: Sequence[int], containers: str, origin: "Dataset", items: UsedUp | None = None
 ) -> Problem:
-    """Return the problem of goals over ``data``, which is a part of the dataset ``origin``.
+    """Return the problem of goals over ``data``, which is all or a part of the data of ``origin``.
 
     ``goals`` are ids in the network of ``data``. ``items`` says how items are used up; ``None`` if items
-    last.
+    last. If a motion has no success rate, the problem has no rates.
+
+    Raises :class:`UserError` for an unknown container rule, and for contradictory amounts if items are used
+    up.
     """
     if items is not None and data.amounts.conflict:
         raise UserError(data.amounts.conflict)
@@ -139,19 +142,19 @@ class Dataset:
 
     @property
     def names(self) -> NodeAndUnitNames:
-        """The names of object nodes and units."""
+        """The lookup of object nodes and units by name."""
         return self.source.names
 
     @property
     def read_seconds(self) -> float:
-        """The seconds that reading took so far."""
+        """The seconds spent on reading so far."""
         return self.source.seconds
 
     @cached_property
     def unrated(self) -> str:
         """A text about the motions without a success rate.
 
-        Empty where all have one, or no rates are known.
+        It is empty if all motions have a rate, or if there are no rates at all.
         """
         if self.rates is None or self.rates.keys() >= set(self.source.motions):
             return ""
@@ -159,20 +162,20 @@ class Dataset:
 
     @cached_property
     def data(self) -> Data:
-        """All data; from a store, everything is read."""
+        """The whole data; of a store, everything is read at the first access."""
         network = self.source.whole_network()
         items = self.source.kitchen_items() if self.kitchen_items is None else self.kitchen_items
         return self._data_with(network, self.kitchen.ids)._replace(kitchen_items=items)
 
     def _data_of_network(self, network: Network) -> Data:
-        """Return the data of a part of the network, or of all of it where it is in memory."""
+        """Return the data of this dataset for a network, which is a part of the whole one or all of it."""
         if network is self.names:
             return self.data
         kitchen = (local_id for local_id, o in enumerate(network.object_numbers) if o in self.kitchen)
         return self._data_with(network, frozenset(kitchen))
 
     def _data_with(self, network: Network, kitchen: frozenset[int]) -> Data:
-        """Return the data of this dataset with another network and kitchen."""
+        """Return the data of this dataset with another network, and a kitchen by its ids."""
         return Data(
             network,
             kitchen,
@@ -190,7 +193,7 @@ class Dataset:
         )
 
     def _unit_prices(self, network: Network) -> UnitPrices | None:
-        """Return the prices of units, those of a store included; ``None`` without any."""
+        """Return the prices of the units of a network, with those in a store; ``None`` if there are none."""
         motions, units, from_file = self.prices
         stored = self.source.unit_prices(network, from_file)
         if motions is None and not units and stored is None:
@@ -213,17 +216,18 @@ class Dataset:
         return sorted(self.source.motions)
 
     def at_hand(self, o: int) -> bool:
-        """Whether the kitchen has an object node, by id."""
+        """Whether an object node, by id, is in the kitchen."""
         return o in self.kitchen
 
     def made_by_units(self, objects: Iterable[int]) -> list[int]:
-        """Return the nodes of a starting kitchen that a unit makes out of others."""
+        """Return those of the ``objects``, by id, that a unit makes and does not need."""
         return [o for o in objects if self.source.starting_kitchen.makers(o)]
 
     def for_goals(self, goals: Iterable[int]) -> "Dataset":
-        """Return the dataset with the kitchen for some goals.
+        """Return the dataset with the kitchen that it has for some goals, by id.
 
-        A starting kitchen omits goals that units make.
+        A starting kitchen loses goals that units make, and may gain other nodes; see
+        :meth:`StartingKitchen.changes`. Any other kitchen stays.
         """
         if not self.starting:
             return self
@@ -236,9 +240,10 @@ class Dataset:
         return replace(self, kitchen=self.kitchen.with_changes(added, lacking))
 
     def command_goal_ids(self, names: Sequence[str | ObjectNode]) -> tuple[int, ...]:
-        """Return the ids of the goals with these names.
+        """Return the ids of the goals that a command names, each once.
 
-        Without names, returns all assumed goals; if a file lists goals, it has to list exactly one.
+        Without names, return all assumed goals, or the only goal of the goals file. Raises :class:`UserError`
+        if the file has several goals, or if there is no goal to assume.
         """
         if not names and self.goals_from and not self.listed:
             raise UserError(
@@ -260,11 +265,15 @@ class Dataset:
         return self.listed_goals() if self.goals_from else []
 
     def listed_goals(self) -> list[ObjectNode]:
-        """Return the goals of the goals file, or those that were assumed."""
+        """Return the goals of the goals file, or else those that were assumed, each once."""
         return [self.names.node(o) for o in dict.fromkeys(self.goal_ids(()))]
 
     def goal_ids(self, names: Sequence[str | ObjectNode]) -> list[int]:
-        """Return the id of the goal for each name; without names, the ids of all nodes of the goals file."""
+        """Return the id of the goal for each name, in order.
+
+        Without names, return the ids of all goals of the goals file, or else of those that were assumed. An
+        id may be repeated.
+        """
         if names:
             return [
                 node_id(self, name, "goal")
@@ -275,7 +284,10 @@ class Dataset:
         return [node for entry in self.listed for node in nodes_of_entry(entry, self.names)]
 
     def with_kitchen(self, items: Sequence[ListedObject]) -> "Dataset":
-        """Return the same data with the kitchen of another file."""
+        """Return the same data with another kitchen: the nodes that match entries of a kitchen file.
+
+        The amounts in these entries become the stock.
+        """
         names = self.names
         patterns = [pattern_at_level(item.pattern, names.level) for item in items]
         kitchen = Kitchen(frozenset(o for pattern in patterns for o in names.find(pattern)))
@@ -284,7 +296,7 @@ class Dataset:
 
     @property
     def goal_amounts(self) -> dict[int, int]:
-        """The amounts that the goals file states, by the id of the goal."""
+        """The numbers of copies of goals that the goals file states, by the id of the goal."""
         return {
             o: entry.amount
             for entry in self.listed
@@ -302,13 +314,19 @@ class Dataset:
         return self._with_fields(kitchen=kitchen, kitchen_items=(), starting=True, stock={})
 
     def _with_fields(self, **changes: Any) -> "Dataset":
-        """Return a copy with some fields changed, and without remarks on assumptions made while reading."""
+        """Return a copy with some fields changed.
+
+        Unless they are changed too, the remarks on assumptions are dropped, and the kitchen counts as given.
+        """
         return replace(self, **{"remarks": (), "brief": (), "has_kitchen": True, **changes})
 
     def with_remarks(
         self, warnings: Iterable[str], brief: Iterable[str], remarks: Sequence[str], has_kitchen: bool
     ) -> "Dataset":
-        """Return the same data with remarks; ``brief`` is a summary of the warnings."""
+        """Return the same data with ``warnings`` and ``remarks`` as its remarks.
+
+        ``brief`` is a summary of the warnings, which takes their place in the brief remarks.
+        """
         all_remarks, brief_remarks = (*warnings, *remarks), (*brief, *remarks)
         return replace(self, remarks=all_remarks, brief=brief_remarks, has_kitchen=has_kitchen)
 
@@ -317,10 +335,10 @@ class Dataset:
         return replace(self, measures=measures)
 
     def with_stand_in_table(self, table: StandInTable | None) -> "Dataset":
-        """Return the same data with stand-ins by a table, ``None`` for none.
+        """Return the same data with stand-ins by a table; ``None`` allows no stand-ins.
 
-        With a table, only those assumed goals that are of the first file stay goals; the other files help to
-        make them.
+        With a table, assumed goals that are not of the first file are dropped: the other files help to make
+        the goals of the first one.
         """
         goals = self.listed
         if table is not None and self.goals_from and len(goals) > 1:
@@ -334,9 +352,10 @@ class Dataset:
         removed: Collection[int],
         only: Collection[int] | None,
     ) -> "Dataset":
-        """Return the same data with a changed kitchen: object nodes, by id, are added and removed.
+        """Return the same data with object nodes, by id, added to the kitchen and removed from it.
 
-        If ``only`` is not ``None``, it replaces the whole kitchen before that. Added nodes never run out.
+        Before that, the nodes ``only`` replace the whole kitchen, unless they are ``None``. Added nodes never
+        run out.
         """
         if only is not None:
             kitchen = Kitchen(only, added, removed)
@@ -348,7 +367,10 @@ class Dataset:
     def with_rates_and_prices(
         self, rates: Mapping[str, Number] | None, unit_prices: UnitPricesNamed | None
     ) -> "Dataset":
-        """Return the same data with other success rates and prices for some motions and units."""
+        """Return the same data with other success rates and prices for some motions and units.
+
+        ``None`` changes nothing.
+        """
         if rates is None and unit_prices is None:
             return self
         motions, units, _ = prices = self.prices
@@ -359,7 +381,10 @@ class Dataset:
         return self._with_fields(rates=changed_rates(self.rates, rates, self.motions), prices=prices)
 
     def vary(self, changes: Changes) -> "Dataset":
-        """Return the same data with another kitchen, other success rates or other prices."""
+        """Return the same data with changes, as :meth:`foon_asp.Foon.vary` does.
+
+        Entries of a kitchen file that match no object node cause a warning.
+        """
         kitchen, adding, without, rates, unit_prices, measures = changes
         dataset = self.with_rates_and_prices(rates, unit_prices)
         if measures is not None:
@@ -391,7 +416,10 @@ class Dataset:
     def problem_with_changes(
         self, problem: Problem, goals: Names | None, containers: str | None, changes: Changes
     ) -> Problem:
-        """Return a problem of this dataset with changes, as :meth:`Problem.vary` describes."""
+        """Return a variation of a problem over changed data, as :meth:`Problem.vary` describes.
+
+        ``None`` keeps the goals or the container rule of the problem.
+        """
         dataset = self.with_kitchen_of(problem).vary(changes)
         ids = _whole_goal_ids(problem) if goals is None else dataset.python_goal_ids(goals)
         items = problem.items
@@ -401,7 +429,7 @@ class Dataset:
         return _with_own_rates(posed, problem)
 
     def problem_over_all_units(self, problem: Problem) -> Problem:
-        """Return the same problem over the whole network of this dataset."""
+        """Return the same problem over the whole network, with the units that no goal needs."""
         dataset = self.with_kitchen_of(problem)
         posed = dataset.problem(_whole_goal_ids(problem), problem.containers, True, problem.items)
         return _with_own_rates(posed, problem)
@@ -413,11 +441,14 @@ class Dataset:
         return _with_own_rates(pose_problem(data, goals, problem.containers, dataset, problem.items), problem)
 
     def subject(self, everything: bool = True, goals: Iterable[int] = ()) -> "Subject":
-        """Return the network, kitchen and prices that a certificate is about.
+        """Return what a certificate is about: network, kitchen and prices, with the digests of the store.
 
-        A store is read on access only if ``everything`` is false, the kitchen is no starting kitchen, and the
-        prices are those of the store. Otherwise all data are read; raises :class:`UserError` if they do not
-        have a digest that the store states. A starting kitchen is the one for ``goals``.
+        A starting kitchen is the one for ``goals``, by id.
+
+        All data are read if ``everything`` is true, the kitchen is a starting kitchen, the prices are not
+        those of the store, or the store states no digests. Raises :class:`UserError` if the data do not have
+        a digest that the store states. In all other cases, a store is read on access, and its digests are
+        trusted.
         """
         from foon_asp.proof.verifier import Subject  # noqa: PLC0415 (few answers need it)
 
@@ -451,9 +482,11 @@ class Dataset:
     def subject_with_stand_ins(
         self, goals: Sequence[int], containers: str, everything: bool, steps: Sequence[int] = ()
     ) -> "Subject":
-        """Return the network and kitchen of a certificate about a network with the stand-ins for goals.
+        """Return the network and kitchen of a certificate about a network with stand-ins.
 
-        With ``steps``, the ids of the units of a tree, the stand-ins are those for the repair of this tree.
+        Without ``steps``, these are the stand-ins for the goals; ``everything`` adds those that no goal
+        needs. With ``steps``, the ids of the units of a tree, they are the stand-ins for the repair of this
+        tree.
         """
         from foon_asp.proof.verifier import Subject  # noqa: PLC0415 (few answers need it)
 
@@ -470,7 +503,8 @@ class Dataset:
     def python_goal_ids(self, names: Names) -> tuple[int, ...]:
         """Return the ids of the goals that a Python caller names, each once.
 
-        Without a name, return the only goal of the goals file; raises :class:`UserError` if it has several.
+        Without a name, return the only goal of the goals file, or else the only one that was assumed. Raises
+        :class:`UserError` if there are several or none.
         """
         named = tuple(dict.fromkeys(node_ids(self, names, "goal")))
         if named:
@@ -496,10 +530,10 @@ class Dataset:
     def kitchen_changes(
         self, problem: Problem, goals: Iterable[int]
     ) -> tuple[frozenset[int], frozenset[int]]:
-        """Return how the kitchen of a problem differs from the kitchen that this dataset has for ``goals``.
+        """Return the nodes that only the problem has available, and those that only the dataset has.
 
-        Return the nodes that only the problem has available, and those that only the dataset has. All ids,
-        also those of ``goals``, are ids of the whole network.
+        The kitchen of the dataset is the one for ``goals``. All ids, also those of ``goals``, are ids of the
+        whole network. If the problem is about a part of the network, only nodes of this part are compared.
         """
         kitchen, network = self.for_goals(goals).kitchen, problem.network
         if not network.object_numbers:
@@ -514,7 +548,7 @@ class Dataset:
         return problem_items - own_items, own_items - problem_items
 
     def unpriced(self) -> Sequence[Unpriced]:
-        """Return the units that have no price, by motion."""
+        """Return the number of units without a price, for each motion that has any."""
         return self.source.unpriced(self.prices)
 
     def problem(
@@ -524,10 +558,10 @@ class Dataset:
         everything: bool = False,
         items: UsedUp | None = None,
     ) -> Problem:
-        """Return the problem of goals, in the same order, under a container rule.
+        """Return the problem of goals, by id and in this order, under the container rule with a name.
 
-        With ``everything``, its network also has units that no goal needs. ``items`` says how items are used
-        up; ``None`` if items last.
+        Its network has the units that the goals can need; with ``everything``, all units. ``items`` says how
+        items are used up; ``None`` if items last.
         """
         dataset = self.for_goals(goals)
         if self.stand_ins is not None:
@@ -551,8 +585,8 @@ class Dataset:
     ) -> Problem:
         """Return the problem of goals; of a store, only about ``first`` units near the goals are read now.
 
-        Other units are read on access. If no kitchen was given, all units that the goals can need are read
-        now, since the starting kitchen follows from them.
+        Other units are read when the fields of the problem are accessed. If no kitchen was given, if items
+        are used up, or if there are stand-ins, all units that the goals can need are read now.
         """
         cone = None
         if items is None and self.has_kitchen and self.stand_ins is None:
@@ -565,16 +599,16 @@ class Dataset:
         return NearbyProblem.of(Nearby(self, cone, containers), first)
 
     def problem_of_units(self, units: Iterable[int], goals: Sequence[int], containers: str) -> Problem:
-        """Return the problem of goals over a part of the network that has these units."""
+        """Return the problem of goals over a part of the network that has these units; both are by id."""
         network = self.source.network_part(units, goals)
         return pose_problem(
             self.for_goals(goals)._data_of_network(network), _local_ids(network, goals), containers, self
         )
 
     def unit_distances(self, containers: str, objective: Objective) -> "UnitDistances | None":
-        """Return the distance of each unit of a store: a lower bound on the cost of trees with it.
+        """Return the distance of each unit of a store: a lower bound on the cost of any tree with it.
 
-        ``None`` where the data are text, and with a starting kitchen.
+        Returns ``None`` if the data are text, and for a starting kitchen.
         """
         if self.starting:
             return None
@@ -586,7 +620,7 @@ class Dataset:
     def data_part(
         self, goals: Sequence[int], units: Iterable[int] = (), tree: Iterable[FunctionalUnit] = ()
     ) -> tuple[Data, tuple[int, ...]]:
-        """Return a part of the data, and the ids that the goals have in it.
+        """Return a part of the data, and the ids that the goals have in its network.
 
         The part has at least the ``goals`` and ``units``, both by id, and the units and nodes of ``tree``.
         Raises :class:`UserError` for an id that no unit has.
@@ -605,7 +639,7 @@ class Dataset:
 
 
 def _local_ids(network: Network, goals: Sequence[int]) -> tuple[int, ...]:
-    """Return the ids that goals of the whole network have in ``network``, which may be a part of it."""
+    """Return the ids that goals of the whole network have in ``network``, a part of it or all of it."""
     if not network.object_numbers:
         return tuple(goals)
     local_ids = {o: local_id for local_id, o in enumerate(network.object_numbers)}
@@ -618,7 +652,7 @@ def left_out_warning(count: int) -> str:
 
 
 def _whole_goal_ids(problem: Problem) -> tuple[int, ...]:
-    """Return the goals of a problem by their ids in the whole network."""
+    """Return the ids that the goals of a problem have in the whole network; no more of a store is read."""
     from foon_asp.dataset.nearby import without_reading_more  # noqa: PLC0415 (few answers need it)
 
     problem = without_reading_more(problem)
@@ -626,7 +660,10 @@ def _whole_goal_ids(problem: Problem) -> tuple[int, ...]:
 
 
 def _with_own_rates(posed: Problem, problem: Problem) -> Problem:
-    """Return ``posed`` with the success rates of single units that ``problem`` has."""
+    """Return ``posed`` with the success rates that ``problem`` has for single units.
+
+    Units that ``posed`` does not have are left out.
+    """
     if not problem.own_rates:
         return posed
     numbered = {problem.network.unit_number(unit): rate for unit, rate in problem.own_rates.items()}

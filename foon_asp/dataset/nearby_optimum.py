@@ -20,9 +20,9 @@ if TYPE_CHECKING:  # plain answers do not need it
 class RefinementTuning(NamedTuple):
     """How many units of a store are read in each round, and when rounds do without a proof.
 
-    ``proved_units``: above this number of units read, trees without a proof choose the units to read next.
-    Below, each round proves its tree, which is quick and reads the fewest units. With twice as many, the
-    hardest questions take twice as long (``benchmarks/store.py``, family ``deep``).
+    ``proved_units``: up to this number of units read, each round proves the optimality of its tree, which is quick
+    and reads the fewest units. Above it, trees without a proof choose the units to read next. With twice as many,
+    the hardest questions take twice as long (``benchmarks/store.py``, family ``deep``).
     ``narrow_step``: a round reads one more unit for each ``narrow_step`` units that were read.
     ``wide_step``: the same for long rounds, where it matters less to read few units.
     """
@@ -36,7 +36,7 @@ REFINEMENT = RefinementTuning()
 
 
 def near_goals(problem: Problem, objectives: Sequence[Objective], settings: Settings) -> "Nearby | None":
-    """Return the question over the units near the goals of a problem.
+    """Return the units of a large store near the goals of a problem, as a :class:`Nearby`.
 
     Return ``None`` if the problem is not about a large store, or if its settings or objectives need all
     units.
@@ -132,7 +132,10 @@ def solve_nearby(
 
 
 def _has_tree(nearby: "Nearby", deadline: Deadline) -> bool:
-    """Whether a tree exists without rules; reads units until that is known. Also true at a limit."""
+    """Whether the goals have a tree without rules; units are read until that is known.
+
+    Returns true at a limit, too.
+    """
     while True:
         relaxed = nearby.relaxation
         reached = reach(relaxed)
@@ -153,8 +156,8 @@ def _has_tree(nearby: "Nearby", deadline: Deadline) -> bool:
 def _read_smallest_tree(nearby: "Nearby", settings: Settings, units_of_rules: set[int]) -> list[int]:
     """Search for the tree of fewest units that keeps the rules, reading units until it is found.
 
-    Return its units by id in the whole network; empty if there is no tree, or at a limit. Fewest units are
-    found faster than the optimum of other objectives. Better trees mostly use units near this tree.
+    Return its units by id in the whole network; empty if there is no tree, or at a limit. The fewest units
+    are found faster than the optimum of other objectives, and better trees mostly use units near this tree.
     ``units_of_rules`` collects the units on which the rules depend.
     """
     while True:
@@ -197,9 +200,10 @@ def _read_more(
 def least_with_more(
     costs: Costs, order: Sequence[Objective], extra_units: int = 1
 ) -> tuple[int | Fraction, ...]:
-    """Return a lower bound on the key of any tree with at least ``extra_units`` more units than ``costs``.
+    """Return a lower bound on the cost of any tree with at least ``extra_units`` more units than ``costs``.
 
-    The tree costs at least ``costs`` by every objective. A key has the cost by each objective in ``order``.
+    The tree costs at least ``costs`` by every objective. The bound has the cost by each objective in
+    ``order``.
     """
     least_costs = dict(zip(order, costs.key(order), strict=True))
     least_costs[Objective.UNITS] += extra_units
@@ -207,7 +211,7 @@ def least_with_more(
 
 
 class _WarningsAndBounds(Reporter):
-    """A reporter that passes on only warnings and bounds; they hold for the whole network, unlike trees."""
+    """A reporter that passes on warnings and bounds, but no trees, which may not be trees of the whole."""
 
     def __init__(self, reporter: Reporter) -> None:
         self.warning = reporter.warning  # type: ignore[method-assign]

@@ -72,7 +72,7 @@ def solve_nearby_under(
 
 
 class _Search:
-    """A search for a tree that is proved optimal; ``unconstrained`` is the optimum without rules."""
+    """A search for a proved optimum under rules; ``unconstrained`` is the optimum without rules."""
 
     def __init__(
         self, nearby: Nearby, unconstrained: Outcome, settings: Settings, reporter: Reporter
@@ -117,7 +117,7 @@ class _Search:
         return self._as_proved(outcome)
 
     def _solve_part(self, problem: Problem) -> Outcome:
-        """Solve the question over a part of the network; if there is a tree, make it the incumbent."""
+        """Solve the problem of a part of the network; if there is a tree, make it the incumbent."""
         outcome = solve(problem, self._unconstrained.objectives, self._settings)
         if outcome.units is not None:
             self.best = self.best._replace(
@@ -130,9 +130,10 @@ class _Search:
     ) -> Outcome:
         """Search for a tree that keeps the rules, first among few units, then among more.
 
-        These are the units of the optimum without rules, and the nearest units of each kind that the rules
-        can require. If no tree is found, the status of the outcome is ``infeasible`` if a required kind has
-        no unit that can execute, else ``unknown``.
+        The units are those of the optimum without rules, and the nearest units of each kind that the rules
+        can require. ``is_required`` says of each kind whether the rules always require it. If no tree is
+        found, the status of the outcome is ``infeasible`` if a required kind has no unit that can execute,
+        else ``unknown``.
         """
         tree = _whole_unit_ids(self._unconstrained)
         for max_units, max_steps in NEARBY.widths:
@@ -152,7 +153,7 @@ class _Search:
     def _problem_of_better_trees(
         self, tree: Outcome, distances: UnitDistances, kinds: Sequence[Mask] | None
     ) -> Problem | None:
-        """Return the question over all units that a tree as good as ``tree``, or better, can have.
+        """Return the problem over all units that can be in a tree as good as ``tree`` or better.
 
         Return ``None`` if these units are more than :attr:`NearbyTuning.max_units`, or if ``tree`` is an
         outcome without a tree.
@@ -168,7 +169,7 @@ class _Search:
             return self._nearby.problem_of_units({*near_units, *far_units, *_whole_unit_ids(tree)})
 
     def _read_near_units(self, costs: Costs) -> set[int] | None:
-        """Read all units that a tree for the goals can have if it costs at most ``costs``.
+        """Read all units for the goals that can be in a tree that costs at most ``costs``.
 
         Return their ids in the whole network, maybe with a few more units; ``None`` if they are too many.
         """
@@ -202,7 +203,7 @@ class _Search:
         return next(extra for extra in count() if key <= least_with_more(least_costs, order, extra + 1))
 
     def _as_proved(self, outcome: Outcome) -> Outcome:
-        """Return the outcome as proved for the whole network.
+        """Return the outcome as proved for the whole network, and report its tree.
 
         Its cuts are omitted, because they hold only for a part of the network.
         """
@@ -219,7 +220,7 @@ def _whole_unit_ids(outcome: Outcome) -> list[int]:
 
 
 def _outcome_without_tree(nearby: Nearby, unconstrained: Outcome) -> Outcome:
-    """Return an outcome without a tree, whose bound is that of the optimum without rules."""
+    """Return an outcome of unknown status, whose bound is that of the optimum without rules."""
     first_objective = levels(unconstrained.objectives)[0]
     bounds = {
         objective: bound for objective, bound in unconstrained.bounds.items() if objective == first_objective

@@ -11,7 +11,7 @@ Files = File | Iterable[File]
 
 
 def as_paths(paths: Files) -> tuple[Path, ...]:
-    """Return one path or several as a tuple."""
+    """Return one path or several as a tuple of paths."""
     is_single = isinstance(paths, str | PathLike)
     return tuple(map(as_path, [paths] if is_single else paths))  # type: ignore[arg-type]
 

@@ -11,9 +11,10 @@ from foon_asp.text.repeated_node import repeated_note
 
 
 def read_dataset(files: DataFiles, lenient: bool = False, level: int = 3) -> Dataset:
-    """Read text files, or open the store that is named in their place.
+    """Read text files, or open the store that is named as the network.
 
-    Raises :class:`UserError` for input that is not understood. ``remarks`` has the assumptions made.
+    The remarks of the dataset are the assumptions made. Raises :class:`UserError` for input that is not
+    understood.
     """
     began = time.perf_counter()
     if any(map(is_store, files.network)):

@@ -27,9 +27,10 @@ from foon_asp.text.unit_price_list import read_unit_prices
 
 
 def read_store(files: DataFiles, level: int) -> Dataset:
-    """Open a store that is named in place of network files; other named files replace what was imported.
+    """Open the store that is named as the network; other named files replace what was imported.
 
-    Below level 3 the whole store is read, since nodes are merged at such a level.
+    Below level 3, the whole store is read and closed, since nodes are merged at such a level. Raises
+    :class:`UserError` if another network is named, too.
     """
     if len(files.network) > 1:
         raise UserError(
@@ -80,7 +81,7 @@ def read_store(files: DataFiles, level: int) -> Dataset:
 
 
 def _data_at_level(data: Data, level: int) -> Data:
-    """Return data at a level, with the kitchen and the goals matched at that level."""
+    """Return data reduced to a level, with the kitchen and the goals matched at that level."""
     network = network_at_level(data.network, level)
     goals = tuple(entry._replace(pattern=pattern_at_level(entry.pattern, level)) for entry in data.goals)
     kitchen = starting_kitchen(network).nodes if data.starting else kitchen_nodes(network, data.kitchen_items)

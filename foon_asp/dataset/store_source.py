@@ -45,12 +45,13 @@ class StoreSource(Source):
 
     @cached_property
     def _amounts_and_warnings(self) -> tuple[DataAmounts, list[Diagnostic]]:
+        """The amounts of units, and warnings about rows of the table of amounts that match no unit."""
         units = self.names.with_motions({row.name[0] for row in self._table}) if self._table else ()
         return apply_amount_table(self.names.amounts, self._table, units)
 
     @property
     def amounts(self) -> DataAmounts:
-        """The amounts of units."""
+        """The numbers of copies that units take and make of object nodes."""
         return self._amounts_and_warnings[0] if self._table else self.names.amounts
 
     @property
@@ -75,17 +76,19 @@ class StoreSource(Source):
 
     @contextmanager
     def _add_reading_time(self) -> Iterator[None]:
+        """Add the time of a ``with`` block to :attr:`seconds`."""
         began = time.perf_counter()
         yield
         self.seconds += time.perf_counter() - began
 
     @cached_property
     def _network_and_kitchen(self) -> tuple[Network, frozenset[int]]:
+        """The whole network and the kitchen, read at the first access."""
         with self._add_reading_time():
             return self.names.whole()
 
     def whole_network(self) -> Network:
-        """Read the whole network."""
+        """Return the whole network, which is read at the first call."""
         return self._network_and_kitchen[0]
 
     def network_read_on_access(self) -> Network:
@@ -104,7 +107,7 @@ class StoreSource(Source):
         available: Container[int],
         max_units: int | None,
     ) -> Cone:
-        """Read the cone of goals, or about ``max_units`` units of it."""
+        """Read the cone of goals, or about ``max_units`` units of it; see :meth:`Source.cone`."""
         with self._add_reading_time():
             return self.names.cone(goals, containers, utensils, available, max_units)
 
@@ -120,9 +123,10 @@ class StoreSource(Source):
         rates: Mapping[str, Fraction] | None,
         objective: Objective,
     ) -> "UnitDistances":
-        """Return the distance of each unit by an objective: a lower bound on the cost of trees with the unit.
+        """Return the distance of each unit: a lower bound on the cost of any tree with the unit.
 
-        Inputs that are ``utensils``, by label, are ignored.
+        Costs are by ``objective``, and the nodes of ``kitchen`` are available, by id. Inputs whose labels are
+        ``utensils`` are ignored.
         """
         from foon_asp.store.unit_distances import UnitDistances  # noqa: PLC0415 (few answers need numpy)
 
@@ -131,7 +135,10 @@ class StoreSource(Source):
         return UnitDistances(outline, available, skipped, rates, objective)
 
     def checked_digests(self) -> dict[str, str]:
-        """Compute the digests that the store states; raises :class:`UserError` if one is not true."""
+        """Read everything, compute the digests that the store states, and return them.
+
+        Raises :class:`UserError` if a stated digest is wrong.
+        """
         from foon_asp.proof.verifier import Subject  # noqa: PLC0415 (few answers need it)
 
         store, (network, kitchen) = self.names, self._network_and_kitchen
@@ -156,7 +163,7 @@ class StoreSource(Source):
         return self.names.unit_prices(network, from_file) if self.names.has_unit_prices else None
 
     def unpriced(self, prices: DataPrices) -> Sequence[Unpriced]:
-        """Return the units that have no price, by motion."""
+        """Return the number of units without a price, for each motion that has any."""
         return self.names.unpriced(prices.motions or {}, prices.units, prices.from_file)
 
     def kitchen_items(self) -> tuple[ListedObject, ...]:
