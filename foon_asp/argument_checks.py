@@ -31,7 +31,7 @@ _TYPE_WORDS = {
 
 
 def typed(function: Callable[P, T]) -> Callable[P, T]:
-    """Return a function that raises for arguments which its annotations do not allow; see :func:`checker`."""
+    """Return a function that first checks its arguments against its annotations, as :func:`checker` does."""
     check = checker(function)
 
     @functools.wraps(function)
@@ -55,6 +55,7 @@ def checker(
     annotations = {name: parameter.annotation for name, parameter in allowed.parameters.items()}
 
     def check(arguments: tuple[object, ...], named: Mapping[str, object]) -> None:
+        """Raise an error if an argument is not allowed."""
         try:
             bound = allowed.bind(*arguments, **named)
         except TypeError as error:
@@ -71,7 +72,10 @@ def checker(
 
 
 def _is_allowed(kind: Any, value: object) -> bool:
-    """Return whether an annotation allows a value, as far as that can be checked at runtime."""
+    """Whether an annotation allows a value, as far as that can be checked at runtime.
+
+    Annotations that are no types, such as strings, allow all values.
+    """
     origin, arguments = typing.get_origin(kind), typing.get_args(kind)
     if origin in {typing.Union, types.UnionType, typing.Annotated}:
         alternatives = arguments[:1] if origin is typing.Annotated else arguments
@@ -90,12 +94,12 @@ def _is_allowed(kind: Any, value: object) -> bool:
 
 
 def _is_of_several_values(origin: Any) -> bool:
-    """Return whether an annotation is of several values; a mapping counts as one."""
+    """Whether an annotation is of several values, by its origin; a mapping counts as one value."""
     return isinstance(origin, type) and issubclass(origin, Iterable) and not issubclass(origin, Mapping)
 
 
 def _allowed_values(kind: Any) -> Iterator[str]:
-    """Return the values that an annotation allows, in words."""
+    """Yield the values that an annotation allows, in words: ``a whole number``, ``text``."""
     origin, arguments = typing.get_origin(kind), typing.get_args(kind)
     if origin is typing.Annotated:
         yield from _allowed_values(arguments[0])

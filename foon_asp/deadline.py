@@ -116,7 +116,8 @@ def stoppable(seconds: float | None, token: Cancel | None, doing: str) -> Iterat
     """Limit the time of a ``with`` block, and cancel it by a token; deadlines made in the block obey both.
 
     At a limit, code that checks its deadline has time to end with its incumbent. After this time, the block
-    is interrupted, and :class:`StoppedError` is raised. ``doing`` describes the work, as in "while reading".
+    is interrupted, and :class:`StoppedError` is raised. It is raised at once if the token was cancelled
+    before. ``doing`` describes the work for messages, as in "while reading".
     """
     if token is not None and token.cancelled:
         raise StoppedError("cancelled")
@@ -136,7 +137,7 @@ def stoppable(seconds: float | None, token: Cancel | None, doing: str) -> Iterat
 
 
 def _stop_reason(stop: KeyboardInterrupt, deadline: "Deadline") -> str:
-    """Return why work was stopped, in words: it was cancelled, or a limit was reached."""
+    """Return the words ``cancelled``, or ``stopped at`` and the limit."""
     token = _CANCEL.get()
     if token is not None and token.cancelled:
         return "cancelled"
@@ -212,7 +213,10 @@ class Deadline:
 
     @property
     def passed(self) -> bool:
-        """Whether a limit is reached, or the question was interrupted or cancelled."""
+        """Whether a limit is reached, or the question was interrupted or cancelled.
+
+        The first reason is kept for :attr:`stopped`. The memory is read only now and then.
+        """
         if self._stopped_by is not None:
             return True
         if self._within is not None and self._within.interrupted:
@@ -239,17 +243,20 @@ class Deadline:
 
     @property
     def remaining_seconds(self) -> float | None:
-        """The remaining seconds; ``None`` without a time limit."""
+        """The seconds until the time limit, at least 0; ``None`` without a time limit."""
         return None if self._end is None else max(0.0, self._end - time.monotonic())
 
     @property
     def is_limited(self) -> bool:
-        """Whether the question can be stopped: it has a time limit, a memory limit or a token."""
+        """Whether the question may be stopped: it has a time limit, a memory limit or a token."""
         return self.seconds is not None or self.memory is not None or self._token is not None
 
     @property
     def overdue(self) -> bool:
-        """Whether to stop even without an answer, which is half a second after a limit."""
+        """Whether to stop even without an answer: half a second after a time limit or ctrl-C.
+
+        After a cancel or the memory limit, it is less.
+        """
         if not self.passed:
             return False
         if self._stopped_by == _CANCELLED:
@@ -265,7 +272,7 @@ class Deadline:
 
     @property
     def is_out_of_memory(self) -> bool:
-        """Whether the memory limit is reached: current work may finish, but no other work is begun."""
+        """Whether memory stopped the question: current work may finish, but no other work is begun."""
         return self._stopped_by is not None and self._stopped_by not in {
             self._time_words,
             _CANCELLED,
@@ -274,14 +281,17 @@ class Deadline:
         }
 
     def interrupt(self) -> None:
-        """Stop the question because of ctrl-C, unless it was stopped before."""
+        """Stop the question and the outer deadlines because of ctrl-C, unless it was stopped before."""
         if self._stopped_by is None:
             self._stopped_by = _INTERRUPTED
             if self._within is not None:
                 self._within.interrupt()
 
     def stop_at_proof(self) -> None:
-        """Stop the question because its answer is proved; an outer deadline (``within``) is not stopped."""
+        """Stop the question because its answer is proved, unless it was stopped before.
+
+        An outer deadline (``within``) is not stopped.
+        """
         self._stopped_by = self._stopped_by or _PROVED
 
     def stop_out_of_memory(self) -> None:
@@ -291,12 +301,15 @@ class Deadline:
 
     @property
     def stopped(self) -> str | None:
-        """The limit that stopped the question and the work at that time, in words; ``None`` if none did."""
+        """The limit that stopped the question and the work at that time, in words.
+
+        An example is ``the time limit of 5 s while reading``; ``None`` if the question was not stopped.
+        """
         return None if self._stopped_by is None else f"{self._stopped_by} while {self._doing}"
 
     @property
     def advice(self) -> str:
-        """Advice for the user about the limit."""
+        """A sentence of advice for the user about the limit, which depends on the current work."""
         return _ADVICE.get(self._doing, "raise the limit")
 
     def check(self) -> None:
@@ -316,38 +329,41 @@ class Deadline:
         return sum(_resident_bytes(Path(f"/proc/{pid}/statm")) for pid in ("self", *self._workers))
 
     def count_memory_of(self, process: int) -> None:
-        """Count the memory of another process, by its id, as well."""
+        """Count the memory of another process, by its id, towards the memory limit."""
         self._workers.add(process)
 
     def uncount_memory_of(self, process: int) -> None:
-        """Stop counting the memory of a process."""
+        """Stop counting the memory of another process."""
         self._workers.discard(process)
 
     def watched(self, doing: str, late: bool = False, grace: bool = False) -> "Watch":
-        """Return a context that interrupts work at the limits, for code that does not check the deadline.
+        """Return a context that interrupts its block at the limits, for code that does not check them.
 
         The context may raise :class:`LimitError` anywhere in the block. So the block must be safe to abort,
         and must not handle ctrl-C itself. With ``late``, the block is interrupted only when overdue. With
-        ``grace``, it has at least a quarter of a second to finish an answer.
+        ``grace``, it has at least a quarter of a second to finish an answer. ``doing`` becomes the current
+        work.
         """
         return Watch(self, doing, late, grace)
 
 
 @contextlib.contextmanager
 def resend_lost_interrupts() -> Iterator[None]:
-    """Resend interrupts that Python loses in a ``with`` block of the main thread.
+    """Send interrupts again that Python loses in a ``with`` block of the main thread.
 
-    Python reports an exception in a destructor, but does not raise it. So an interrupt that comes in a
-    destructor is sent again.
+    Python only reports an exception in a destructor, and does not raise it. So ctrl-C in a destructor has no
+    effect, unless it is sent again.
     """
     previous_hook = sys.unraisablehook
     main = threading.main_thread().ident or 0
 
     def send_again() -> None:
+        """Interrupt the main thread a moment later, when the destructor has ended."""
         time.sleep(_PACE.poll_seconds)
         signal.pthread_kill(main, signal.SIGINT)
 
     def hook(lost: "sys.UnraisableHookArgs") -> None:
+        """Handle an exception that Python could not raise; pass on those that are no interrupts."""
         destroyed = getattr(lost.object, "__name__", "") == "__del__"
         if destroyed and issubclass(lost.exc_type, AttributeError):
             return  # an interrupt in its constructor left the object incomplete
@@ -365,7 +381,7 @@ def resend_lost_interrupts() -> Iterator[None]:
 
 @contextlib.contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Defer ctrl-C and interrupts of watches in a ``with`` block until its end.
+    """Defer ctrl-C and interrupts of :class:`Watch` in a ``with`` block until its end.
 
     This is for imports: a C library that is interrupted during its import raises ``ImportError``, and cannot
     be imported any more.
@@ -406,7 +422,8 @@ if hasattr(os, "register_at_fork"):
 class Watch:
     """A context in which a background thread polls a deadline and interrupts this thread as ctrl-C does.
 
-    An interrupt at the very end of the block leaves the context as ``KeyboardInterrupt``.
+    The parameters are those of :meth:`Deadline.watched`. An interrupt at the very end of the block leaves the
+    context as ``KeyboardInterrupt``.
     """
 
     def __init__(self, deadline: Deadline, doing: str, late: bool, grace: bool) -> None:
@@ -436,7 +453,10 @@ class Watch:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Stop the background thread; raises :class:`LimitError` if it has sent an interrupt."""
+        """Stop the background thread; raises :class:`LimitError` if it has sent an interrupt.
+
+        Any other interrupt stops the deadline as ctrl-C does.
+        """
         received = kind is not None and issubclass(kind, KeyboardInterrupt)
         while True:  # an interrupt may come within this loop, which can be repeated
             try:
@@ -463,6 +483,7 @@ class Watch:
 
     @property
     def _is_due(self) -> bool:
+        """Whether the block is to be interrupted now."""
         due = self._deadline.overdue if self._late else self._deadline.passed
         return due and time.monotonic() >= self._earliest
 
@@ -510,7 +531,10 @@ class Watch:
 
 
 def _poll_until_end(watching: "weakref.ref[Watch]", wake: "SimpleQueue[None]") -> None:
-    """Poll a watch until its end, or until it is garbage collected because an interrupt prevented its end."""
+    """Poll a watch in the background until its end.
+
+    Polling also ends if the watch is garbage collected, because an interrupt prevented its end.
+    """
     pause, interrupts = _PACE.poll_seconds, 0
     while True:
         with contextlib.suppress(Empty):
@@ -533,7 +557,10 @@ def _resident_bytes(statm: Path) -> int:
 
 
 def parse_seconds(number: float | str, quantity: str = "the time limit") -> float:
-    """Return a number of seconds, at least 0; raises :class:`UserError` about the ``quantity`` otherwise."""
+    """Return a number of seconds, at least 0, from a number or a text.
+
+    Raises :class:`UserError` about the ``quantity`` for other values.
+    """
     try:
         value = float(number)
     except (TypeError, ValueError, OverflowError):
@@ -544,7 +571,7 @@ def parse_seconds(number: float | str, quantity: str = "the time limit") -> floa
 
 
 def parse_memory_size(number: int | str, quantity: str = "the memory limit") -> int:
-    """Return a size in bytes: an integer, or a text with K, M, G or T.
+    """Return a size in bytes, from an integer or a text such as ``500M`` or ``2G``.
 
     Raises :class:`UserError` about the ``quantity`` for other values.
     """
@@ -560,7 +587,7 @@ def parse_memory_size(number: int | str, quantity: str = "the memory limit") -> 
 
 
 def size_text(size: int) -> str:
-    """Return a size in words, in the largest unit in which it is a whole number."""
+    """Return a size in bytes as a text in the largest unit in which it is a whole number: ``2G``."""
     for letter in "TGMK":
         if size % _UNITS[letter] == 0:
             return f"{size // _UNITS[letter]}{letter}"

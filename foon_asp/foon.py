@@ -124,7 +124,10 @@ def load(
 
 @contextlib.contextmanager
 def _progress_counter(on_progress: OnProgress | None, total: int) -> Iterator[Callable[[int], None]]:
-    """Yield a function that adds to the progress of a ``with`` block; its end completes the progress."""
+    """Yield a function for a ``with`` block that adds a number to the progress, and reports the sum.
+
+    At the end of the block, the progress is reported as complete.
+    """
     done = 0
 
     def report(added: int) -> None:
@@ -141,7 +144,7 @@ def _progress_counter(on_progress: OnProgress | None, total: int) -> Iterator[Ca
 def _time_limit_context(
     time_limit: float | None, cancel: Cancel | None, doing: str
 ) -> contextlib.AbstractContextManager[object]:
-    """Return a context that stops its ``with`` block at a time limit or by a token; neither is no limit."""
+    """Return a context that stops its ``with`` block at a time limit or by a token; ``None`` is no limit."""
     if time_limit is None and cancel is None:
         return contextlib.nullcontext()
     return stoppable(None if time_limit is None else parse_seconds(time_limit), cancel, doing)
@@ -246,8 +249,9 @@ def _build_network(
 ) -> Network:
     """Build a network of units as callers write them; the place of a unit is its number, from 1.
 
-    A node that is listed several times is taken or made in as many copies, recorded in ``amounts``.
-    ``tell`` is called with the number of units added since the last call.
+    A node that a unit lists several times is taken or made in as many copies, which are added to ``amounts``.
+    ``tell`` is called now and then with the number of units added since the last call. Raises
+    :class:`UserError` for what is no unit.
     """
     builder, number, reported = NetworkBuilder(), 0, 0
     if isinstance(units, str | Mapping) or not isinstance(units, Iterable):
@@ -280,7 +284,10 @@ def _build_network(
 
 
 def _parse_nodes(names: object, number: int) -> Iterator[ObjectNode]:
-    """Yield the inputs or the outputs of a unit as object nodes."""
+    """Yield the inputs or the outputs of a unit as object nodes; ``number`` names the unit in errors.
+
+    Raises :class:`UserError` for a name that is no valid notation.
+    """
     several = [names] if isinstance(names, str | ObjectNode) else names
     if not isinstance(several, Iterable):
         raise UserError(f"found {names!r} in unit {number}, expected object nodes; {_UNIT}")
@@ -478,7 +485,7 @@ class Foon:
 
     @property
     def dataset(self) -> Dataset:
-        """The data set, for lower modules."""
+        """The dataset, for lower modules."""
         return self._dataset
 
     def __repr__(self) -> str:

@@ -10,7 +10,7 @@ _PACKAGE = Path(__file__).resolve().parent
 
 @cache
 def _folder_with_file(name: str, expected_file: str) -> Path:
-    """Return the folder of a name that has a file; raises :class:`BugError` where none has."""
+    """Return the folder ``name`` that has the expected file; raises :class:`BugError` if there is none."""
     for parent in (_PACKAGE, _PACKAGE.parent):
         if (parent / name / expected_file).is_file():
             return parent / name
@@ -23,7 +23,7 @@ def encodings_folder() -> Path:
 
 
 def published_table() -> Path:
-    """Return the file with the published figures of searches."""
+    """Return the JSON file with the published figures of searches."""
     return _folder_with_file("data", "published/table1.json") / "published" / "table1.json"
 
 

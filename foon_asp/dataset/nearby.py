@@ -27,7 +27,7 @@ class UnreadData(Protocol):
         """Return the problem of goals, after reading about ``first`` units near them."""
 
     def unit_distances(self, containers: str, objective: Objective) -> "UnitDistances | None":
-        """Return for each unit a lower bound on the cost of any tree with it; ``None`` if they are unknown."""
+        """Return for each unit a lower bound on the cost of any tree with it; ``None`` if unknown."""
 
     def subject(self, everything: bool, goals: Iterable[int]) -> "Subject":
         """Return the network and kitchen that a certificate is about."""
@@ -70,7 +70,7 @@ class Nearby:
         return self.data.problem_of_units(units, self.goals, self.containers)
 
     def unit_distances(self, objective: Objective) -> "UnitDistances | None":
-        """Return for each unit a lower bound on the cost of any tree with it; ``None`` if they are unknown."""
+        """Return for each unit a lower bound on the cost of any tree with it; ``None`` if unknown."""
         return self.data.unit_distances(self.containers, objective)
 
     def subject(self) -> "Subject":

@@ -38,7 +38,7 @@ def write(pipe: RawIOBase, content: bytes) -> None:
 
 
 def write_if_open(pipe: RawIOBase, content: bytes) -> None:
-    """Write bytes completely; do nothing if the other end is closed, as the reader of answers will notice."""
+    """Write all bytes; do nothing if the other end is closed, which the reader of answers will notice."""
     with contextlib.suppress(OSError, ValueError):
         write(pipe, content)
 
@@ -54,7 +54,10 @@ def receive(pipe: RawIOBase) -> Any:
 
 
 def receive_pickled(pipe: RawIOBase) -> bytes:
-    """Wait for a message, and return it pickled; raises ``EOFError`` where the other end is closed."""
+    """Wait for a message, and return it without unpickling it.
+
+    Raises ``EOFError`` where the other end is closed.
+    """
     (length,) = _LENGTH_HEADER.unpack(_read_exactly(pipe, _LENGTH_HEADER.size))
     return _read_exactly(pipe, length)
 
@@ -62,9 +65,9 @@ def receive_pickled(pipe: RawIOBase) -> bytes:
 def become_worker(read: Callable[[RawIOBase], T]) -> "tuple[queue.SimpleQueue[T], FileIO]":
     """Make this process a worker: return the queue of its requests, and the pipe for its answers.
 
-    A thread reads requests from standard input, each by ``read``, and ends the process once its parent has
-    ended, even during a computation. Answers go to what was standard output; anything else that this process
-    prints goes to standard error. Ctrl-C is ignored, since the parent handles it.
+    A thread reads requests from standard input, each by ``read``, into the queue. It ends the process once
+    its parent has ended, even during a computation. Answers go to what was standard output; anything else
+    that this process prints goes to standard error. Ctrl-C is ignored, since the parent handles it.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     incoming, answers = FileIO(os.dup(0), "rb"), FileIO(os.dup(1), "wb")
@@ -74,7 +77,7 @@ def become_worker(read: Callable[[RawIOBase], T]) -> "tuple[queue.SimpleQueue[T]
     received: queue.SimpleQueue[T] = queue.SimpleQueue()
 
     def listen() -> None:
-        """Put each request into the queue; end the process when standard input ends."""
+        """Put each request into the queue; end the process when standard input ends, or without memory."""
         while True:
             try:
                 received.put(read(incoming))
@@ -88,7 +91,7 @@ def become_worker(read: Callable[[RawIOBase], T]) -> "tuple[queue.SimpleQueue[T]
 
 
 def _read_exactly(pipe: RawIOBase, size: int) -> bytes:
-    """Read a number of bytes; raises ``EOFError`` where the pipe ends before."""
+    """Read ``size`` bytes; raises ``EOFError`` if the pipe ends before."""
     chunks: list[bytes] = []
     while size:
         try:

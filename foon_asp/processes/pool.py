@@ -30,7 +30,10 @@ TaskFunctionMaker = Callable[[], Callable[[Task], Answer]]
 
 
 class LostError(Exception):
-    """The process of a task died, with an exit ``code``, or was killed at its time limit (``None``)."""
+    """The process of a task died with an exit ``code``; ``None`` if it was killed at its time limit.
+
+    ``is_late`` is true in the second case.
+    """
 
     def __init__(self, code: int | None) -> None:
         if code is None:
@@ -46,7 +49,7 @@ class LostError(Exception):
 class FinishedTask(NamedTuple, Generic[Task, Answer]):
     """A finished task with its answer, or with the exception that was raised instead.
 
-    The exception is one of the work, or a :class:`LostError`.
+    The exception is one that the function for tasks raised, or a :class:`LostError`.
     """
 
     task: Task
@@ -131,9 +134,10 @@ def _next_message(workers: "dict[int, _Worker[Any]]", messages: _Messages) -> tu
 
 
 class _Worker(PythonProcess, Generic[Task]):
-    """A process that does tasks, and its current ``task``, which it has to finish by ``end_by``.
+    """A process that does tasks, and its current ``task``, which has to be finished by ``end_by``.
 
-    ``end_by`` is a time of the monotonic clock, or ``None``.
+    ``end_by`` is a time of the monotonic clock; ``None`` is no limit. ``packed_maker`` is the message with
+    the function that makes the task function. ``number`` identifies the process in ``messages``.
     """
 
     def __init__(self, packed_maker: bytes, task: Task, number: int, messages: _Messages) -> None:
@@ -158,7 +162,7 @@ class _Worker(PythonProcess, Generic[Task]):
 
 
 def _queue_messages(pipe: RawIOBase, number: int, messages: _Messages) -> None:
-    """Put each message of a worker into the queue of all messages, until its output ends."""
+    """Put each message of a worker and its number into the queue; at the end of its output, put ``lost``."""
     with contextlib.suppress(EOFError):
         while True:
             messages.put((number, receive(pipe)))
@@ -195,7 +199,7 @@ def _make_task_function(pickled_maker: bytes) -> Callable[[Any], Any]:
 
 
 def _answer_message(work: Callable[[Any], Any], task: bytes) -> bytes:
-    """Do a task; return a message with its answer, or with the exception that it raised."""
+    """Do a pickled task; return a message with its answer, or with the exception that it raised."""
     try:
         return pack_message(("done", work(pickle.loads(task))))
     except Exception as error:
@@ -203,7 +207,7 @@ def _answer_message(work: Callable[[Any], Any], task: bytes) -> bytes:
 
 
 def _picklable_error(error: Exception) -> Exception:
-    """Return an error that can be sent to another process: one that cannot be pickled becomes a bug."""
+    """Return an error, or a :class:`BugError` with its text if the error cannot be pickled."""
     try:
         pickle.loads(pickle.dumps(error))
     except Exception:

@@ -29,9 +29,10 @@ _all: "weakref.WeakSet[PythonProcess]" = weakref.WeakSet()
 class PythonProcess:
     """A child process that runs ``serve`` of a module, which reads standard input and writes standard output.
 
-    It has the module search path of this process, and never outlives it. ``options`` are of Python.
+    It has the module search path of this process, and never outlives it. ``options`` are options of Python,
+    and ``stderr`` is passed to :class:`subprocess.Popen`.
 
-    Raises :class:`UserError` where the path of Python is not known; ``activity`` begins its message.
+    Raises :class:`UserError` if the path of Python is unknown; the message begins with ``activity``.
     """
 
     def __init__(self, module: str, activity: str, *options: str, stderr: int | None = None) -> None:
@@ -82,13 +83,16 @@ class PythonProcess:
         return code
 
     def wait_for_exit(self) -> int:
-        """Return the exit code of a process that has closed its output; one that does not end is killed."""
+        """Wait for a process that has closed its output, and return its exit code.
+
+        It is killed if it does not end within five seconds.
+        """
         with uninterrupted(), contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(5.0)
         return self.end()
 
     def abandon(self) -> None:
-        """Forget the process after a fork: it is no child of this process, only of the original one."""
+        """Close the pipes, but let the process run: after a fork, it is a child of the parent."""
         self._process.returncode = 0
         self._group_ended = True
         self._threads = []  # which a copy does not have
@@ -101,12 +105,13 @@ class PythonProcess:
 
 
 def _end_all() -> None:
+    """Kill all processes, when this one ends."""
     for process in list(_all):
         process.end()
 
 
 def _forget_all() -> None:
-    """Forget all processes after a fork: they are children of the parent."""
+    """Abandon all processes after a fork: they are children of the parent."""
     for process in list(_all):
         process.abandon()
 

@@ -27,7 +27,8 @@ class DiedError(Exception):
 class Worker(PythonProcess):
     """A process in which ``serve`` of a module answers the requests on its standard input.
 
-    ``read`` reads one message from its output; by default a pickled kind and value.
+    ``read`` reads a message from its output; by default, a message is a pickled kind and value.
+    ``has_spoken`` is true once a message has come.
     """
 
     def __init__(
@@ -46,7 +47,7 @@ class Worker(PythonProcess):
 
     @property
     def is_ready(self) -> bool:
-        """Whether the process can answer a request."""
+        """Whether the process runs and has no request to answer."""
         return not self._busy and self.is_alive
 
     def ask(
@@ -102,7 +103,7 @@ class Worker(PythonProcess):
         return super().end()
 
     def abandon(self) -> None:
-        """Forget the process after a fork: it is no child of this process, only of the original one."""
+        """Close the pipes, but let the process run: after a fork, it is a child of the parent."""
         self._busy = True
         super().abandon()
 
@@ -115,7 +116,7 @@ _idle: dict[Hashable, Any] = {}
 
 
 def take_worker(key: Hashable, start: Callable[[], W]) -> W:
-    """Return the idle worker of a key, or start one."""
+    """Return the idle worker of a key, which is then no longer idle; if there is none, start one."""
     worker: W | None = _idle.pop(key, None)
     if worker is not None and worker.is_ready:
         return worker
@@ -125,7 +126,7 @@ def take_worker(key: Hashable, start: Callable[[], W]) -> W:
 
 
 def give_back_worker(key: Hashable, worker: Worker) -> None:
-    """Make a worker the idle one of a key; it is ended if it is not ready, or the key has an idle worker."""
+    """Make a worker the idle one of a key; kill it if it is not ready, or if the key has an idle worker."""
     if not worker.is_ready or _idle.setdefault(key, worker) is not worker:
         worker.end()
 
