@@ -21,8 +21,8 @@ class RefinementTuning(NamedTuple):
     """How many units of a store are read in each round, and when rounds do without a proof.
 
     ``proved_units``: up to this number of units read, each round proves the optimality of its tree, which is
-    quick and reads the fewest units. Above it, trees without a proof choose the units to read next. With twice
-    as many, the hardest questions take twice as long (``benchmarks/store.py``, family ``deep``).
+    quick and reads the fewest units. Above it, trees without a proof choose the units to read next. With
+    twice as many, the hardest questions take twice as long (``benchmarks/store.py``, family ``deep``).
     ``narrow_step``: a round reads one more unit for each ``narrow_step`` units that were read.
     ``wide_step``: the same for long rounds, where it matters less to read few units.
     """

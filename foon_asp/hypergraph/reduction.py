@@ -10,7 +10,7 @@ from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from foon_asp.garbage_collection import uncollected
+from foon_asp.garbage_collection import without_garbage_collection
 from foon_asp.hypergraph import greedy_stages as greedy
 from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.exact_costs import CoarseCosts, ExactCosts, TooFineError
@@ -115,7 +115,7 @@ def reduce(
     ``guard``: returns a context in which time being up interrupts computations, as ctrl-C does.
     ``solved``: solved goals of the same question, which speed up this one; its answer is added to them.
     """
-    with uncollected():
+    with without_garbage_collection():
         with guard():
             presolve = _Presolve(_task(problem, objectives, reductions, expired), listener, guard)
         if solved is None or not is_open_to(presolve.task):
@@ -142,7 +142,7 @@ def reduce_under_rules(
     :data:`ROUNDS` (the default). Other arguments are those of :func:`reduce`.
     """
     presolve_tuning = tuning.PRESOLVE._replace(branching_budget=0, landmark_actions=math.inf)
-    with uncollected():
+    with without_garbage_collection():
         with guard():
             task = _task(problem, objectives, reductions, expired, presolve_tuning)
             presolve = _Presolve(task, listener, guard, redundant)
@@ -181,7 +181,7 @@ def at_costs(
     if below:  # clingo gets the remaining actions with an incumbent
         presolve_tuning = presolve_tuning._replace(relaxed_actions=presolve_tuning.easy_actions)
     reductions = {Reduction.DEAR, Reduction.BOUNDS} if below else ALL
-    with uncollected():
+    with without_garbage_collection():
         task = _task(subproblem.problem, objectives, reductions, expired, presolve_tuning)
         task = replace(task, costs=costs, coarse=costs, below=below, scope=subproblem.remaining)
 

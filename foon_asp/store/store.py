@@ -8,7 +8,7 @@ from itertools import chain, groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
-from foon_asp.garbage_collection import uncollected
+from foon_asp.garbage_collection import without_garbage_collection
 from foon_asp.network import (
     DataAmounts,
     FunctionalUnit,
@@ -447,7 +447,7 @@ class Store:
     # Networks.
 
     @reporting_damage
-    @uncollected()
+    @without_garbage_collection()
     def part(self, units: Iterable[int], objects: Iterable[int] = ()) -> Network:
         """Read units with their nodes, and further nodes, as a part of the whole network."""
         unit_ids = sorted(set(units))
@@ -462,7 +462,7 @@ class Store:
         return replace(network, unit_numbers=tuple(unit_ids), object_numbers=tuple(object_ids))
 
     @reporting_damage
-    @uncollected()
+    @without_garbage_collection()
     def whole(self) -> tuple[Network, frozenset[int]]:
         """Return the whole network and the ids of the kitchen nodes; checks the digest of the file first."""
         self.file.check_digest()
