@@ -35,16 +35,16 @@ class _Pace(NamedTuple):
     """How long work may continue after a limit, and how often limits are checked.
 
     Attributes:
-        tolerance_seconds: From a limit until work is overdue and interrupted; half as long after a cancel.
-            With more, work may end with an answer; with less, it ends sooner.
-        memory_tolerance_seconds: The same after the memory limit.
+        tolerance_seconds: The time from a limit until work is overdue and is interrupted; half of it after a
+            cancel. With more, work may end with an answer; with less, it ends sooner.
+        memory_tolerance_seconds: The same time after the memory limit.
         grace_seconds: The least time for the last piece of work if it begins at a limit.
-        poll_seconds: Between two checks of the memory. A longer time overshoots the limit, a shorter one
-            costs time.
+        poll_seconds: The time between two checks of the memory. A longer time overshoots the limit, a shorter
+            one costs time.
         interrupts: The greatest number of interrupts that are sent, since destructors lose some.
-        interrupt_seconds: Between two interrupts.
-        lost_polls: Polls until an interrupt counts as lost, a second in all.
-        handover_seconds: Between two checks of whether another thread has sent its interrupt.
+        interrupt_seconds: The time between two interrupts.
+        lost_polls: The number of polls until an interrupt counts as lost: a second in all.
+        handover_seconds: The time between two checks of whether another thread has sent its interrupt.
     """
 
     tolerance_seconds: float = 0.5
@@ -364,8 +364,8 @@ def resend_lost_interrupts() -> Iterator[None]:
 
     def hook(lost: "sys.UnraisableHookArgs") -> None:
         """Handle an exception that Python could not raise; pass on those that are no interrupts."""
-        destroyed = getattr(lost.object, "__name__", "") == "__del__"
-        if destroyed and issubclass(lost.exc_type, AttributeError):
+        in_destructor = getattr(lost.object, "__name__", "") == "__del__"
+        if in_destructor and issubclass(lost.exc_type, AttributeError):
             return  # an interrupt in its constructor left the object incomplete
         if not issubclass(lost.exc_type, KeyboardInterrupt):
             previous_hook(lost)
@@ -429,7 +429,7 @@ class Watch:
     def __init__(self, deadline: Deadline, doing: str, late: bool, grace: bool) -> None:
         self._deadline, self._doing, self._late = deadline, doing, late
         self._earliest = time.monotonic() + _PACE.grace_seconds if grace else -math.inf
-        self._begins = grace  # also at a deadline that has passed
+        self._has_grace = grace  # also at a deadline that has passed
         self._thread = threading.get_ident()
         self._finished = self._interrupted = False
         self._wake: SimpleQueue[None] = SimpleQueue()
@@ -438,7 +438,7 @@ class Watch:
         """Start the background thread; raises :class:`LimitError` if the deadline allows no more work."""
         deadline = self._deadline
         deadline.doing = self._doing
-        if self._is_due or (deadline.passed and deadline.is_out_of_memory and not self._begins):
+        if self._is_due or (deadline.passed and deadline.is_out_of_memory and not self._has_grace):
             raise LimitError(deadline)
         if deadline.is_limited:
             try:
@@ -541,11 +541,11 @@ def _poll_until_end(watching: "weakref.ref[Watch]", wake: "SimpleQueue[None]") -
             wake.get(timeout=pause)
             return
         watch = watching()
-        following = None if watch is None else watch.poll(interrupts)
+        next_poll = None if watch is None else watch.poll(interrupts)
         del watch
-        if following is None:
+        if next_poll is None:
             return
-        pause, interrupts = following
+        pause, interrupts = next_poll
 
 
 def _resident_bytes(statm: Path) -> int:

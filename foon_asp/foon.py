@@ -98,8 +98,8 @@ def load(
     if level not in {1, 2, 3}:
         raise UserError(f"found level={level!r}, expected 1, 2 or 3")
     paths = () if source is None else as_paths(source)
-    one = isinstance(source, str | PathLike)
-    folder = paths[0] if one and paths[0].is_dir() else None
+    is_single = isinstance(source, str | PathLike)
+    folder = paths[0] if is_single and paths[0].is_dir() else None
     if source is not None and not paths:
         raise UserError("expected the path of a FOON, found an empty list")
     side_files = [
@@ -107,12 +107,12 @@ def load(
         for file in (kitchen, rates, utensils, goals, unit_prices, unit_amounts)
     ]
     with _time_limit_context(time_limit, cancel, "reading"):
-        definitions = read_measures(measures)
-        named = find_data(folder, () if folder else paths, *side_files)
-        with _progress_counter(on_progress, size_of(named.network)) as tell, reporting_to(tell):
-            dataset = read_dataset(named, lenient, level).with_measures(definitions)
+        user_measures = read_measures(measures)
+        data_files = find_data(folder, () if folder else paths, *side_files)
+        with _progress_counter(on_progress, size_of(data_files.network)) as tell, reporting_to(tell):
+            dataset = read_dataset(data_files, lenient, level).with_measures(user_measures)
             if stand_ins:
-                folder_tables = () if named.stand_ins is None else (named.stand_ins,)
+                folder_tables = () if data_files.stand_ins is None else (data_files.stand_ins,)
                 table = read_stand_ins(folder_tables) if isinstance(stand_ins, bool) else stand_ins
                 dataset = dataset.with_stand_in_table(table)
     name = "the bundled kitchen" if source is None else ", ".join(map(str, paths))
@@ -215,12 +215,12 @@ def build(
         with _progress_counter(on_progress, total) as tell:
             stated = StatedAmounts()
             network = units if isinstance(units, Network) else _build_network(units, stated, tell)
-        making = [unit for unit, outputs in enumerate(network.outputs) if outputs]
-        last = {making[-1]: Source("the units", making[-1] + 1)} if making else {}
-        entries = tuple(entry for entry in last_goals(network, last)) if goals is None else ()
+        making_units = [unit for unit, outputs in enumerate(network.outputs) if outputs]
+        last_maker = {making_units[-1]: Source("the units", making_units[-1] + 1)} if making_units else {}
+        assumed_goals = tuple(entry for entry in last_goals(network, last_maker)) if goals is None else ()
         starting = kitchen is None or kitchen == str(STARTING)
         at_hand = starting_kitchen(network).nodes if starting else frozenset[int]()
-        data = Data(network, at_hand, (), entries, None, frozenset(utensils), (), 0, None, starting)
+        data = Data(network, at_hand, (), assumed_goals, None, frozenset(utensils), (), 0, None, starting)
         data = data._replace(
             goals_from=LAST if goals is None else "", amounts=stated.amounts_by_unit(network)
         )
@@ -232,13 +232,13 @@ def build(
         if goals is not None:
             nodes = [network.objects[o] for o in node_ids(dataset, goals, "goal")]
             wanted = stated_copies(dataset, goals, "goal") if isinstance(goals, Mapping) else {}
-            listed = (
+            goal_entries = (
                 goal_entry(node, Source("the goals", number))._replace(amount=wanted.get(node))
                 for number, node in enumerate(nodes, 1)
             )
-            dataset = dataset.with_goals(tuple(listed))
-        kept = None if starting else kitchen
-        foon = Foon(dataset.vary(Changes(kept, rates=rates, unit_prices=unit_prices)), "a network")
+            dataset = dataset.with_goals(tuple(goal_entries))
+        new_kitchen = None if starting else kitchen
+        foon = Foon(dataset.vary(Changes(new_kitchen, rates=rates, unit_prices=unit_prices)), "a network")
     for remark in foon.warnings:
         warn(remark)
     return foon
@@ -273,8 +273,8 @@ def _build_network(
         source = Source("the units", number)
         sides = [*_parse_nodes(inputs, number)], [*_parse_nodes(outputs, number)]
         builder.add(motion, *sides, source)
-        if counted := counted_amounts(*([(node, 1) for node in side] for side in sides)):
-            amounts.add(FunctionalUnit.of(motion, *sides), counted, source)
+        if unit_amounts := counted_amounts(*([(node, 1) for node in side] for side in sides)):
+            amounts.add(FunctionalUnit.of(motion, *sides), unit_amounts, source)
         if number - reported == 100:
             tell(number - reported)
             reported = number
@@ -288,10 +288,10 @@ def _parse_nodes(names: object, number: int) -> Iterator[ObjectNode]:
 
     Raises :class:`UserError` for a name that is no valid notation.
     """
-    several = [names] if isinstance(names, str | ObjectNode) else names
-    if not isinstance(several, Iterable):
+    node_names = [names] if isinstance(names, str | ObjectNode) else names
+    if not isinstance(node_names, Iterable):
         raise UserError(f"found {names!r} in unit {number}, expected object nodes; {_UNIT}")
-    for name in several:
+    for name in node_names:
         if isinstance(name, ObjectNode):
             yield name
         elif isinstance(name, str):

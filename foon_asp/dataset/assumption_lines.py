@@ -22,10 +22,10 @@ def kitchen_lines(dataset: Dataset, problems: Iterable[Problem], verbose: bool) 
     count = f"{counted(len(used), 'item')} used" + ("" if verbose or not used else "; -v lists them")
     line = f"No kitchen given: assuming what the recipe does not make is available ({count})"
     if made_too:
-        shown = [str(used[number]) for number in sorted(made_too)[:6]]
+        first_items = [str(used[number]) for number in sorted(made_too)[:6]]
         if len(made_too) > 6:
-            shown.append(f"{len(made_too) - 6} more")
-        line += f", and of what a unit makes too: {', '.join(shown)}"
+            first_items.append(f"{len(made_too) - 6} more")
+        line += f", and of what a unit makes too: {', '.join(first_items)}"
     yield line
     if verbose:
         for number in sorted(used):

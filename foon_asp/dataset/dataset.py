@@ -168,7 +168,7 @@ class Dataset:
         return self._data_with(network, self.kitchen.ids)._replace(kitchen_items=items)
 
     def _data_of_network(self, network: Network) -> Data:
-        """Return the data of this dataset for a network, which is a part of the whole one or all of it."""
+        """Return the data of this dataset for the whole network or for a part of it."""
         if network is self.names:
             return self.data
         kitchen = (local_id for local_id, o in enumerate(network.object_numbers) if o in self.kitchen)
@@ -350,15 +350,15 @@ class Dataset:
         self,
         added: Collection[int],
         removed: Collection[int],
-        only: Collection[int] | None,
+        replacement: Collection[int] | None,
     ) -> "Dataset":
         """Return the same data with object nodes, by id, added to the kitchen and removed from it.
 
-        Before that, the nodes ``only`` replace the whole kitchen, unless they are ``None``. Added nodes never
-        run out.
+        Before that, the nodes in ``replacement`` take the place of the whole kitchen; ``None`` keeps it.
+        Added nodes never run out.
         """
-        if only is not None:
-            kitchen = Kitchen(only, added, removed)
+        if replacement is not None:
+            kitchen = Kitchen(replacement, added, removed)
             return self._with_fields(kitchen=kitchen, kitchen_items=(), starting=False, stock={})
         endless = set(map(self.names.node, added)) if self.stock else set()
         stock = {node: amount for node, amount in self.stock.items() if node not in endless}
@@ -394,7 +394,7 @@ class Dataset:
             dataset = dataset.with_measures(read_measures(measures))
         if kitchen is None and not adding and not without:
             return dataset
-        only = None
+        replacement = None
         if isinstance(kitchen, Path | str) and kitchen in {STARTING, str(STARTING)}:
             dataset = dataset.with_starting_kitchen()
         elif isinstance(kitchen, Path):
@@ -405,9 +405,9 @@ class Dataset:
                 if not names.find(pattern_at_level(item.pattern, names.level)):
                     warn(str(kitchen_item_warning(item)))
         elif kitchen is not None:
-            only = frozenset(node_ids(self, kitchen, "kitchen item"))
+            replacement = frozenset(node_ids(self, kitchen, "kitchen item"))
         added = frozenset(node_ids(self, adding, "kitchen item"))
-        with_added = dataset.with_kitchen_changes(added, frozenset(), only)
+        with_added = dataset.with_kitchen_changes(added, frozenset(), replacement)
         if isinstance(kitchen, Mapping):
             with_added = replace(with_added, stock=stated_copies(dataset, kitchen, "kitchen item"))
         removed = frozenset(item_id(with_added, name) for name in names_as_list(without))
@@ -452,7 +452,7 @@ class Dataset:
         """
         from foon_asp.proof.verifier import Subject  # noqa: PLC0415 (few answers need it)
 
-        source, stocked = self.source, self.for_goals(goals)
+        source, with_goal_kitchen = self.source, self.for_goals(goals)
         rates = None if self.unrated else self.rates
         own_prices = self.prices == source.prices
         everything = everything or self.starting or not own_prices or not source.digests
@@ -463,14 +463,14 @@ class Dataset:
             stated.pop("prices", None)
         if everything:
             data = self.data
-            kitchen, prices, trusted = stocked.kitchen.ids, data.unit_prices, ()
+            kitchen, prices, trusted = with_goal_kitchen.kitchen.ids, data.unit_prices, ()
             return Subject(
                 data.network, kitchen, rates, self.utensils, prices, stated, trusted, data.amounts.units
             )
         network = source.network_read_on_access()
         return Subject(
             network,
-            stocked.kitchen,
+            with_goal_kitchen.kitchen,
             rates,
             self.utensils,
             None,

@@ -38,10 +38,12 @@ def items_for(
     ``amounts`` where items last.
     """
     if not amounts:
-        listed = dataset.goal_amounts
-        stated = {dataset.names.node(goal): listed[goal] for goal in goals if goal in listed}
-        items = items or ("used-up" if stated else "lasting")
-        return items_of(dataset, items, stock, stays, {} if items == "lasting" else stated)
+        amounts_by_id = dataset.goal_amounts
+        goal_copies = {
+            dataset.names.node(goal): amounts_by_id[goal] for goal in goals if goal in amounts_by_id
+        }
+        items = items or ("used-up" if goal_copies else "lasting")
+        return items_of(dataset, items, stock, stays, {} if items == "lasting" else goal_copies)
     wanted = _amounts_by_goal(dataset, goals, amounts)
     if items == "lasting":
         raise UserError("an amount of a goal is for items that are used up: leave --items lasting out")

@@ -72,7 +72,7 @@ def solve_nearby(
     tighter = min if multiplies(first_objective) else max
     bounds_found: list[int | Fraction] = []  # on the first objective
     units_of_rules = set[int]()  # units, by number, on which the rules depend
-    smallest: list[int] | None = None  # with the rules, by number; ``None`` before the search
+    smallest_tree: list[int] | None = None  # with the rules, by number; ``None`` before the search
     unconstrained: Outcome | None = None
     if leave_unsettled(settings):  # the optimum without rules is needed anyway, and read quickly
         unconstrained = solve_nearby(nearby, objectives, without_rules, _WarningsAndBounds(reporter))
@@ -87,10 +87,10 @@ def solve_nearby(
             nearby.relaxation, objectives, with_rules, _WarningsAndBounds(reporter), units_of_rules
         )
         if outcome.status is Status.INFEASIBLE:
-            rules_alone = unconstrained is not None or (
+            excluded_by_rules = unconstrained is not None or (
                 bool(settings.constraints) and _has_tree(nearby, deadline)
             )
-            return outcome._replace(problem=nearby.problem) if rules_alone else None
+            return outcome._replace(problem=nearby.problem) if excluded_by_rules else None
         bounds_found += [bound for objective, bound in outcome.bounds.items() if objective == first_objective]
         lacking = [] if outcome.units is None else nearby.open_nodes_used(outcome.units)
         if lacking and outcome.status is Status.OPTIMAL:
@@ -101,8 +101,8 @@ def solve_nearby(
                 deadline.interrupt()
                 outcome = outcome._replace(proof=None, stopped=deadline.stopped)
             else:
-                if unconstrained is not None and smallest is None:
-                    smallest = (
+                if unconstrained is not None and smallest_tree is None:
+                    smallest_tree = (
                         []
                         if first_objective is Objective.UNITS
                         else _read_smallest_tree(nearby, with_rules, units_of_rules)
@@ -116,16 +116,18 @@ def solve_nearby(
             tree = solve(problem, objectives, with_rules, _WarningsAndBounds(Reporter()))
             status = Status.UNKNOWN if tree.units is None else Status.FEASIBLE
             outcome = outcome._replace(status=status, units=tree.units, costs=tree.costs)
-        if outcome.status is Status.UNKNOWN and smallest:
+        if outcome.status is Status.UNKNOWN and smallest_tree:
             units = [
-                unit for number in smallest if (unit := problem.network.unit_of_number(number)) is not None
+                unit
+                for number in smallest_tree
+                if (unit := problem.network.unit_of_number(number)) is not None
             ]
             outcome = outcome._replace(
                 status=Status.FEASIBLE, units=executable_order(problem, units), costs=problem.costs(units)
             )
         if outcome.units is not None:
-            holds = Postconditions(problem, levels(tuple(objectives)), settings)
-            outcome = outcome._replace(units=holds.tree(outcome.units))
+            postconditions = Postconditions(problem, levels(tuple(objectives)), settings)
+            outcome = outcome._replace(units=postconditions.tree(outcome.units))
             assert outcome.costs is not None
             reporter.tree(outcome.costs)
         return outcome

@@ -225,7 +225,7 @@ def _outcome_without_tree(nearby: Nearby, unconstrained: Outcome) -> Outcome:
     bounds = {
         objective: bound for objective, bound in unconstrained.bounds.items() if objective == first_objective
     }
-    blank = unconstrained._replace(
+    without_tree = unconstrained._replace(
         status=Status.UNKNOWN, units=None, costs=None, proof=None, cuts=(), cases=None
     )
-    return blank._replace(problem=nearby.problem, bounds=bounds)
+    return without_tree._replace(problem=nearby.problem, bounds=bounds)

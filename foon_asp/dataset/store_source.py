@@ -36,7 +36,7 @@ class StoreSource(Source):
 
     def __init__(self, store: Store, unit_amounts: Sequence[Row[UnitAmount, int]] = ()) -> None:
         """Take an open store, and the rows of a table of amounts that replace imported amounts."""
-        self._table = unit_amounts
+        self._amount_table = unit_amounts
         self.names, self.seconds = store, 0.0
         self.unit_count, self.left_out, self.repeated = store.units, store.left_out, store.repeated
         self.kitchen = StoredIds(store, "kitchen")
@@ -46,18 +46,20 @@ class StoreSource(Source):
     @cached_property
     def _amounts_and_warnings(self) -> tuple[DataAmounts, list[Diagnostic]]:
         """The amounts of units, and warnings about rows of the table of amounts that match no unit."""
-        units = self.names.with_motions({row.name[0] for row in self._table}) if self._table else ()
-        return apply_amount_table(self.names.amounts, self._table, units)
+        units = (
+            self.names.with_motions({row.name[0] for row in self._amount_table}) if self._amount_table else ()
+        )
+        return apply_amount_table(self.names.amounts, self._amount_table, units)
 
     @property
     def amounts(self) -> DataAmounts:
         """The numbers of copies that units take and make of object nodes."""
-        return self._amounts_and_warnings[0] if self._table else self.names.amounts
+        return self._amounts_and_warnings[0] if self._amount_table else self.names.amounts
 
     @property
     def unmatched_amounts(self) -> list[Diagnostic]:
         """Warnings about rows of the table of amounts that match no unit."""
-        return self._amounts_and_warnings[1] if self._table else []
+        return self._amounts_and_warnings[1] if self._amount_table else []
 
     @property
     def starting_kitchen(self) -> StoredStartingKitchen:
@@ -142,9 +144,9 @@ class StoreSource(Source):
         from foon_asp.proof.verifier import Subject  # noqa: PLC0415 (few answers need it)
 
         store, (network, kitchen) = self.names, self._network_and_kitchen
-        single = self.unit_prices(network, self.prices.from_file)
-        has_prices = self.prices.motions is not None or single is not None
-        prices = UnitPrices(self.prices.motions or {}, single or {}) if has_prices else None
+        single_prices = self.unit_prices(network, self.prices.from_file)
+        has_prices = self.prices.motions is not None or single_prices is not None
+        prices = UnitPrices(self.prices.motions or {}, single_prices or {}) if has_prices else None
         computed = Subject(network, kitchen, None, frozenset(), prices).digests()
         for name, stated in store.digests.items():
             if stated != computed[name]:

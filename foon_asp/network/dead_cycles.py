@@ -34,29 +34,32 @@ def dead_cycles(network: Network, available: Collection[int] = ()) -> list[DeadC
         tuple(node for node in outputs if node not in needed)
         for needed, outputs in zip(inputs, network.outputs, strict=True)
     ]
-    waiting = {node for nodes in made for node in nodes}.difference(available)
-    component = _components(network, made, waiting)
+    made_nodes = {node for nodes in made for node in nodes}.difference(available)
+    component = _components(network, made, made_nodes)
     if not component:
         return []
     dead = _dead_nodes(network, made, component)
     component = {node: number for node, number in component.items() if node in dead}
-    roots = _components(network, made, dead)
+    subcomponent = _components(network, made, dead)
     members: dict[int, set[int]] = {}
-    for node, root in roots.items():
-        members.setdefault(root, set()).add(node)
-    producers: dict[int, list[int]] = {root: [] for root in members}
+    for node, subnumber in subcomponent.items():
+        members.setdefault(subnumber, set()).add(node)
+    producers: dict[int, list[int]] = {subnumber: [] for subnumber in members}
     for unit, outputs in enumerate(made):
-        needed: dict[int, set[int | None]] = {}  # by component: the roots of its input nodes
+        needed: dict[int, set[int | None]] = {}  # by component: the subcomponents of its input nodes
         for node in network.inputs[unit]:
             if node in component:
-                needed.setdefault(component[node], set()).add(roots.get(node))
-        for root, number in {roots[node]: component[node] for node in outputs if node in roots}.items():
-            if needed.get(number) != {root}:  # the unit needs another set too
-                members.pop(root, None)
+                needed.setdefault(component[node], set()).add(subcomponent.get(node))
+        for subnumber, number in {
+            subcomponent[node]: component[node] for node in outputs if node in subcomponent
+        }.items():
+            if needed.get(number) != {subnumber}:  # the unit needs another set too
+                members.pop(subnumber, None)
             else:
-                producers[root].append(unit)
+                producers[subnumber].append(unit)
     return [
-        _shortest_cycle(network, made, frozenset(nodes), producers[root]) for root, nodes in members.items()
+        _shortest_cycle(network, made, frozenset(nodes), producers[subnumber])
+        for subnumber, nodes in members.items()
     ]
 
 

@@ -16,17 +16,17 @@ def layers(network: Network, start: Iterable[int]) -> tuple[list[int], list[int]
     """
     node_layer = [UNREACHED] * len(network.objects)
     unit_layer = [UNREACHED] * len(network)
-    waiting = [len(inputs) for inputs in network.inputs]
+    missing_inputs = [len(inputs) for inputs in network.inputs]
     frontier = list(dict.fromkeys(start))
     for node in frontier:
         node_layer[node] = 0
-    ready = [unit for unit, inputs in enumerate(waiting) if not inputs]
+    ready = [unit for unit, inputs in enumerate(missing_inputs) if not inputs]
     layer = 0
     while frontier or ready:
         for node in frontier:
             for unit in network.consumers[node]:
-                waiting[unit] -= 1
-                if not waiting[unit]:
+                missing_inputs[unit] -= 1
+                if not missing_inputs[unit]:
                     ready.append(unit)
         layer += 1
         frontier = []

@@ -32,8 +32,11 @@ def slip_between(node: ObjectNode, other: ObjectNode | NodePattern) -> Slip | No
     If ``other`` is an entry of a kitchen or goals file without relations, only the objects of relations are
     compared, as containers.
     """
-    loose = isinstance(other, NodePattern) and not other.relations
-    remaining, other_remaining = list(_named_parts(node, loose)), list(_named_parts(other, loose))
+    as_containers = isinstance(other, NodePattern) and not other.relations
+    remaining, other_remaining = (
+        list(_named_parts(node, as_containers)),
+        list(_named_parts(other, as_containers)),
+    )
     for part in list(remaining):
         if part in other_remaining:
             remaining.remove(part)
@@ -58,24 +61,24 @@ def nearest_nodes(node: ObjectNode, others: Iterable[ObjectNode], max_nodes: int
 
     Nodes with the fewest different parts are the most similar. The node itself is left out.
     """
-    parts = set(_named_parts(node, loose=False))
+    parts = set(_named_parts(node, as_containers=False))
     ranked = sorted(
-        (len(parts.symmetric_difference(_named_parts(other, loose=False))), str(other), other)
+        (len(parts.symmetric_difference(_named_parts(other, as_containers=False))), str(other), other)
         for other in others
         if other.label == node.label and other != node
     )
     return [other for _, _, other in ranked[:max_nodes]]
 
 
-def _named_parts(node: ObjectNode | NodePattern, loose: bool) -> Iterator[_NodePart]:
+def _named_parts(node: ObjectNode | NodePattern, as_containers: bool) -> Iterator[_NodePart]:
     """Yield the names in a node, each after its kind: ``("state", "chopped")``.
 
-    If ``loose``, the object of a relation is yielded as a container, without the word of the relation.
+    If ``as_containers``, relations are yielded as the containers that they name, without their words.
     """
     yield "label", node.label
     yield from (("state", state) for state in sorted(node.states))
     yield from (("ingredient", ingredient) for ingredient in node.ingredients)
-    if loose:
+    if as_containers:
         if isinstance(node, NodePattern):
             if node.container is not None:
                 yield "container", node.container

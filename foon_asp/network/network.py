@@ -217,7 +217,7 @@ class Network:
     def with_copies(self, units: Sequence[int]) -> "Network":
         """Return this network with some units a second time, after all others.
 
-        Only the ids distinguish a copy from its unit; :meth:`unit_id` returns the id of the first one.
+        Only the ids distinguish a copy from its unit; :meth:`unit_id` returns the id of the unit.
 
         Parameters:
             units: The ids of the units to copy, in the order of the copies.
@@ -360,14 +360,14 @@ class NetworkBuilder:
         """
         ids = self._object_ids
         # dict.fromkeys: a node that one unit lists twice is one input, in the place of its first mention
-        ins = tuple(dict.fromkeys([ids.setdefault(node, len(ids)) for node in inputs]))
-        outs = tuple(dict.fromkeys([ids.setdefault(node, len(ids)) for node in outputs]))
-        key = (motion, frozenset(ins), frozenset(outs))
+        input_ids = tuple(dict.fromkeys([ids.setdefault(node, len(ids)) for node in inputs]))
+        output_ids = tuple(dict.fromkeys([ids.setdefault(node, len(ids)) for node in outputs]))
+        key = (motion, frozenset(input_ids), frozenset(output_ids))
         unit_id = self._unit_ids.setdefault(key, len(self._motions))
         if unit_id == len(self._motions):
             self._motions.append(motion)
-            self._inputs.append(ins)
-            self._outputs.append(outs)
+            self._inputs.append(input_ids)
+            self._outputs.append(output_ids)
             self._sources.append([*sources])
         else:
             self._sources[unit_id] += sources
