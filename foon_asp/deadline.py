@@ -163,11 +163,11 @@ class Deadline:
 
     Parameters:
         seconds: The time limit; ``None`` is no limit.
-        memory: The memory limit in bytes, for this process and those that work for it; ``None`` is no limit.
+        memory: The memory limit in bytes, for this process and its workers; ``None`` is no limit.
         began: The start of the time, on the monotonic clock; ``None`` is now.
         within: An outer deadline. The smaller limits of both apply, and ctrl-C ends both.
 
-    Raises :class:`UserError` for a memory limit where the system does not report the memory in use.
+    Raises :class:`UserError` for a memory limit if the system does not report the memory in use.
     """
 
     def __init__(
@@ -483,7 +483,10 @@ class Watch:
 
     @property
     def _is_due(self) -> bool:
-        """Whether the block is to be interrupted now."""
+        """Whether to interrupt the block: the deadline has passed, or is overdue with ``late``.
+
+        With ``grace``, the block is not interrupted in its first quarter of a second.
+        """
         due = self._deadline.overdue if self._late else self._deadline.passed
         return due and time.monotonic() >= self._earliest
 

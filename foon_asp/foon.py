@@ -65,8 +65,9 @@ def load(
     Parameters:
         source: A folder with all files; or a network (FOON text or JSON), several networks to merge, or a
             store. Without it, the bundled kitchen is loaded.
-        kitchen: The file with the available object nodes, instead of that of the folder; or ``"@starting"``
-            for what makes the units of each file run, which is also assumed where there is no kitchen.
+        kitchen: The file with the available object nodes, instead of that of the folder. ``"@starting"``
+            means the starting kitchen: whatever the units of each file need in order to run. It is also
+            assumed if there is no kitchen.
         rates: The file with the success rates of motions, instead of that of the folder.
         utensils: The file with the labels of utensils, instead of that of the folder.
         goals: The file with goals, instead of that of the folder.
@@ -74,13 +75,14 @@ def load(
         unit_amounts: The file with the numbers of copies that units take and make, instead of that of
             the folder.
         measures: Objectives of your own: files with rules for what units cost, or the rules themselves.
-        stand_ins: Whether available nodes may be used in place of those that cannot be made, by the usual
-            table of prices, with the changes of ``stand_ins.txt`` in the folder, or by another table.
+        stand_ins: Whether available nodes may be used in place of those that cannot be made. ``True`` means
+            by the usual table of prices, with the changes of ``stand_ins.txt`` in the folder. A table means
+            by this one.
         level: How object nodes are compared: by label (1), by label, states and relations (2), or by
             everything (3).
         lenient: Whether lines that are not understood are skipped, with a warning, instead of being errors.
         time_limit: Stop reading after this many seconds.
-        on_progress: Is called with a :class:`Progress` now and then: bytes ``done`` of ``total``.
+        on_progress: Is called now and then with a :class:`Progress`, in bytes.
         cancel: A token that ends reading from another thread.
 
     Returns:
@@ -171,22 +173,23 @@ def build(
     """Make data from units written in Python, with a kitchen, goals, rates and further parts.
 
     Parameters:
-        units: Units, each as motion, inputs and outputs, where object nodes are in one-line notation:
-            ``("pour", ["water; hot", "cup; empty"], ["cup; contains {water}"])``; or as a dictionary with the
-            keys ``motion``, ``inputs`` and ``outputs``; or a :class:`FunctionalUnit`. A node that is listed
-            twice is taken or made twice where items are used up. Or a network, made by a
-            :class:`NetworkBuilder`.
-        kitchen: The available object nodes, by label, in one-line notation, or as :class:`ObjectNode`; or
-            how many there are by name, ``None`` for what never runs out. Without it, or as ``"@starting"``,
-            it is what makes all units run; ``()`` is nothing.
-        goals: What is to be made, in the same way, with amounts by name where several are wanted. Without
-            it, what the last unit makes and no unit needs.
+        units: Units, or a network made by a :class:`NetworkBuilder`. A unit is a motion, inputs and outputs,
+            with object nodes in one-line notation:
+            ``("pour", ["water; hot", "cup; empty"], ["cup; contains {water}"])``. It may also be a dictionary
+            with the keys ``motion``, ``inputs`` and ``outputs``, or a :class:`FunctionalUnit`. A node that a
+            unit lists twice is taken or made twice if items are used up.
+        kitchen: The available object nodes, by label, in one-line notation, or as :class:`ObjectNode`. A
+            dictionary has numbers of copies by such names, with ``None`` for what never runs out. Without
+            it, or as ``"@starting"``, whatever all units need in order to run is available. ``()`` means
+            that nothing is available.
+        goals: The object nodes to make, named like those of the kitchen. A dictionary has the numbers of
+            copies wanted. Without it, the goals are what the last unit makes and no unit needs.
         rates: The success rates of motions, above 0 and at most 1.
         utensils: The labels of the utensils that the container rule ``implied`` is about.
         unit_prices: Prices, from 0, by the name of a motion or of single units.
         measures: Objectives of your own: files with rules for what units cost, or the rules themselves.
         time_limit: Stop after this many seconds.
-        on_progress: Is called with a :class:`Progress` now and then: units ``done``, of ``total`` where their
+        on_progress: Is called with a :class:`Progress` now and then: units ``done``, of ``total`` if their
             number is known.
         cancel: A token that ends it from another thread.
 
@@ -371,19 +374,19 @@ class Foon:
         stays: Stays | None = None,
         amounts: int | Sequence[int] = (),
     ) -> Problem:
-        """Make a problem, with goals that one tree has to make.
+        """Make a problem: goals that one tree has to make together.
 
         Parameters:
             goals: Object nodes, by name or as :class:`ObjectNode`; without any, the goal of the goals file.
             containers: The container rule, ``strict`` or ``implied``.
-            items: Whether items are ``lasting``, or ``used-up`` by the rule of docs/plans.md, which is the
-                default where amounts of goals are wanted.
+            items: ``lasting``, or ``used-up`` by the rule of docs/plans.md. The default is ``used-up`` if
+                amounts of goals are wanted, and ``lasting`` otherwise.
             stock: How many copies the kitchen has of some object nodes, by name, or the path of a stock
-                file. It precedes the amounts of the kitchen; all other items of the kitchen never run out.
+                file. It takes precedence over the amounts of the kitchen; all other items never run out.
                 Only for items that are used up.
-            stays: What stays (``True``) or is used up (``False``) whatever the rule says, by label or object
-                node, or the path of such a file. Only for items that are used up.
-            amounts: How many copies of the goal are wanted, or of each of several goals, in their order.
+            stays: Exceptions from the rule, by label or object node: ``True`` if an item stays, ``False`` if
+                it is used up. Or the path of a file with such exceptions. Only for items that are used up.
+            amounts: How many copies of the goal are wanted; for several goals, a number for each, in order.
                 Without it, the amounts of the goals file count.
 
         Raises:
@@ -408,8 +411,8 @@ class Foon:
         """Return the same data with another kitchen, other success rates, other prices or other measures.
 
         Parameters:
-            kitchen: The items available: names; amounts by name, where ``None`` is for what never runs out;
-                or a kitchen file as a :class:`~pathlib.Path`.
+            kitchen: The available items: names, or a kitchen file as a :class:`~pathlib.Path`. A dictionary
+                has numbers of copies by name, with ``None`` for what never runs out.
             adding: Names of object nodes to add to the kitchen.
             without: Names of object nodes to remove from the kitchen.
             rates: New success rates of some motions, above 0 and at most 1.
@@ -431,7 +434,7 @@ class Foon:
 
     @property
     def level(self) -> int:
-        """The level at which object nodes are compared: 3 all of a node, 2 without contents, 1 the label."""
+        """The level at which nodes are compared: by label (1), states and relations too (2), or all (3)."""
         return self._dataset.names.level
 
     @property
@@ -459,13 +462,13 @@ class Foon:
 
     @property
     def rates(self) -> dict[str, Fraction] | None:
-        """The exact success rates by motion; ``None`` if unknown."""
+        """The exact success rates by motion; ``None`` if there are none."""
         rates = self._dataset.rates
         return None if rates is None else dict(rates)
 
     @property
     def unit_prices(self) -> UnitPrices | None:
-        """The prices of units, by motion and of single ones; of a store, all of it is read."""
+        """The prices of units, ``None`` if there are none; of a store, all of it is read."""
         return self._dataset.data.unit_prices
 
     @property
@@ -478,7 +481,7 @@ class Foon:
         """Return the object nodes that have a label.
 
         Parameters:
-            label: The label. For a store, only the first dozen nodes or a few more are given.
+            label: The label. Of a store, only about the first dozen nodes are returned.
         """
         names = self._dataset.names
         return tuple(map(names.node, names.labelled(label)[1]))

@@ -175,7 +175,7 @@ class Dataset:
         return self._data_with(network, frozenset(kitchen))
 
     def _data_with(self, network: Network, kitchen: frozenset[int]) -> Data:
-        """Return the data of this dataset with another network, and a kitchen by its ids."""
+        """Return the data of this dataset with another network, and with a kitchen of ids in this network."""
         return Data(
             network,
             kitchen,
@@ -305,7 +305,7 @@ class Dataset:
         }
 
     def with_goals(self, goals: Sequence[ListedObject]) -> "Dataset":
-        """Return the same data with other entries of a goals file."""
+        """Return the same data with these entries as its goals file; no goals are assumed then."""
         return self._with_fields(listed=tuple(goals), goals_from="", has_kitchen=self.has_kitchen)
 
     def with_starting_kitchen(self) -> "Dataset":
@@ -558,10 +558,10 @@ class Dataset:
         everything: bool = False,
         items: UsedUp | None = None,
     ) -> Problem:
-        """Return the problem of goals, by id and in this order, under the container rule with a name.
+        """Return the problem of goals, by id, under the container rule with the name ``containers``.
 
         Its network has the units that the goals can need; with ``everything``, all units. ``items`` says how
-        items are used up; ``None`` if items last.
+        items are used up; ``None`` if items last. The goals keep their order.
         """
         dataset = self.for_goals(goals)
         if self.stand_ins is not None:

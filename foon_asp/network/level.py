@@ -35,7 +35,10 @@ def unit_at_level(unit: FunctionalUnit, level: int) -> FunctionalUnit:
 
 
 def pattern_at_level(pattern: NodePattern, level: int) -> NodePattern:
-    """Return an entry of a kitchen or goals file with only the parts that count at a level."""
+    """Return an entry of a kitchen or goals file with only the parts that count at a level.
+
+    At level 2 it has no contents, at level 1 its label alone. At level 3, return it unchanged.
+    """
     if level == 3:
         return pattern
     return NodePattern(pattern.label) if level == 1 else pattern._replace(ingredients=(), contents=())

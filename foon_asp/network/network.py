@@ -195,7 +195,8 @@ class Network:
     def without(self, units: Iterable[int]) -> "Network":
         """Return this network without some units.
 
-        Nodes keep their ids. The other units have new ids; ``unit_numbers`` has their old ones.
+        Nodes keep their ids. The other units have new ids; ``unit_numbers`` has their ids in the whole
+        network.
 
         Parameters:
             units: The ids of the units to leave out.

@@ -91,7 +91,7 @@ class StartingKitchen(ABC, Generic[File]):
 
     @abstractmethod
     def granting_files(self, o: int) -> Iterable[File]:
-        """Return the files that grant a node: see :class:`RecipeKitchen`."""
+        """Return the files whose starting kitchen grants a node; see :class:`RecipeKitchen`."""
 
     @abstractmethod
     def files_of(self, units: Iterable[int]) -> Iterable[File]:
@@ -168,7 +168,7 @@ class NetworkStartingKitchen(StartingKitchen[str]):
         return [unit for unit in self._network.producers[o] if o not in inputs[unit]]
 
     def granting_files(self, o: int) -> Sequence[str]:
-        """Return the files that grant a node: see :class:`RecipeKitchen`."""
+        """Return the files whose starting kitchen grants a node; see :class:`RecipeKitchen`."""
         return self._granting.get(o, ())
 
     def files_of(self, units: Iterable[int]) -> Iterator[str]:

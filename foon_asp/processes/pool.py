@@ -30,9 +30,9 @@ TaskFunctionMaker = Callable[[], Callable[[Task], Answer]]
 
 
 class LostError(Exception):
-    """The process of a task died with an exit ``code``; ``None`` if it was killed at its time limit.
+    """The process of a task died, or was killed at the time limit of the task.
 
-    ``is_late`` is true in the second case.
+    ``code`` is its exit code; ``None`` after the time limit, when ``is_late`` is true.
     """
 
     def __init__(self, code: int | None) -> None:
