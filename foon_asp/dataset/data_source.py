@@ -12,11 +12,11 @@ from foon_asp.network import (
     DataAmounts,
     FunctionalUnit,
     Network,
+    Source,
     StartingKitchen,
     UnitPrices,
     starting_kitchen,
 )
-from foon_asp.network import Source as Place
 from foon_asp.problem import ContainerRule, Objective, Unpriced, count_unpriced, first_places
 from foon_asp.text.object_list import ListedObject
 from foon_asp.text.repeated_node import RepeatedNode
@@ -26,7 +26,7 @@ if TYPE_CHECKING:  # text does without SQLite
     from foon_asp.store.unit_distances import UnitDistances
 
 
-class Source:
+class DataSource:
     """The source of a dataset: a network in memory; for a store, the subclass :class:`StoreSource`.
 
     Ids are those of the whole network.
@@ -74,7 +74,7 @@ class Source:
         """The motions of the network, each once."""
         return self._network.different_motions
 
-    def motion_places(self) -> Iterable[tuple[str, Place]]:
+    def motion_places(self) -> Iterable[tuple[str, Source]]:
         """Return pairs of a motion and a place where a unit with this motion was read.
 
         The first place of each motion is among them.

@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from foon_asp.dataset.data_source import Source
+from foon_asp.dataset.data_source import DataSource
 from foon_asp.dataset.kitchen import Kitchen
 from foon_asp.dataset.prices import NO_PRICES, DataPrices
 from foon_asp.dataset.python_names import (
@@ -104,7 +104,7 @@ class Dataset:
     ``stock``: the amounts that the kitchen states; other items never run out.
     """
 
-    source: Source
+    source: DataSource
     kitchen: Kitchen
     listed: Sequence[ListedObject] = ()
     rates: Mapping[str, Fraction] | None = None
@@ -124,7 +124,7 @@ class Dataset:
     def of(cls, data: Data, seconds: float = 0.0) -> Self:
         """Return the dataset of data that are in memory; ``seconds`` is how long reading them took."""
         return cls(
-            Source(data.network, seconds, data.left_out, data.repeated, data.amounts),
+            DataSource(data.network, seconds, data.left_out, data.repeated, data.amounts),
             Kitchen(data.kitchen),
             data.goals,
             data.rates,

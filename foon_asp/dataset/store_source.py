@@ -7,11 +7,10 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from foon_asp.dataset.data_source import Source
+from foon_asp.dataset.data_source import DataSource
 from foon_asp.dataset.prices import DataPrices
 from foon_asp.errors import UserError
-from foon_asp.network import DataAmounts, FunctionalUnit, Network, UnitPrices
-from foon_asp.network import Source as Place
+from foon_asp.network import DataAmounts, FunctionalUnit, Network, Source, UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Unpriced
 from foon_asp.store.cone import Cone
 from foon_asp.store.store import Store
@@ -27,7 +26,7 @@ if TYPE_CHECKING:  # few answers need numpy
     from foon_asp.store.unit_distances import UnitDistances
 
 
-class StoreSource(Source):
+class StoreSource(DataSource):
     """A store as the source of a dataset; variants of the dataset share what was read from it."""
 
     names: Store
@@ -109,7 +108,7 @@ class StoreSource(Source):
         available: Container[int],
         max_units: int | None,
     ) -> Cone:
-        """Read the cone of goals, or about ``max_units`` units of it; see :meth:`Source.cone`."""
+        """Read the cone of goals, or about ``max_units`` units of it; see :meth:`DataSource.cone`."""
         with self._add_reading_time():
             return self.names.cone(goals, containers, utensils, available, max_units)
 
@@ -156,7 +155,7 @@ class StoreSource(Source):
                 )
         return {name: computed[name] for name in store.digests}
 
-    def motion_places(self) -> Iterable[tuple[str, Place]]:
+    def motion_places(self) -> Iterable[tuple[str, Source]]:
         """Read the motions of the network, each with the first place of the first unit that has it."""
         return self.names.motion_sources()
 
