@@ -74,10 +74,10 @@ class DataSource:
         """The motions of the network, each once."""
         return self._network.different_motions
 
-    def motion_places(self) -> Iterable[tuple[str, Source]]:
-        """Return pairs of a motion and a place where a unit with this motion was read.
+    def motion_sources(self) -> Iterable[tuple[str, Source]]:
+        """Return pairs of a motion and the source of a unit with this motion.
 
-        The first place of each motion is among them.
+        The first source of each motion is among them.
         """
         return first_places(self._network)
 

@@ -158,7 +158,7 @@ class Dataset:
         """
         if self.rates is None or self.rates.keys() >= set(self.source.motions):
             return ""
-        return unrated_text(self.source.motion_places(), self.rates)
+        return unrated_text(self.source.motion_sources(), self.rates)
 
     @cached_property
     def data(self) -> Data:

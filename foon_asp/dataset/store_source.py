@@ -155,8 +155,8 @@ class StoreSource(DataSource):
                 )
         return {name: computed[name] for name in store.digests}
 
-    def motion_places(self) -> Iterable[tuple[str, Source]]:
-        """Read the motions of the network, each with the first place of the first unit that has it."""
+    def motion_sources(self) -> Iterable[tuple[str, Source]]:
+        """Read the motions of the network, each with the first source of the first unit that has it."""
         return self.names.motion_sources()
 
     def unit_prices(self, network: Network, from_file: bool) -> Mapping[FunctionalUnit, Fraction] | None:
