@@ -1,4 +1,4 @@
-"""Loaded data: a FOON, a kitchen, and the files beside them."""
+"""Loaded data: a FOON, a kitchen, and the files that belong to them."""
 
 import contextlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Sized

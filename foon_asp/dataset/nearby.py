@@ -1,4 +1,4 @@
-"""A question to a large store: the units near its goals are read first, and others only as needed."""
+"""A problem of a large store: the units near its goals are read first, and others only as needed."""
 
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import fields, replace
@@ -106,12 +106,12 @@ class Nearby:
         order that executes in the relaxation. A tree that needs no open node is also a tree of the problem.
         """
         problem = self.problem
-        available, lacking = set(problem.kitchen), set[int]()
+        available, used_nodes = set(problem.kitchen), set[int]()
         for unit in units:
-            lacking.update(o for o in problem.needs[unit] if o not in available)
+            used_nodes.update(o for o in problem.needs[unit] if o not in available)
             available.update(problem.gives[unit])
-        lacking.update(goal for goal in problem.goals if goal not in available)
-        return sorted(map(problem.network.object_number, lacking))
+        used_nodes.update(goal for goal in problem.goals if goal not in available)
+        return sorted(map(problem.network.object_number, used_nodes))
 
     def grow(self, objects: Iterable[int], step: int) -> None:
         """Read more units that lead to ``objects``, open nodes by id in the whole network.

@@ -1,4 +1,4 @@
-"""Optimal trees for a question to a large store, reading only the units that a proof needs."""
+"""Optimal trees for a problem of a large store, reading only the units that a proof needs."""
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
@@ -44,20 +44,22 @@ def near_goals(problem: Problem, objectives: Sequence[Objective], settings: Sett
     nearby_of: Callable[[], Nearby | None] | None = getattr(problem, "nearby", None)
     if nearby_of is None or settings.reductions != ALL or settings.clingo_options:
         return None
-    only_units_add = all(objective in Objective and not objective.row.item for objective in objectives)
-    return nearby_of() if only_units_add and hold_for_parts(settings) else None
+    are_sums_over_units = all(objective in Objective and not objective.row.item for objective in objectives)
+    return nearby_of() if are_sums_over_units and hold_for_parts(settings) else None
 
 
 def solve_nearby(
     nearby: "Nearby", objectives: Sequence[Objective], settings: Settings, reporter: Reporter | None = None
 ) -> Outcome | None:
-    """Solve a question to a large store by relaxation and refinement, reading only the units that are needed.
+    """Solve a problem of a large store by relaxation and refinement, reading only units that are needed.
 
     Each round solves the relaxation, in which open nodes are available. If its optimal tree uses none of
     them, this tree is optimal in the whole network, too. Otherwise more units that lead to these nodes are
-    read. This repeats until a tree is optimal or all units are read. User rules have to be antimonotone: if a
-    tree keeps them, so does every part of the tree. For some rules, the units of the optimal tree without
-    rules are read first, then those of the smallest tree that keeps the rules.
+    read. This repeats until a tree is optimal or all units are read.
+
+    User rules have to be antimonotone: if a tree keeps them, so does every part of the tree. For some rules,
+    the units of the optimal tree without rules are read first, then those of the smallest tree that keeps the
+    rules.
 
     At a limit, return the best tree among the units read, with the bound of the relaxation. Return ``None``
     if no tree exists even without rules: the caller then reads all units, to explain why.
@@ -92,11 +94,11 @@ def solve_nearby(
             )
             return outcome._replace(problem=nearby.problem) if excluded_by_rules else None
         bounds_found += [bound for objective, bound in outcome.bounds.items() if objective == first_objective]
-        lacking = [] if outcome.units is None else nearby.open_nodes_used(outcome.units)
-        if lacking and outcome.status is Status.OPTIMAL:
+        open_nodes = [] if outcome.units is None else nearby.open_nodes_used(outcome.units)
+        if open_nodes and outcome.status is Status.OPTIMAL:
             try:
                 with deadline.watched("reading"):  # stops early, so that time for a tree remains
-                    _read_more(nearby, lacking, objectives, settings)
+                    _read_more(nearby, open_nodes, objectives, settings)
             except KeyboardInterrupt:
                 deadline.interrupt()
                 outcome = outcome._replace(proof=None, stopped=deadline.stopped)
@@ -112,7 +114,7 @@ def solve_nearby(
             {**outcome.bounds, first_objective: tighter(bounds_found)} if bounds_found else outcome.bounds
         )
         outcome = outcome._replace(problem=problem, bounds=bounds)
-        if lacking:  # at a limit: the bound holds, and the units read may have a tree
+        if open_nodes:  # at a limit: the bound holds, and the units read may have a tree
             tree = solve(problem, objectives, with_rules, _WarningsAndBounds(Reporter()))
             status = Status.UNKNOWN if tree.units is None else Status.FEASIBLE
             outcome = outcome._replace(status=status, units=tree.units, costs=tree.costs)
@@ -144,12 +146,12 @@ def _has_tree(nearby: "Nearby", deadline: Deadline) -> bool:
         tree = follow(relaxed.goals, reached.makers, relaxed.needs, relaxed.kitchen)
         if tree is None:
             return False
-        lacking = nearby.open_nodes_used(unit for unit in reached.units if unit in tree)
-        if not lacking:
+        open_nodes = nearby.open_nodes_used(unit for unit in reached.units if unit in tree)
+        if not open_nodes:
             return True
         try:
             with deadline.watched("reading"):
-                nearby.grow(lacking, REFINEMENT.wide_step)
+                nearby.grow(open_nodes, REFINEMENT.wide_step)
         except KeyboardInterrupt:
             deadline.interrupt()
             return True
@@ -166,37 +168,38 @@ def _read_smallest_tree(nearby: "Nearby", settings: Settings, units_of_rules: se
         outcome = solve(nearby.relaxation, (Objective.UNITS,), settings, mattered=units_of_rules)
         if outcome.status is not Status.OPTIMAL or outcome.units is None:
             return []
-        lacking = nearby.open_nodes_used(outcome.units)
-        if not lacking:
+        open_nodes = nearby.open_nodes_used(outcome.units)
+        if not open_nodes:
             return [*map(nearby.problem.network.unit_number, outcome.units)]
         try:
             with settings.begun.watched("reading"):
-                nearby.grow(lacking, REFINEMENT.wide_step)
+                nearby.grow(open_nodes, REFINEMENT.wide_step)
         except KeyboardInterrupt:
             settings.begun.interrupt()
             return []
 
 
 def _read_more(
-    nearby: "Nearby", lacking: Sequence[int], objectives: Sequence[Objective], settings: Settings
+    nearby: "Nearby", open_nodes: Sequence[int], objectives: Sequence[Objective], settings: Settings
 ) -> None:
-    """Read more units that lead to the nodes that an optimal tree of the relaxation lacks.
+    """Read more units that lead to ``open_nodes``, which an optimal tree of the relaxation uses.
 
     If many units were read before and there are no rules, repeat this for trees found by ``h_add``, until one
-    lacks no node. Such trees mostly lead to the units of an optimal tree, in a tenth of the time of a proof.
+    uses no open node. Such trees mostly lead to the units of an optimal tree, in a tenth of the time of a
+    proof.
     """
     many_read = nearby.unit_count > REFINEMENT.proved_units
     long_rounds = many_read or leave_unsettled(settings)
-    nearby.grow(lacking, REFINEMENT.wide_step if long_rounds else REFINEMENT.narrow_step)
+    nearby.grow(open_nodes, REFINEMENT.wide_step if long_rounds else REFINEMENT.narrow_step)
     if not many_read or settings.constraints:
         return
     while (tree := h_add_tree(nearby.relaxation, levels(tuple(objectives)))) is not None:
         order = executable_order(nearby.relaxation, tree)
         assert order is not None
-        lacking = nearby.open_nodes_used(order)
-        if not lacking:
+        open_nodes = nearby.open_nodes_used(order)
+        if not open_nodes:
             return
-        nearby.grow(lacking, REFINEMENT.narrow_step)
+        nearby.grow(open_nodes, REFINEMENT.narrow_step)
 
 
 def least_with_more(

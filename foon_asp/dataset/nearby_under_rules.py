@@ -1,12 +1,14 @@
 """Optimal trees under rules that may require units of a large store that lead to no goal.
 
-Call the units read for the goals near, and all others far. Let c be the optimum of the relaxation of
+Units read for the goals are called near, and all others far. Let c be the optimum of the relaxation of
 :class:`~foon_asp.dataset.nearby.Nearby` without rules. A tree with a far unit v has units for the goals,
 which cost at least c, and units that lead to v. These cost at least the distance of v from the near units;
 the outline of the store has the distances of all units. So a tree that costs less than q has only far units
-whose distance is less than q - c. Once all such units that rules may require were read, with all units that
-lead to them, the units read of any such tree are a tree of the relaxation that keeps the rules. So no tree is
-better than both the optimum of that relaxation and q.
+whose distance is less than q - c.
+
+All such units that rules may require are read, with all units that lead to them. In any tree that costs less
+than q, the units that were read are then a tree of the relaxation that keeps the rules. So no tree is better
+than both the optimum of that relaxation and q.
 """
 
 from collections.abc import Sequence
@@ -44,7 +46,7 @@ NEARBY = NearbyTuning()
 def solve_nearby_under(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, reporter: Reporter
 ) -> Outcome | None:
-    """Solve a question to a large store under rules, reading units near the goals and units for the rules.
+    """Solve a problem of a large store under rules, reading units near the goals and units for the rules.
 
     Return an outcome with a proved optimum, or with a tree that may not be optimal; its ``stopped`` is set
     only at a limit. Return ``None`` if no tree was found or the method does not apply: the caller then reads

@@ -1,4 +1,4 @@
-"""Names as the one-line notation of object nodes has them: in quotes where they would be read otherwise.
+"""Names in the one-line notation of object nodes: in quotes if they would be misread without.
 
 A name in quotes is a string of JSON. ``docs/formats.md`` describes the notation.
 """

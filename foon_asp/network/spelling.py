@@ -1,4 +1,4 @@
-"""Two spellings of one name."""
+"""Comparison of spellings: names that differ only in blanks, doubled letters or one letter."""
 
 import re
 from collections import defaultdict

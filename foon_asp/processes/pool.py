@@ -78,37 +78,41 @@ def run_in_processes(
     If a process dies or exceeds the time, the result of its task is a :class:`LostError`, and another process
     is started. All processes are ended when the iterator is closed.
     """
-    packed_maker, remaining, messages = pack_message(make_task_function), iter(tasks), _Messages()
+    packed_maker, remaining_tasks, messages = pack_message(make_task_function), iter(tasks), _Messages()
     workers: dict[int, _Worker[Task]] = {}
-    started = 0
+    start_count = 0
     try:
-        for task in islice(remaining, jobs):
-            workers[started] = _Worker(packed_maker, task, started, messages)
-            started += 1
+        for task in islice(remaining_tasks, jobs):
+            workers[start_count] = _Worker(packed_maker, task, start_count, messages)
+            start_count += 1
         while workers:
             number, (kind, value) = _next_message(workers, messages)
             worker = workers.get(number)
             if worker is None:  # it was killed before its message was read
                 continue
-            current = worker.task
+            current_task = worker.task
             if kind == "ready":
-                worker.start_timer(seconds(current))
+                worker.start_timer(seconds(current_task))
                 continue
             if kind == "lost":
-                code = worker.end() if worker.is_late else worker.wait_for_exit()
-                value = LostError(None if worker.is_late else code)
-            for task in islice(remaining, 1):
+                exit_code = worker.end() if worker.is_late else worker.wait_for_exit()
+                value = LostError(None if worker.is_late else exit_code)
+            for task in islice(remaining_tasks, 1):
                 if kind == "lost":
                     del workers[number]
-                    workers[started] = _Worker(packed_maker, task, started, messages)
-                    started += 1
+                    workers[start_count] = _Worker(packed_maker, task, start_count, messages)
+                    start_count += 1
                 else:
                     worker.ask(task, seconds(task))
                 break
             else:
                 del workers[number]
                 worker.end()
-            yield FinishedTask(current, None, value) if kind != "done" else FinishedTask(current, value, None)
+            yield (
+                FinishedTask(current_task, None, value)
+                if kind != "done"
+                else FinishedTask(current_task, value, None)
+            )
     finally:
         for worker in workers.values():
             worker.end()
@@ -124,13 +128,15 @@ def _next_message(workers: "dict[int, _Worker[Any]]", messages: _Messages) -> tu
     For a worker that died or exceeded the time of its task, the message is ``lost``.
     """
     while True:
-        ends = {worker.end_by: number for number, worker in workers.items() if worker.end_by is not None}
-        end = min(ends, default=None)
+        worker_by_end = {
+            worker.end_by: number for number, worker in workers.items() if worker.end_by is not None
+        }
+        first_end = min(worker_by_end, default=None)
         with contextlib.suppress(Empty):
-            return messages.get(timeout=None if end is None else max(0.0, end - time.monotonic()))
-        if end is not None and time.monotonic() >= end:
-            workers[ends[end]].is_late = True
-            return ends[end], ("lost", None)
+            return messages.get(timeout=None if first_end is None else max(0.0, first_end - time.monotonic()))
+        if first_end is not None and time.monotonic() >= first_end:
+            workers[worker_by_end[first_end]].is_late = True
+            return worker_by_end[first_end], ("lost", None)
 
 
 class _Worker(PythonProcess, Generic[Task]):
