@@ -47,9 +47,9 @@ def checker(
 ) -> Callable[[tuple[object, ...], Mapping[str, object]], None]:
     """Return a function that checks arguments, positional and named, against the annotations of ``function``.
 
-    It raises :class:`UserError` for a value that its annotation does not allow, and ``TypeError`` for
-    arguments that the ``signature`` (by default that of the function) does not have. Items of iterators are
-    not checked, since they can be read only once. Annotations that are strings allow all values.
+    It raises :class:`UserError` for a value that its annotation does not allow. It raises ``TypeError`` for
+    arguments that do not fit the ``signature``, by default that of the function. Items of iterators are not
+    checked, since they can be read only once. Annotations that are strings allow all values.
     """
     allowed = signature or inspect.signature(function)
     annotations = {name: parameter.annotation for name, parameter in allowed.parameters.items()}

@@ -443,12 +443,11 @@ class Dataset:
     def subject(self, everything: bool = True, goals: Iterable[int] = ()) -> "Subject":
         """Return what a certificate is about: network, kitchen and prices, with the digests of the store.
 
-        A starting kitchen is the one for ``goals``, by id.
+        A starting kitchen is the one for ``goals``, by id. A store is read on access, and its digests are
+        trusted, unless all data have to be read. This is so if ``everything`` is true, for a starting
+        kitchen, for prices that are not those of the store, and for a store without digests.
 
-        All data are read if ``everything`` is true, the kitchen is a starting kitchen, the prices are not
-        those of the store, or the store states no digests. Raises :class:`UserError` if the data do not have
-        a digest that the store states. In all other cases, a store is read on access, and its digests are
-        trusted.
+        Raises :class:`UserError` if all data are read and do not have a digest that the store states.
         """
         from foon_asp.proof.verifier import Subject  # noqa: PLC0415 (few answers need it)
 
