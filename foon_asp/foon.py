@@ -314,7 +314,7 @@ class Foon:
     """A FOON, a kitchen, and the files that belong to them; a value that never changes.
 
     :func:`load` makes one. An object node is named in one-line notation or as an :class:`ObjectNode`. Its
-    label is enough if no other node has it, or if one entry of the goals file has it.
+    label is enough if no other node has it, or for a goal, if only one entry of the goals file has it.
 
     A store stays open while questions may read from it. ``with load(...) as foon:`` closes it at the end, as
     :meth:`close` does; otherwise it is closed when nothing refers to the data any more.
