@@ -223,16 +223,16 @@ class Dataset:
         """Return those of the ``objects``, by id, that a unit makes and does not need."""
         return [o for o in objects if self.source.starting_kitchen.makers(o)]
 
-    def for_goals(self, goals: Iterable[int]) -> "Dataset":
+    def with_kitchen_for(self, goals: Iterable[int]) -> "Dataset":
         """Return the dataset with the kitchen that it has for some goals, by id.
 
         A starting kitchen loses goals that units make, and may gain other nodes; see
-        :meth:`StartingKitchen.changes`. Any other kitchen stays.
+        :meth:`StartingKitchen.changes_for_goals`. Any other kitchen stays.
         """
         if not self.starting:
             return self
         starting = self.source.starting_kitchen
-        added, lacking = starting.changes(goals)
+        added, lacking = starting.changes_for_goals(goals)
         # nodes that the user removed stay removed
         added = frozenset(o for o in added if o in self.kitchen or o not in starting.nodes)
         if not added and not lacking:
@@ -451,7 +451,7 @@ class Dataset:
         """
         from foon_asp.proof.verifier import Subject  # noqa: PLC0415 (few answers need it)
 
-        source, with_goal_kitchen = self.source, self.for_goals(goals)
+        source, with_goal_kitchen = self.source, self.with_kitchen_for(goals)
         rates = None if self.unrated else self.rates
         own_prices = self.prices == source.prices
         everything = everything or self.starting or not own_prices or not source.digests
@@ -492,7 +492,7 @@ class Dataset:
         if steps and self.stand_ins is not None:
             from foon_asp.standins.repair import Repair  # noqa: PLC0415 (few questions have stand-ins)
 
-            posed = pose_problem(self.for_goals(goals).data, goals, containers, self)
+            posed = pose_problem(self.with_kitchen_for(goals).data, goals, containers, self)
             problem = Repair.over(posed, tuple(steps), self.stand_ins).shown
         else:
             problem = self.problem(goals, containers, everything)
@@ -534,7 +534,7 @@ class Dataset:
         The kitchen of the dataset is the one for ``goals``. All ids, also those of ``goals``, are ids of the
         whole network. If the problem is about a part of the network, only nodes of this part are compared.
         """
-        kitchen, network = self.for_goals(goals).kitchen, problem.network
+        kitchen, network = self.with_kitchen_for(goals).kitchen, problem.network
         if not network.object_numbers:
             own_items, problem_items = kitchen.ids, problem.kitchen
             return (
@@ -562,7 +562,7 @@ class Dataset:
         Its network has the units that the goals can need; with ``everything``, all units. ``items`` says how
         items are used up; ``None`` if items last. The goals keep their order.
         """
-        dataset = self.for_goals(goals)
+        dataset = self.with_kitchen_for(goals)
         if self.stand_ins is not None:
             from foon_asp.standins import with_stand_ins  # noqa: PLC0415 (few questions have stand-ins)
 
@@ -589,7 +589,7 @@ class Dataset:
         """
         cone = None
         if items is None and self.has_kitchen and self.stand_ins is None:
-            kitchen = self.for_goals(goals).kitchen
+            kitchen = self.with_kitchen_for(goals).kitchen
             cone = self.source.cone(goals, container_rule(containers), self.utensils, kitchen, first)
         if cone is None:
             return self.problem(goals, containers, items=items)
@@ -601,7 +601,10 @@ class Dataset:
         """Return the problem of goals over a part of the network that has these units; both are by id."""
         network = self.source.network_part(units, goals)
         return pose_problem(
-            self.for_goals(goals)._data_of_network(network), _local_ids(network, goals), containers, self
+            self.with_kitchen_for(goals)._data_of_network(network),
+            _local_ids(network, goals),
+            containers,
+            self,
         )
 
     def unit_distances(self, containers: str, objective: Objective) -> "UnitDistances | None":
@@ -634,7 +637,7 @@ class Dataset:
         nodes = {node for unit in tree for node in (*unit.inputs, *unit.outputs)}
         objects = [o for node in nodes if (o := names.object_id(node)) is not None]
         network = self.source.network_part([*units, *tree_ids], [*goals, *objects])
-        return self.for_goals(goals)._data_of_network(network), _local_ids(network, goals)
+        return self.with_kitchen_for(goals)._data_of_network(network), _local_ids(network, goals)
 
 
 def _local_ids(network: Network, goals: Sequence[int]) -> tuple[int, ...]:

@@ -101,7 +101,7 @@ class StartingKitchen(ABC, Generic[File]):
     def units_of(self, file: File) -> Iterable[tuple[Sequence[int], Sequence[int]]]:
         """Return the inputs and the outputs of each unit of a file, in its order."""
 
-    def changes(self, goals: Iterable[int]) -> tuple[frozenset[int], frozenset[int]]:
+    def changes_for_goals(self, goals: Iterable[int]) -> tuple[frozenset[int], frozenset[int]]:
         """Return the nodes that these goals add to the kitchen, and those that they remove from it.
 
         A goal that a unit can make from other nodes is removed; other nodes may be granted in its place.
@@ -206,5 +206,5 @@ def starting_kitchen(network: Network) -> NetworkStartingKitchen:
 def starting_nodes(network: Network, goals: Collection[int] = ()) -> frozenset[int]:
     """Return the ids of the nodes that are assumed to be available for these goals."""
     kitchen = starting_kitchen(network)
-    added, lacking = kitchen.changes(goals)
+    added, lacking = kitchen.changes_for_goals(goals)
     return kitchen.nodes.union(added).difference(lacking)

@@ -858,7 +858,7 @@ def everything(store: Path) -> list[object]:
         opened.near("sop", 3),
         opened.beginning("s", 9),
     ]
-    answers += [opened.labelled("soup"), StoredStartingKitchen(opened).changes([goal])]
+    answers += [opened.labelled("soup"), StoredStartingKitchen(opened).changes_for_goals([goal])]
     answers += [opened.left_out, opened.has_kitchen, opened.digests, opened.motion_prices]
     answers += [opened.unit_prices(network, from_file=True), opened.unpriced((), (), from_file=True)]
     return answers
