@@ -73,9 +73,9 @@ class StoppedError(Exception):
 
 
 class Cancel:
-    """A token that cancels the questions called with it, within a second, from any thread.
+    """A token by which any thread can cancel the questions called with it; they end within a second.
 
-    A question with an incumbent returns it, as at a time limit; any other raises :class:`StoppedError`.
+    A question with an incumbent returns it, as at a time limit. Any other raises :class:`StoppedError`.
 
     Example:
         >>> token = foon_asp.Cancel()
@@ -255,7 +255,7 @@ class Deadline:
     def overdue(self) -> bool:
         """Whether to stop even without an answer: half a second after a time limit or ctrl-C.
 
-        After a cancel or the memory limit, it is less.
+        The time is shorter after a cancel or the memory limit.
         """
         if not self.passed:
             return False
@@ -363,7 +363,10 @@ def resend_lost_interrupts() -> Iterator[None]:
         signal.pthread_kill(main, signal.SIGINT)
 
     def hook(lost: "sys.UnraisableHookArgs") -> None:
-        """Handle an exception that Python could not raise; pass on those that are no interrupts."""
+        """Send a lost interrupt again, and pass on other exceptions that Python does not raise.
+
+        An ``AttributeError`` in a destructor is ignored.
+        """
         in_destructor = getattr(lost.object, "__name__", "") == "__del__"
         if in_destructor and issubclass(lost.exc_type, AttributeError):
             return  # an interrupt in its constructor left the object incomplete
@@ -491,7 +494,7 @@ class Watch:
         return due and time.monotonic() >= self._earliest
 
     def poll(self, interrupts: int) -> tuple[float, int] | None:
-        """Poll the deadline, and interrupt the thread if it has passed.
+        """Poll the deadline, and interrupt the thread if it has passed; ``interrupts`` were sent before.
 
         Interrupts are repeated, since some are lost. Returns the seconds until the next poll and the number
         of interrupts sent so far, or ``None`` after the last poll.
