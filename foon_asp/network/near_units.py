@@ -197,7 +197,7 @@ def _mostly_agree(left: FunctionalUnit, right: FunctionalUnit) -> bool:
 
 
 def _features(unit: FunctionalUnit) -> Iterator[object]:
-    """Yield the features of a unit: its motion, and the parts of its nodes with side and label of the node."""
+    """Yield the features of a unit: motion, and each part of each node with side and label of the node."""
     yield unit.motion
     for side, nodes in enumerate((unit.inputs, unit.outputs)):
         for node in nodes:

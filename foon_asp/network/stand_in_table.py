@@ -14,7 +14,7 @@ STAND_IN = "stand in"
 
 
 class Edit(StrEnum):
-    """A way in which the node that is used differs from the node in whose place it is used."""
+    """A way in which the node that is used differs from the node that it is used for."""
 
     WORD = "word"
     """The same container or ingredients with another word: ``on [plate]`` for ``in [plate]``."""
