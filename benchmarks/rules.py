@@ -38,7 +38,7 @@ from statistics import median
 from typing import NamedTuple
 
 from foon_asp.asp import Outcome, Settings, Status, solve
-from foon_asp.dataset.reading_store import read_stored
+from foon_asp.dataset.reading_store import read_store
 from foon_asp.deadline import Deadline
 from foon_asp.hypergraph import NONE
 from foon_asp.network import Network, NetworkBuilder, Source
@@ -120,8 +120,8 @@ class Stores:
 
 def opened(store: Path, problem: Problem) -> Problem:
     """Ask a store for the same goals."""
-    dataset = read_stored(DataFiles((store,)), 3)
-    return dataset.nearby(dataset.goals(problem.goal_nodes), problem.containers.value)
+    dataset = read_store(DataFiles((store,)), 3)
+    return dataset.nearby(dataset.command_goal_ids(problem.goal_nodes), problem.containers.value)
 
 
 class Measured(NamedTuple):

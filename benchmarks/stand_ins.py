@@ -143,7 +143,7 @@ def recipes(corpus: Path, table: StandInTable) -> Iterator[tuple[Path, Problem, 
         networks, kitchen = [file, universal / "FOON.txt"], universal / "kitchen.json"
         foon = foon_asp.load(networks, kitchen=kitchen, lenient=True, stand_ins=table)
         plain = foon_asp.load(networks, kitchen=kitchen, lenient=True)
-        goal = foon.network.objects[foon.dataset.each_goal(())[0]]
+        goal = foon.network.objects[foon.dataset.goal_ids(())[0]]
         began = time.perf_counter()
         posed = foon.problem(goal)
         posed.__dict__["seconds"] = time.perf_counter() - began

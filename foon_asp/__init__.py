@@ -47,7 +47,7 @@ _names: dict[str, str] = {}  # the modules of all public names, filled at the fi
 
 
 def modules_of_names() -> dict[str, str]:
-    """Return the module of each public name."""
+    """Return the module of each public name, relative to this package: ``questions.answer`` of ``Answer``."""
     if not _names:
         from foon_asp.questions.index import INDEX, module_name  # noqa: PLC0415 (importing it delays ctrl-C)
 
@@ -59,6 +59,7 @@ def modules_of_names() -> dict[str, str]:
 
 
 def __getattr__(name: str) -> object:
+    """Import the module of a public name, and return what has this name."""
     if name == "__all__":
         return [*modules_of_names()]
     if name not in modules_of_names():

@@ -31,7 +31,7 @@ _TYPE_WORDS = {
 
 
 def typed(function: Callable[P, T]) -> Callable[P, T]:
-    """Return a function that raises for arguments which its annotations do not allow; see :func:`checker`."""
+    """Return a function that first checks its arguments against its annotations, as :func:`checker` does."""
     check = checker(function)
 
     @functools.wraps(function)
@@ -47,14 +47,15 @@ def checker(
 ) -> Callable[[tuple[object, ...], Mapping[str, object]], None]:
     """Return a function that checks arguments, positional and named, against the annotations of ``function``.
 
-    It raises :class:`UserError` for a value that its annotation does not allow, and ``TypeError`` for
-    arguments that the ``signature`` (by default that of the function) does not have. Items of iterators are
-    not checked, since they can be read only once. Annotations that are strings allow all values.
+    It raises :class:`UserError` for a value that its annotation does not allow. It raises ``TypeError`` for
+    arguments that do not fit the ``signature``, by default that of the function. Items of iterators are not
+    checked, since they can be read only once. Annotations that are strings allow all values.
     """
     allowed = signature or inspect.signature(function)
     annotations = {name: parameter.annotation for name, parameter in allowed.parameters.items()}
 
     def check(arguments: tuple[object, ...], named: Mapping[str, object]) -> None:
+        """Raise an error if an argument is not allowed."""
         try:
             bound = allowed.bind(*arguments, **named)
         except TypeError as error:
@@ -62,25 +63,28 @@ def checker(
         for name, argument in bound.arguments.items():
             is_variadic = allowed.parameters[name].kind is inspect.Parameter.VAR_POSITIONAL
             for value in argument if is_variadic else (argument,):
-                if not _fits(annotations[name], value):
-                    words = _words(annotations[name])
+                if not _is_allowed(annotations[name], value):
+                    words = _allowed_values(annotations[name])
                     expected = " or ".join(dict.fromkeys(words)) or "something else"
                     raise UserError(f"found {name}={value!r}, expected {expected}")
 
     return check
 
 
-def _fits(kind: Any, value: object) -> bool:
-    """Return whether an annotation allows a value, as far as that can be checked at runtime."""
+def _is_allowed(kind: Any, value: object) -> bool:
+    """Whether an annotation allows a value, as far as that can be checked at runtime.
+
+    Annotations that are no types, such as strings, allow all values.
+    """
     origin, arguments = typing.get_origin(kind), typing.get_args(kind)
     if origin in {typing.Union, types.UnionType, typing.Annotated}:
         alternatives = arguments[:1] if origin is typing.Annotated else arguments
-        return any(_fits(alternative, value) for alternative in alternatives)
-    if _is_iterable(origin):
+        return any(_is_allowed(alternative, value) for alternative in alternatives)
+    if _is_of_several_values(origin):
         if isinstance(value, str | bytes) or not isinstance(value, Iterable):
             return False
         is_checkable = isinstance(value, list | tuple | set | frozenset) and len(arguments) == 1
-        return not is_checkable or all(_fits(arguments[0], item) for item in value)
+        return not is_checkable or all(_is_allowed(arguments[0], item) for item in value)
     expected = origin or (types.NoneType if kind is None else kind)
     if not isinstance(expected, type) or expected is inspect.Parameter.empty:
         return True
@@ -89,21 +93,21 @@ def _fits(kind: Any, value: object) -> bool:
     return isinstance(value, expected)
 
 
-def _is_iterable(origin: Any) -> bool:
-    """Return whether an annotation is of several values; a mapping counts as one."""
+def _is_of_several_values(origin: Any) -> bool:
+    """Whether an annotation is of several values, by its origin; a mapping counts as one value."""
     return isinstance(origin, type) and issubclass(origin, Iterable) and not issubclass(origin, Mapping)
 
 
-def _words(kind: Any) -> Iterator[str]:
-    """Return the values that an annotation allows, in words."""
+def _allowed_values(kind: Any) -> Iterator[str]:
+    """Yield the values that an annotation allows, in words: ``a whole number``, ``text``."""
     origin, arguments = typing.get_origin(kind), typing.get_args(kind)
     if origin is typing.Annotated:
-        yield from _words(arguments[0])
+        yield from _allowed_values(arguments[0])
     elif origin in {typing.Union, types.UnionType}:
         for alternative in arguments:
-            yield from _words(alternative)
-    elif _is_iterable(origin):
-        yield f"several such as [{', '.join(dict.fromkeys(_words(arguments[0])))}]"
+            yield from _allowed_values(alternative)
+    elif _is_of_several_values(origin):
+        yield f"several such as [{', '.join(dict.fromkeys(_allowed_values(arguments[0])))}]"
     elif kind is not types.NoneType:
         name = (origin or kind).__name__ if isinstance(origin or kind, type) else ""
         yield _TYPE_WORDS.get(name, name) if name else "something else"

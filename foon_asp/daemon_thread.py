@@ -19,7 +19,7 @@ class DaemonThread:
         self._wake: SimpleQueue[None] = SimpleQueue()
         _thread.start_new_thread(self._call, (function, arguments))
 
-    def ended(self, seconds: float) -> bool:
+    def wait_for_end(self, seconds: float) -> bool:
         """Wait at most ``seconds`` for the end of the thread; return whether it has ended."""
         if not self._finished:
             with contextlib.suppress(Empty):

@@ -35,16 +35,16 @@ class _Pace(NamedTuple):
     """How long work may continue after a limit, and how often limits are checked.
 
     Attributes:
-        tolerance_seconds: From a limit until work is overdue and interrupted; half as long after a cancel.
-            With more, work may end with an answer; with less, it ends sooner.
-        memory_tolerance_seconds: The same after the memory limit.
+        tolerance_seconds: The time from a limit until work is overdue and is interrupted; half of it after a
+            cancel. With more, work may end with an answer; with less, it ends sooner.
+        memory_tolerance_seconds: The same time after the memory limit.
         grace_seconds: The least time for the last piece of work if it begins at a limit.
-        poll_seconds: Between two checks of the memory. A longer time overshoots the limit, a shorter one
-            costs time.
+        poll_seconds: The time between two checks of the memory. A longer time overshoots the limit, a shorter
+            one costs time.
         interrupts: The greatest number of interrupts that are sent, since destructors lose some.
-        interrupt_seconds: Between two interrupts.
-        lost_polls: Polls until an interrupt counts as lost, a second in all.
-        handover_seconds: Between two checks of whether another thread has sent its interrupt.
+        interrupt_seconds: The time between two interrupts.
+        lost_polls: The number of polls until an interrupt counts as lost: a second in all.
+        handover_seconds: The time between two checks of whether another thread has sent its interrupt.
     """
 
     tolerance_seconds: float = 0.5
@@ -73,9 +73,9 @@ class StoppedError(Exception):
 
 
 class Cancel:
-    """A token that cancels the questions called with it, within a second, from any thread.
+    """A token by which any thread can cancel the questions called with it; they end within a second.
 
-    A question with an incumbent returns it, as at a time limit; any other raises :class:`StoppedError`.
+    A question with an incumbent returns it, as at a time limit. Any other raises :class:`StoppedError`.
 
     Example:
         >>> token = foon_asp.Cancel()
@@ -116,7 +116,8 @@ def stoppable(seconds: float | None, token: Cancel | None, doing: str) -> Iterat
     """Limit the time of a ``with`` block, and cancel it by a token; deadlines made in the block obey both.
 
     At a limit, code that checks its deadline has time to end with its incumbent. After this time, the block
-    is interrupted, and :class:`StoppedError` is raised. ``doing`` describes the work, as in "while reading".
+    is interrupted, and :class:`StoppedError` is raised. It is raised at once if the token was cancelled
+    before. ``doing`` describes the work for messages, as in "while reading".
     """
     if token is not None and token.cancelled:
         raise StoppedError("cancelled")
@@ -129,14 +130,14 @@ def stoppable(seconds: float | None, token: Cancel | None, doing: str) -> Iterat
                 yield deadline
         except KeyboardInterrupt as stop:
             if isinstance(stop, LimitError) or (deadline.passed and not deadline.interrupted):
-                raise StoppedError(_reason(stop, deadline)) from None
+                raise StoppedError(_stop_reason(stop, deadline)) from None
             raise
     finally:
         _CANCEL.reset(reset_token)
 
 
-def _reason(stop: KeyboardInterrupt, deadline: "Deadline") -> str:
-    """Return why work was stopped, in words: it was cancelled, or a limit was reached."""
+def _stop_reason(stop: KeyboardInterrupt, deadline: "Deadline") -> str:
+    """Return the words ``cancelled``, or ``stopped at`` and the limit."""
     token = _CANCEL.get()
     if token is not None and token.cancelled:
         return "cancelled"
@@ -162,11 +163,11 @@ class Deadline:
 
     Parameters:
         seconds: The time limit; ``None`` is no limit.
-        memory: The memory limit in bytes, for this process and those that work for it; ``None`` is no limit.
+        memory: The memory limit in bytes, for this process and its workers; ``None`` is no limit.
         began: The start of the time, on the monotonic clock; ``None`` is now.
         within: An outer deadline. The smaller limits of both apply, and ctrl-C ends both.
 
-    Raises :class:`UserError` for a memory limit where the system does not report the memory in use.
+    Raises :class:`UserError` for a memory limit if the system does not report the memory in use.
     """
 
     def __init__(
@@ -212,7 +213,10 @@ class Deadline:
 
     @property
     def passed(self) -> bool:
-        """Whether a limit is reached, or the question was interrupted or cancelled."""
+        """Whether a limit is reached, or the question was interrupted or cancelled.
+
+        The first reason is kept for :attr:`stopped`. The memory is read only now and then.
+        """
         if self._stopped_by is not None:
             return True
         if self._within is not None and self._within.interrupted:
@@ -229,7 +233,7 @@ class Deadline:
         elif self.memory is not None and now >= self._memory_polled + _PACE.poll_seconds:
             self._memory_polled = now
             if self.memory_in_use() > self.memory:
-                self.out_of_memory()
+                self.stop_out_of_memory()
         return self._stopped_by is not None
 
     @property
@@ -238,18 +242,21 @@ class Deadline:
         return self._stopped_by == _INTERRUPTED
 
     @property
-    def left(self) -> float | None:
-        """The remaining seconds; ``None`` without a time limit."""
+    def remaining_seconds(self) -> float | None:
+        """The seconds until the time limit, at least 0; ``None`` without a time limit."""
         return None if self._end is None else max(0.0, self._end - time.monotonic())
 
     @property
-    def limited(self) -> bool:
-        """Whether the question can be stopped: it has a time limit, a memory limit or a token."""
+    def is_limited(self) -> bool:
+        """Whether the question may be stopped: it has a time limit, a memory limit or a token."""
         return self.seconds is not None or self.memory is not None or self._token is not None
 
     @property
     def overdue(self) -> bool:
-        """Whether to stop even without an answer, which is half a second after a limit."""
+        """Whether to stop even without an answer: half a second after a time limit or ctrl-C.
+
+        The time is shorter after a cancel or the memory limit.
+        """
         if not self.passed:
             return False
         if self._stopped_by == _CANCELLED:
@@ -259,11 +266,13 @@ class Deadline:
             return now >= self._end + self._tolerance
         if self._noticed is None:
             self._noticed = now
-        return now >= self._noticed + (_PACE.memory_tolerance_seconds if self.full else self._tolerance)
+        return now >= self._noticed + (
+            _PACE.memory_tolerance_seconds if self.is_out_of_memory else self._tolerance
+        )
 
     @property
-    def full(self) -> bool:
-        """Whether the memory limit is reached: current work may finish, but no other work is begun."""
+    def is_out_of_memory(self) -> bool:
+        """Whether memory stopped the question: current work may finish, but no other work is begun."""
         return self._stopped_by is not None and self._stopped_by not in {
             self._time_words,
             _CANCELLED,
@@ -272,29 +281,35 @@ class Deadline:
         }
 
     def interrupt(self) -> None:
-        """Stop the question because of ctrl-C, unless it was stopped before."""
+        """Stop the question and the outer deadlines because of ctrl-C, unless it was stopped before."""
         if self._stopped_by is None:
             self._stopped_by = _INTERRUPTED
             if self._within is not None:
                 self._within.interrupt()
 
-    def enough(self) -> None:
-        """Stop the question because its answer is proved; an outer deadline (``within``) is not stopped."""
+    def stop_at_proof(self) -> None:
+        """Stop the question because its answer is proved, unless it was stopped before.
+
+        An outer deadline (``within``) is not stopped.
+        """
         self._stopped_by = self._stopped_by or _PROVED
 
-    def out_of_memory(self) -> None:
+    def stop_out_of_memory(self) -> None:
         """Stop the question because of the memory, unless it was stopped before."""
         limit = "" if self.memory is None else f"the memory limit of {size_text(self.memory)}"
         self._stopped_by = self._stopped_by or limit or "the end of memory"
 
     @property
     def stopped(self) -> str | None:
-        """The limit that stopped the question and the work at that time, in words; ``None`` if none did."""
+        """The limit that stopped the question and the work at that time, in words.
+
+        An example is ``the time limit of 5 s while reading``; ``None`` if the question was not stopped.
+        """
         return None if self._stopped_by is None else f"{self._stopped_by} while {self._doing}"
 
     @property
     def advice(self) -> str:
-        """Advice for the user about the limit."""
+        """A sentence of advice for the user about the limit, which depends on the current work."""
         return _ADVICE.get(self._doing, "raise the limit")
 
     def check(self) -> None:
@@ -302,52 +317,58 @@ class Deadline:
         if self.passed:
             raise LimitError(self)
 
-    def slice(self, longest: float = 0.2) -> float:
+    def seconds_to_next_check(self, longest: float = 0.2) -> float:
         """Return the seconds to wait until the next check of the deadline, at most ``longest``."""
         if self.memory is not None:
             longest = min(longest, 2 * _PACE.poll_seconds)
-        remaining = self.left
+        remaining = self.remaining_seconds
         return longest if remaining is None else min(longest, remaining)
 
     def memory_in_use(self) -> int:
         """Return the resident memory of this process and of the counted ones, in bytes."""
-        return sum(_resident(Path(f"/proc/{pid}/statm")) for pid in ("self", *self._workers))
+        return sum(_resident_bytes(Path(f"/proc/{pid}/statm")) for pid in ("self", *self._workers))
 
-    def count(self, process: int) -> None:
-        """Count the memory of another process, by its id, as well."""
+    def count_memory_of(self, process: int) -> None:
+        """Count the memory of another process, by its id, towards the memory limit."""
         self._workers.add(process)
 
-    def uncount(self, process: int) -> None:
-        """Stop counting the memory of a process."""
+    def uncount_memory_of(self, process: int) -> None:
+        """Stop counting the memory of another process."""
         self._workers.discard(process)
 
     def watched(self, doing: str, late: bool = False, grace: bool = False) -> "Watch":
-        """Return a context that interrupts work at the limits, for code that does not check the deadline.
+        """Return a context that interrupts its block at the limits, for code that does not check them.
 
         The context may raise :class:`LimitError` anywhere in the block. So the block must be safe to abort,
         and must not handle ctrl-C itself. With ``late``, the block is interrupted only when overdue. With
-        ``grace``, it has at least a quarter of a second to finish an answer.
+        ``grace``, it has at least a quarter of a second to finish an answer. ``doing`` becomes the current
+        work.
         """
         return Watch(self, doing, late, grace)
 
 
 @contextlib.contextmanager
 def resend_lost_interrupts() -> Iterator[None]:
-    """Resend interrupts that Python loses in a ``with`` block of the main thread.
+    """Send interrupts again that Python loses in a ``with`` block of the main thread.
 
-    Python reports an exception in a destructor, but does not raise it. So an interrupt that comes in a
-    destructor is sent again.
+    Python only reports an exception in a destructor, and does not raise it. So ctrl-C in a destructor has no
+    effect, unless it is sent again.
     """
     previous_hook = sys.unraisablehook
     main = threading.main_thread().ident or 0
 
     def send_again() -> None:
+        """Interrupt the main thread a moment later, when the destructor has ended."""
         time.sleep(_PACE.poll_seconds)
         signal.pthread_kill(main, signal.SIGINT)
 
     def hook(lost: "sys.UnraisableHookArgs") -> None:
-        destroyed = getattr(lost.object, "__name__", "") == "__del__"
-        if destroyed and issubclass(lost.exc_type, AttributeError):
+        """Send a lost interrupt again, and pass on other exceptions that Python does not raise.
+
+        An ``AttributeError`` in a destructor is ignored.
+        """
+        in_destructor = getattr(lost.object, "__name__", "") == "__del__"
+        if in_destructor and issubclass(lost.exc_type, AttributeError):
             return  # an interrupt in its constructor left the object incomplete
         if not issubclass(lost.exc_type, KeyboardInterrupt):
             previous_hook(lost)
@@ -363,7 +384,7 @@ def resend_lost_interrupts() -> Iterator[None]:
 
 @contextlib.contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Defer ctrl-C and interrupts of watches in a ``with`` block until its end.
+    """Defer ctrl-C and interrupts of :class:`Watch` in a ``with`` block until its end.
 
     This is for imports: a C library that is interrupted during its import raises ``ImportError``, and cannot
     be imported any more.
@@ -404,13 +425,14 @@ if hasattr(os, "register_at_fork"):
 class Watch:
     """A context in which a background thread polls a deadline and interrupts this thread as ctrl-C does.
 
-    An interrupt at the very end of the block leaves the context as ``KeyboardInterrupt``.
+    The parameters are those of :meth:`Deadline.watched`. An interrupt at the very end of the block leaves the
+    context as ``KeyboardInterrupt``.
     """
 
     def __init__(self, deadline: Deadline, doing: str, late: bool, grace: bool) -> None:
         self._deadline, self._doing, self._late = deadline, doing, late
         self._earliest = time.monotonic() + _PACE.grace_seconds if grace else -math.inf
-        self._begins = grace  # also at a deadline that has passed
+        self._has_grace = grace  # also at a deadline that has passed
         self._thread = threading.get_ident()
         self._finished = self._interrupted = False
         self._wake: SimpleQueue[None] = SimpleQueue()
@@ -419,13 +441,13 @@ class Watch:
         """Start the background thread; raises :class:`LimitError` if the deadline allows no more work."""
         deadline = self._deadline
         deadline.doing = self._doing
-        if self._due or (deadline.passed and deadline.full and not self._begins):
+        if self._is_due or (deadline.passed and deadline.is_out_of_memory and not self._has_grace):
             raise LimitError(deadline)
-        if deadline.limited:
+        if deadline.is_limited:
             try:
                 if not self._is_woken_by_signals:
                     import ctypes  # noqa: F401, PLC0415 (imported before it is needed for an interrupt)
-                DaemonThread(_watch, weakref.ref(self), self._wake)
+                DaemonThread(_poll_until_end, weakref.ref(self), self._wake)
             except BaseException:
                 self._end()
                 raise
@@ -434,7 +456,10 @@ class Watch:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Stop the background thread; raises :class:`LimitError` if it has sent an interrupt."""
+        """Stop the background thread; raises :class:`LimitError` if it has sent an interrupt.
+
+        Any other interrupt stops the deadline as ctrl-C does.
+        """
         received = kind is not None and issubclass(kind, KeyboardInterrupt)
         while True:  # an interrupt may come within this loop, which can be repeated
             try:
@@ -460,20 +485,24 @@ class Watch:
             time.sleep(_PACE.handover_seconds)
 
     @property
-    def _due(self) -> bool:
+    def _is_due(self) -> bool:
+        """Whether to interrupt the block: the deadline has passed, or is overdue with ``late``.
+
+        With ``grace``, the block is not interrupted in its first quarter of a second.
+        """
         due = self._deadline.overdue if self._late else self._deadline.passed
         return due and time.monotonic() >= self._earliest
 
     def poll(self, interrupts: int) -> tuple[float, int] | None:
-        """Poll the deadline, and interrupt the thread if it has passed.
+        """Poll the deadline, and interrupt the thread if it has passed; ``interrupts`` were sent before.
 
         Interrupts are repeated, since some are lost. Returns the seconds until the next poll and the number
         of interrupts sent so far, or ``None`` after the last poll.
         """
         if self._finished or interrupts == _PACE.interrupts:
             return None
-        if not self._due:
-            return max(_PACE.poll_seconds, self._deadline.slice()), interrupts
+        if not self._is_due:
+            return max(_PACE.poll_seconds, self._deadline.seconds_to_next_check()), interrupts
         _targets.append(self._thread)
         try:
             if self._finished:
@@ -507,22 +536,25 @@ class Watch:
         )
 
 
-def _watch(watching: "weakref.ref[Watch]", wake: "SimpleQueue[None]") -> None:
-    """Poll a watch until its end, or until it is garbage collected because an interrupt prevented its end."""
+def _poll_until_end(watching: "weakref.ref[Watch]", wake: "SimpleQueue[None]") -> None:
+    """Poll a watch in the background until its end.
+
+    Polling also ends if the watch is garbage collected, because an interrupt prevented its end.
+    """
     pause, interrupts = _PACE.poll_seconds, 0
     while True:
         with contextlib.suppress(Empty):
             wake.get(timeout=pause)
             return
         watch = watching()
-        following = None if watch is None else watch.poll(interrupts)
+        next_poll = None if watch is None else watch.poll(interrupts)
         del watch
-        if following is None:
+        if next_poll is None:
             return
-        pause, interrupts = following
+        pause, interrupts = next_poll
 
 
-def _resident(statm: Path) -> int:
+def _resident_bytes(statm: Path) -> int:
     """Return the resident memory of a process, in bytes, from its file in /proc; 0 after its end."""
     try:
         return int(statm.read_bytes().split()[1]) * _PAGE_BYTES
@@ -530,8 +562,11 @@ def _resident(statm: Path) -> int:
         return 0
 
 
-def seconds(number: float | str, quantity: str = "the time limit") -> float:
-    """Return a number of seconds, at least 0; raises :class:`UserError` about the ``quantity`` otherwise."""
+def parse_seconds(number: float | str, quantity: str = "the time limit") -> float:
+    """Return a number of seconds, at least 0, from a number or a text.
+
+    Raises :class:`UserError` about the ``quantity`` for other values.
+    """
     try:
         value = float(number)
     except (TypeError, ValueError, OverflowError):
@@ -541,8 +576,8 @@ def seconds(number: float | str, quantity: str = "the time limit") -> float:
     return value
 
 
-def memory_size(number: int | str, quantity: str = "the memory limit") -> int:
-    """Return a size in bytes: an integer, or a text with K, M, G or T.
+def parse_memory_size(number: int | str, quantity: str = "the memory limit") -> int:
+    """Return a size in bytes, from an integer or a text such as ``500M`` or ``2G``.
 
     Raises :class:`UserError` about the ``quantity`` for other values.
     """
@@ -558,7 +593,7 @@ def memory_size(number: int | str, quantity: str = "the memory limit") -> int:
 
 
 def size_text(size: int) -> str:
-    """Return a size in words, in the largest unit in which it is a whole number."""
+    """Return a size in bytes as a text in the largest unit in which it is a whole number: ``2G``."""
     for letter in "TGMK":
         if size % _UNITS[letter] == 0:
             return f"{size // _UNITS[letter]}{letter}"

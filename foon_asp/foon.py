@@ -1,4 +1,4 @@
-"""Loaded data: a FOON, a kitchen, and the files beside them."""
+"""Loaded data: a FOON, a kitchen, and the files that belong to them."""
 
 import contextlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Sized
@@ -10,9 +10,9 @@ from typing import Any, Self
 from foon_asp.argument_checks import typed
 from foon_asp.dataset import Dataset, read_dataset
 from foon_asp.dataset.item_options import Stays, Stock, items_for
-from foon_asp.dataset.paths import File, Files, files
-from foon_asp.dataset.python_names import in_python, node_ids, stated_copies
-from foon_asp.deadline import Cancel, seconds, stoppable
+from foon_asp.dataset.paths import File, Files, as_paths
+from foon_asp.dataset.python_names import node_ids, python_error_text, stated_copies
+from foon_asp.deadline import Cancel, parse_seconds, stoppable
 from foon_asp.errors import UserError
 from foon_asp.network import (
     FunctionalUnit,
@@ -66,8 +66,9 @@ def load(
     Parameters:
         source: A folder with all files; or a network (FOON text or JSON), several networks to merge, or a
             store. Without it, the bundled kitchen is loaded.
-        kitchen: The file with the available object nodes, instead of that of the folder; or ``"@starting"``
-            for what makes the units of each file run, which is also assumed where there is no kitchen.
+        kitchen: The file with the available object nodes, instead of that of the folder. ``"@starting"``
+            means the starting kitchen: whatever the units of each file need in order to run. It is also
+            assumed if there is no kitchen.
         rates: The file with the success rates of motions, instead of that of the folder.
         utensils: The file with the labels of utensils, instead of that of the folder.
         goals: The file with goals, instead of that of the folder.
@@ -75,13 +76,14 @@ def load(
         unit_amounts: The file with the numbers of copies that units take and make, instead of that of
             the folder.
         measures: Objectives of your own: files with rules for what units cost, or the rules themselves.
-        stand_ins: Whether available nodes may be used in place of those that cannot be made, by the usual
-            table of prices, with the changes of ``stand_ins.txt`` in the folder, or by another table.
+        stand_ins: Whether available nodes may be used in place of those that cannot be made. ``True`` means
+            by the usual table of prices, with the changes of ``stand_ins.txt`` in the folder. A table means
+            by this one.
         level: How object nodes are compared: by label (1), by label, states and relations (2), or by
             everything (3).
         lenient: Whether lines that are not understood are skipped, with a warning, instead of being errors.
         time_limit: Stop reading after this many seconds.
-        on_progress: Is called with a :class:`Progress` now and then: bytes ``done`` of ``total``.
+        on_progress: Is called now and then with a :class:`Progress`, in bytes.
         cancel: A token that ends reading from another thread.
 
     Returns:
@@ -98,22 +100,22 @@ def load(
     """
     if level not in {1, 2, 3}:
         raise UserError(f"found level={level!r}, expected 1, 2 or 3")
-    paths = () if source is None else files(source)
-    one = isinstance(source, str | PathLike)
-    folder = paths[0] if one and paths[0].is_dir() else None
+    paths = () if source is None else as_paths(source)
+    is_single = isinstance(source, str | PathLike)
+    folder = paths[0] if is_single and paths[0].is_dir() else None
     if source is not None and not paths:
         raise UserError("expected the path of a FOON, found an empty list")
     side_files = [
         None if file is None else Path(file)
         for file in (kitchen, rates, utensils, goals, unit_prices, unit_amounts)
     ]
-    with _limited(time_limit, cancel, "reading"):
-        definitions = read_measures(measures)
-        named = find_data(folder, () if folder else paths, *side_files)
-        with _counted(on_progress, size_of(named.network)) as tell, reporting_to(tell):
-            dataset = read_dataset(named, lenient, level).measured(definitions)
+    with _time_limit_context(time_limit, cancel, "reading"):
+        user_measures = read_measures(measures)
+        data_files = find_data(folder, () if folder else paths, *side_files)
+        with _progress_counter(on_progress, size_of(data_files.network)) as tell, reporting_to(tell):
+            dataset = read_dataset(data_files, lenient, level).with_measures(user_measures)
             if stand_ins:
-                folder_tables = () if named.stand_ins is None else (named.stand_ins,)
+                folder_tables = () if data_files.stand_ins is None else (data_files.stand_ins,)
                 table = read_stand_ins(folder_tables) if isinstance(stand_ins, bool) else stand_ins
                 dataset = dataset.with_stand_in_table(table)
     name = "the bundled kitchen" if source is None else ", ".join(map(str, paths))
@@ -124,8 +126,11 @@ def load(
 
 
 @contextlib.contextmanager
-def _counted(on_progress: OnProgress | None, total: int) -> Iterator[Callable[[int], None]]:
-    """Yield a function that adds to the progress of a ``with`` block; its end completes the progress."""
+def _progress_counter(on_progress: OnProgress | None, total: int) -> Iterator[Callable[[int], None]]:
+    """Yield a function for a ``with`` block that adds a number to the progress, and reports the sum.
+
+    At the end of the block, the progress is reported as complete.
+    """
     done = 0
 
     def report(added: int) -> None:
@@ -139,13 +144,13 @@ def _counted(on_progress: OnProgress | None, total: int) -> Iterator[Callable[[i
         report(total - done)
 
 
-def _limited(
+def _time_limit_context(
     time_limit: float | None, cancel: Cancel | None, doing: str
 ) -> contextlib.AbstractContextManager[object]:
-    """Return a context that stops its ``with`` block at a time limit or by a token; neither is no limit."""
+    """Return a context that stops its ``with`` block at a time limit or by a token; ``None`` is no limit."""
     if time_limit is None and cancel is None:
         return contextlib.nullcontext()
-    return stoppable(None if time_limit is None else seconds(time_limit), cancel, doing)
+    return stoppable(None if time_limit is None else parse_seconds(time_limit), cancel, doing)
 
 
 PlainUnit = FunctionalUnit | tuple[str, Names, Names] | Mapping[str, Any]
@@ -154,7 +159,7 @@ PlainUnit = FunctionalUnit | tuple[str, Names, Names] | Mapping[str, Any]
 
 @typed
 def build(
-    units: "Network | Iterable[PlainUnit]",  # quoted: _network reports other types itself
+    units: "Network | Iterable[PlainUnit]",  # quoted: _build_network reports other types itself
     *,
     kitchen: Names | None = None,
     goals: Names | None = None,
@@ -169,22 +174,23 @@ def build(
     """Make data from units written in Python, with a kitchen, goals, rates and further parts.
 
     Parameters:
-        units: Units, each as motion, inputs and outputs, where object nodes are in one-line notation:
-            ``("pour", ["water; hot", "cup; empty"], ["cup; contains {water}"])``; or as a dictionary with the
-            keys ``motion``, ``inputs`` and ``outputs``; or a :class:`FunctionalUnit`. A node that is listed
-            twice is taken or made twice where items are used up. Or a network, made by a
-            :class:`NetworkBuilder`.
-        kitchen: The available object nodes, by label, in one-line notation, or as :class:`ObjectNode`; or
-            how many there are by name, ``None`` for what never runs out. Without it, or as ``"@starting"``,
-            it is what makes all units run; ``()`` is nothing.
-        goals: What is to be made, in the same way, with amounts by name where several are wanted. Without
-            it, what the last unit makes and no unit needs.
+        units: Units, or a network made by a :class:`NetworkBuilder`. A unit is a motion, inputs and outputs,
+            with object nodes in one-line notation:
+            ``("pour", ["water; hot", "cup; empty"], ["cup; contains {water}"])``. It may also be a dictionary
+            with the keys ``motion``, ``inputs`` and ``outputs``, or a :class:`FunctionalUnit`. A node that a
+            unit lists twice is taken or made twice if items are used up.
+        kitchen: The available object nodes, by label, in one-line notation, or as :class:`ObjectNode`. A
+            dictionary has numbers of copies by such names, with ``None`` for what never runs out. Without
+            it, or as ``"@starting"``, whatever all units need in order to run is available. ``()`` means
+            that nothing is available.
+        goals: The object nodes to make, named like those of the kitchen. A dictionary has the numbers of
+            copies wanted. Without it, the goals are what the last unit makes and no unit needs.
         rates: The success rates of motions, above 0 and at most 1.
         utensils: The labels of the utensils that the container rule ``implied`` is about.
         unit_prices: Prices, from 0, by the name of a motion or of single units.
         measures: Objectives of your own: files with rules for what units cost, or the rules themselves.
         time_limit: Stop after this many seconds.
-        on_progress: Is called with a :class:`Progress` now and then: units ``done``, of ``total`` where their
+        on_progress: Is called with a :class:`Progress` now and then: units ``done``, of ``total`` if their
             number is known.
         cancel: A token that ends it from another thread.
 
@@ -208,43 +214,48 @@ def build(
         >>> foon_asp.solve(foon.problem())
         <Answer: optimal by units (strict containers): 2 units, 3 inputs>
     """
-    with _limited(time_limit, cancel, "building"):
+    with _time_limit_context(time_limit, cancel, "building"):
         total = len(units) if isinstance(units, Sized) else 0
-        with _counted(on_progress, total) as tell:
+        with _progress_counter(on_progress, total) as tell:
             stated = StatedAmounts()
-            network = units if isinstance(units, Network) else _network(units, stated, tell)
-        making = [unit for unit, outputs in enumerate(network.outputs) if outputs]
-        last = {making[-1]: Source("the units", making[-1] + 1)} if making else {}
-        entries = tuple(entry for entry in last_goals(network, last)) if goals is None else ()
+            network = units if isinstance(units, Network) else _build_network(units, stated, tell)
+        making_units = [unit for unit, outputs in enumerate(network.outputs) if outputs]
+        last_maker = {making_units[-1]: Source("the units", making_units[-1] + 1)} if making_units else {}
+        assumed_goals = tuple(entry for entry in last_goals(network, last_maker)) if goals is None else ()
         starting = is_starting(kitchen)
         at_hand = starting_kitchen(network).nodes if starting else frozenset[int]()
-        data = Data(network, at_hand, (), entries, None, frozenset(utensils), (), 0, None, starting)
+        data = Data(network, at_hand, (), assumed_goals, None, frozenset(utensils), (), 0, None, starting)
         data = data._replace(
             goals_from=LAST if goals is None else "", amounts=stated.amounts_by_unit(network)
         )
         dataset = (
-            Dataset.of(data).with_remarks((), (), (), kitchen is not None).measured(read_measures(measures))
+            Dataset.of(data)
+            .with_remarks((), (), (), kitchen is not None)
+            .with_measures(read_measures(measures))
         )
         if goals is not None:
             nodes = [network.objects[o] for o in node_ids(dataset, goals, "goal")]
             wanted = stated_copies(dataset, goals, "goal") if isinstance(goals, Mapping) else {}
-            listed = (
+            goal_entries = (
                 goal_entry(node, Source("the goals", number))._replace(amount=wanted.get(node))
                 for number, node in enumerate(nodes, 1)
             )
-            dataset = dataset.with_goals(tuple(listed))
-        kept = None if starting else kitchen
-        foon = Foon(dataset.vary(Changes(kept, rates=rates, unit_prices=unit_prices)), "a network")
+            dataset = dataset.with_goals(tuple(goal_entries))
+        new_kitchen = None if starting else kitchen
+        foon = Foon(dataset.vary(Changes(new_kitchen, rates=rates, unit_prices=unit_prices)), "a network")
     for remark in foon.warnings:
         warn(remark)
     return foon
 
 
-def _network(units: Iterable[PlainUnit], amounts: StatedAmounts, tell: Callable[[int], None]) -> Network:
+def _build_network(
+    units: Iterable[PlainUnit], amounts: StatedAmounts, tell: Callable[[int], None]
+) -> Network:
     """Build a network of units as callers write them; the place of a unit is its number, from 1.
 
-    A node that is listed several times is taken or made in as many copies, recorded in ``amounts``.
-    ``tell`` is called with the number of units added since the last call.
+    A node that a unit lists several times is taken or made in as many copies, which are added to ``amounts``.
+    ``tell`` is called now and then with the number of units added since the last call. Raises
+    :class:`UserError` for what is no unit.
     """
     builder, number, reported = NetworkBuilder(), 0, 0
     if isinstance(units, str | Mapping) or not isinstance(units, Iterable):
@@ -264,10 +275,10 @@ def _network(units: Iterable[PlainUnit], amounts: StatedAmounts, tell: Callable[
         if not isinstance(motion, str) or not motion.strip():
             raise UserError(f"found the motion {motion!r} of unit {number}, expected a name; {_UNIT}")
         source = Source("the units", number)
-        sides = [*_nodes(inputs, number)], [*_nodes(outputs, number)]
+        sides = [*_parse_nodes(inputs, number)], [*_parse_nodes(outputs, number)]
         builder.add(motion, *sides, source)
-        if counted := counted_amounts(*([(node, 1) for node in side] for side in sides)):
-            amounts.add(FunctionalUnit.of(motion, *sides), counted, source)
+        if unit_amounts := counted_amounts(*([(node, 1) for node in side] for side in sides)):
+            amounts.add(FunctionalUnit.of(motion, *sides), unit_amounts, source)
         if number - reported == 100:
             tell(number - reported)
             reported = number
@@ -276,12 +287,15 @@ def _network(units: Iterable[PlainUnit], amounts: StatedAmounts, tell: Callable[
     return builder.build()
 
 
-def _nodes(names: object, number: int) -> Iterator[ObjectNode]:
-    """Yield the inputs or the outputs of a unit as object nodes."""
-    several = [names] if isinstance(names, str | ObjectNode) else names
-    if not isinstance(several, Iterable):
+def _parse_nodes(names: object, number: int) -> Iterator[ObjectNode]:
+    """Yield the inputs or the outputs of a unit as object nodes; ``number`` names the unit in errors.
+
+    Raises :class:`UserError` for a name that is no valid notation.
+    """
+    node_names = [names] if isinstance(names, str | ObjectNode) else names
+    if not isinstance(node_names, Iterable):
         raise UserError(f"found {names!r} in unit {number}, expected object nodes; {_UNIT}")
-    for name in several:
+    for name in node_names:
         if isinstance(name, ObjectNode):
             yield name
         elif isinstance(name, str):
@@ -300,8 +314,8 @@ _UNIT = "a unit is its motion, its inputs and its outputs: ('pour', ['water; hot
 class Foon:
     """A FOON, a kitchen, and the files that belong to them; a value that never changes.
 
-    :func:`load` makes one. Object nodes are named by a label that only one node has (or one entry of the
-    goals file), in one-line notation, or as an :class:`ObjectNode`.
+    :func:`load` makes one. An object node is named in one-line notation or as an :class:`ObjectNode`. Its
+    label is enough if no other node has it, or for a goal, if only one entry of the goals file has it.
 
     A store stays open while questions may read from it. ``with load(...) as foon:`` closes it at the end, as
     :meth:`close` does; otherwise it is closed when nothing refers to the data any more.
@@ -336,7 +350,7 @@ class Foon:
         data = Data(
             problem.network, problem.kitchen, (), (), rates, problem.utensils, (), 0, problem.unit_prices
         )
-        return cls(Dataset.of(data).measured(problem.measures), "a problem")
+        return cls(Dataset.of(data).with_measures(problem.measures), "a problem")
 
     def close(self) -> None:
         """Close the store, also for data varied from these; data that were read whole stay.
@@ -361,25 +375,25 @@ class Foon:
         stays: Stays | None = None,
         amounts: int | Sequence[int] = (),
     ) -> Problem:
-        """Make a problem, with goals that one tree has to make.
+        """Make a problem: goals that one tree has to make together.
 
         Parameters:
             goals: Object nodes, by name or as :class:`ObjectNode`; without any, the goal of the goals file.
             containers: The container rule, ``strict`` or ``implied``.
-            items: Whether items are ``lasting``, or ``used-up`` by the rule of docs/plans.md, which is the
-                default where amounts of goals are wanted.
+            items: ``lasting``, or ``used-up`` by the rule of docs/plans.md. The default is ``used-up`` if
+                amounts of goals are wanted, and ``lasting`` otherwise.
             stock: How many copies the kitchen has of some object nodes, by name, or the path of a stock
-                file. It precedes the amounts of the kitchen; all other items of the kitchen never run out.
+                file. It takes precedence over the amounts of the kitchen; all other items never run out.
                 Only for items that are used up.
-            stays: What stays (``True``) or is used up (``False``) whatever the rule says, by label or object
-                node, or the path of such a file. Only for items that are used up.
-            amounts: How many copies of the goal are wanted, or of each of several goals, in their order.
+            stays: Exceptions from the rule, by label or object node: ``True`` if an item stays, ``False`` if
+                it is used up. Or the path of a file with such exceptions. Only for items that are used up.
+            amounts: How many copies of the goal are wanted; for several goals, a number for each, in order.
                 Without it, the amounts of the goals file count.
 
         Raises:
             UserError: for a name that means no object node or several, with candidates; or for another rule.
         """
-        ids = self._dataset.named_goals(goals)
+        ids = self._dataset.python_goal_ids(goals)
         of_goals = [amounts] if isinstance(amounts, int) else amounts
         used_up = items_for(self._dataset, ids, of_goals, items, stock, stays)
         return self._dataset.nearby(ids, containers, used_up)
@@ -398,8 +412,8 @@ class Foon:
         """Return the same data with another kitchen, other success rates, other prices or other measures.
 
         Parameters:
-            kitchen: The items available: names; amounts by name, where ``None`` is for what never runs out;
-                or a kitchen file as a :class:`~pathlib.Path`.
+            kitchen: The available items: names, or a kitchen file as a :class:`~pathlib.Path`. A dictionary
+                has numbers of copies by name, with ``None`` for what never runs out.
             adding: Names of object nodes to add to the kitchen.
             without: Names of object nodes to remove from the kitchen.
             rates: New success rates of some motions, above 0 and at most 1.
@@ -421,7 +435,7 @@ class Foon:
 
     @property
     def level(self) -> int:
-        """The level at which object nodes are compared: 3 all of a node, 2 without contents, 1 the label."""
+        """The level at which nodes are compared: by label (1), states and relations too (2), or all (3)."""
         return self._dataset.names.level
 
     @property
@@ -443,19 +457,19 @@ class Foon:
             UserError: if an entry matches no object node.
         """
         try:
-            return tuple(map(self._dataset.names.node, dict.fromkeys(self._dataset.each_goal(()))))
+            return tuple(map(self._dataset.names.node, dict.fromkeys(self._dataset.goal_ids(()))))
         except GoalError as error:
-            raise UserError(in_python(error)) from None
+            raise UserError(python_error_text(error)) from None
 
     @property
     def rates(self) -> dict[str, Fraction] | None:
-        """The exact success rates by motion; ``None`` if unknown."""
+        """The exact success rates by motion; ``None`` if there are none."""
         rates = self._dataset.rates
         return None if rates is None else dict(rates)
 
     @property
     def unit_prices(self) -> UnitPrices | None:
-        """The prices of units, by motion and of single ones; of a store, all of it is read."""
+        """The prices of units, ``None`` if there are none; of a store, all of it is read."""
         return self._dataset.data.unit_prices
 
     @property
@@ -468,14 +482,14 @@ class Foon:
         """Return the object nodes that have a label.
 
         Parameters:
-            label: The label. For a store, only the first dozen nodes or a few more are given.
+            label: The label. Of a store, only about the first dozen nodes are returned.
         """
         names = self._dataset.names
         return tuple(map(names.node, names.labelled(label)[1]))
 
     @property
     def dataset(self) -> Dataset:
-        """The data set, for lower modules."""
+        """The dataset, for lower modules."""
         return self._dataset
 
     def __repr__(self) -> str:

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 
 
 @contextmanager
-def uncollected() -> Iterator[None]:
+def without_garbage_collection() -> Iterator[None]:
     """Disable garbage collection in a ``with`` block, which should create little cyclic garbage.
 
     If the block made very many objects, they are moved to the oldest generation. Otherwise the next

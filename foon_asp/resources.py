@@ -9,8 +9,8 @@ _PACKAGE = Path(__file__).resolve().parent
 
 
 @cache
-def _folder(name: str, expected_file: str) -> Path:
-    """Return the folder of a name that has a file; raises :class:`BugError` where none has."""
+def _folder_with_file(name: str, expected_file: str) -> Path:
+    """Return the folder ``name`` that has the expected file; raises :class:`BugError` if there is none."""
     for parent in (_PACKAGE, _PACKAGE.parent):
         if (parent / name / expected_file).is_file():
             return parent / name
@@ -19,24 +19,24 @@ def _folder(name: str, expected_file: str) -> Path:
 
 def encodings_folder() -> Path:
     """Return the folder of the answer-set encodings."""
-    return _folder("encodings", "task_tree.lp")
+    return _folder_with_file("encodings", "task_tree.lp")
 
 
 def published_table() -> Path:
-    """Return the file with the published figures of searches."""
-    return _folder("data", "published/table1.json") / "published" / "table1.json"
+    """Return the JSON file with the published figures of searches."""
+    return _folder_with_file("data", "published/table1.json") / "published" / "table1.json"
 
 
 def starter_recipe() -> Path:
     """Return the folder of the example recipe for a new data folder, with its success rates."""
-    return _folder("data", "starter/FOON.txt") / "starter"
+    return _folder_with_file("data", "starter/FOON.txt") / "starter"
 
 
 def bundled_vocabulary() -> Path:
     """Return the file of the names that lint knows."""
-    return _folder("data", "vocabulary.txt") / "vocabulary.txt"
+    return _folder_with_file("data", "vocabulary.txt") / "vocabulary.txt"
 
 
 def bundled_kitchen() -> Path:
     """Return the folder of the bundled universal FOON and its kitchen."""
-    return _folder("data", "kitchen/FOON.txt") / "kitchen"
+    return _folder_with_file("data", "kitchen/FOON.txt") / "kitchen"

@@ -7,7 +7,7 @@ from foon_asp.asp import Settings
 from foon_asp.batch.answer_row import AnswerRow, answer_row, failed_row
 from foon_asp.batch.batch_question import BatchQuestion, Opener
 from foon_asp.errors import UserError
-from foon_asp.processes.pool import LostError, share
+from foon_asp.processes.pool import LostError, run_in_processes
 
 
 def answer_all(
@@ -31,7 +31,7 @@ def answer_all(
         return None if question.time_limit is None else question.time_limit + grace
 
     start_worker = partial(_answer_function, opener, memory_limit, settings)
-    for question, row, error in share(start_worker, questions, jobs, seconds):
+    for question, row, error in run_in_processes(start_worker, questions, jobs, seconds):
         if isinstance(error, LostError) and error.is_late:
             yield failed_row(question, f"no answer within the time limit and {grace:g} seconds more")
         elif isinstance(error, LostError | UserError):

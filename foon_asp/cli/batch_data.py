@@ -54,7 +54,7 @@ class BatchData:
             problem = dataset.problem((0,), containers, everything=True)
             return [str(problem.network.objects[goal]) for goal in makeable(problem)]
         names = dataset.names
-        goals = dict.fromkeys(dataset.each_goal(()))
+        goals = dict.fromkeys(dataset.goal_ids(()))
         if isinstance(names, Network):
             return [str(names.objects[goal]) for goal in goals]
         return [str(names.node(goal)) for goal in goals]
@@ -65,10 +65,10 @@ class BatchData:
         Goals that cannot be understood have no amount.
         """
         dataset = self._datasets[None]  # all kitchens have the same goals
-        if not dataset.wanted:
+        if not dataset.goal_amounts:
             return ITEMS[0]
         try:
-            return ITEMS[not dataset.wanted.keys().isdisjoint(dataset.goals(question.goals))]
+            return ITEMS[not dataset.goal_amounts.keys().isdisjoint(dataset.command_goal_ids(question.goals))]
         except UserError:
             return ITEMS[0]  # the row of the question says what is wrong with its goals
 
@@ -85,7 +85,7 @@ class BatchData:
         dataset = self._dataset_with_kitchen(question.kitchen)
         files = question.stock, question.stays
         stock, stays = (None if file is None else NamedPath(file) for file in files)
-        goals = dataset.goals(question.goals)
+        goals = dataset.command_goal_ids(question.goals)
         items = items_for(dataset, goals, question.amounts, question.items, stock, stays)
         return dataset.nearby(goals, question.containers, items)
 

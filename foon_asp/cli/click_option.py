@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 import click
 
 from foon_asp.cli.named_path import NamedPath, WrittenPath
-from foon_asp.deadline import memory_size, seconds
+from foon_asp.deadline import parse_memory_size, parse_seconds
 from foon_asp.questions.question import Kind, Option, Role
 from foon_asp.rules.passed_constraint import Constraint, RuleText, named_constraint
 
@@ -89,8 +89,8 @@ def click_option(option: Option) -> Callable[[Command], Command]:
         Kind.WHOLE: int if option.least is None else click.IntRange(min=option.least),
         Kind.FILE: click.Path(path_type=NamedPath),
         Kind.WRITTEN: WrittenPath(),
-        Kind.SECONDS: seconds,
-        Kind.SIZE: memory_size,
+        Kind.SECONDS: parse_seconds,
+        Kind.SIZE: parse_memory_size,
         Kind.WEIGHTS: None,
         Kind.CONSTRAINT: _constraint,
         Kind.OPTIONS: click.UNPROCESSED,

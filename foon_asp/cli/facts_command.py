@@ -70,7 +70,7 @@ def command(
     """
     dataset = shared_options.read_dataset(**data)  # type: ignore[arg-type]
     chosen = parse_objectives(objectives, dataset.measures)
-    goals = dataset.goals(goals_named)
+    goals = dataset.command_goal_ids(goals_named)
     used_up = items_for(dataset, goals, (), items, stock, stays)
     problem = dataset.problem(goals, containers, items=used_up)
     if dataset.goals_from and not goals_named:

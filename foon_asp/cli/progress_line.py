@@ -53,7 +53,7 @@ class Progress(Reporter):
         """End the thread that shows the line, and wait for at most a second until the line is gone."""
         self._finished.put(None)
         if self._thread is not None:
-            self._thread.ended(_DELAY_SECONDS)  # so that the line does not overwrite the answer
+            self._thread.wait_for_end(_DELAY_SECONDS)  # so that the line does not overwrite the answer
 
     def begin(self) -> None:
         """Start the time of the search; at a terminal, also start the thread that shows the line."""
@@ -98,7 +98,7 @@ class Progress(Reporter):
         from foon_asp.results.figure_text import bound_text, costs_text  # slow to import: for long searches
 
         seconds = f"{now - self._began:.0f} s"
-        limit = None if self._deadline is None else self._deadline.left
+        limit = None if self._deadline is None else self._deadline.remaining_seconds
         remaining = self._remaining_seconds(now)
         if remaining is not None and (limit is None or remaining < limit):
             seconds += f", about {remaining:.0f} s left at this pace"

@@ -254,7 +254,7 @@ def read_dataset(
         if measures:
             from foon_asp.rules.measure import read_measures
 
-            dataset = dataset.measured(read_measures(measures))
+            dataset = dataset.with_measures(read_measures(measures))
         if stand_ins or stand_in_tables or similar:
             from foon_asp.standins.table_file import read_stand_ins
 

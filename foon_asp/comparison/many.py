@@ -8,7 +8,7 @@ from foon_asp.asp import Settings
 from foon_asp.comparison.comparison import Comparison, compare
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem, reach
-from foon_asp.processes.pool import LostError, share
+from foon_asp.processes.pool import LostError, run_in_processes
 from foon_asp.searches import Search, SearchSettings
 
 
@@ -39,7 +39,9 @@ def compare_goals(
         return
     ready: dict[int, Comparison] = {}  # comparisons that wait for the one of an earlier goal
     next_number = 0
-    for finished in share(partial(partial, compare_goal), [*enumerate(goals)], min(jobs, len(goals))):
+    for finished in run_in_processes(
+        partial(partial, compare_goal), [*enumerate(goals)], min(jobs, len(goals))
+    ):
         number, goal = finished.task
         if isinstance(finished.error, LostError):
             raise UserError(

@@ -9,23 +9,23 @@ from foon_asp.text.assumed_goals import MARKED
 
 
 def kitchen_lines(dataset: Dataset, problems: Iterable[Problem], verbose: bool) -> Iterator[str]:
-    """Yield one line on the starting kitchen, with the number of items that the goals can use.
+    """Yield a line on the starting kitchen, with the number of its items that the problems can use.
 
-    The line also names the items that some unit makes. ``verbose`` adds a line for each item.
+    The line names up to six of the items that some unit makes. ``verbose`` adds a line for each item.
     """
     used = {
         problem.network.object_number(o): problem.network.objects[o]
         for problem in problems
         for o in kitchen_needed(problem)
     }
-    made_too = set(dataset.made_too(used))
+    made_too = set(dataset.made_by_units(used))
     count = f"{counted(len(used), 'item')} used" + ("" if verbose or not used else "; -v lists them")
     line = f"No kitchen given: assuming what the recipe does not make is available ({count})"
     if made_too:
-        shown = [str(used[number]) for number in sorted(made_too)[:6]]
+        first_items = [str(used[number]) for number in sorted(made_too)[:6]]
         if len(made_too) > 6:
-            shown.append(f"{len(made_too) - 6} more")
-        line += f", and of what a unit makes too: {', '.join(shown)}"
+            first_items.append(f"{len(made_too) - 6} more")
+        line += f", and of what a unit makes too: {', '.join(first_items)}"
     yield line
     if verbose:
         for number in sorted(used):
@@ -33,7 +33,10 @@ def kitchen_lines(dataset: Dataset, problems: Iterable[Problem], verbose: bool) 
 
 
 def goal_lines(dataset: Dataset, goals: Sequence[ObjectNode], verbose: bool) -> Iterator[str]:
-    """Yield one line on the goals assumed and their origin; ``verbose`` adds a line for each of several."""
+    """Yield a line on the goals that were assumed, and on their origin.
+
+    With ``verbose``, a line for each goal follows if there are several.
+    """
     origin = {"": "of the goals file", MARKED: "marked in the files"}.get(dataset.goals_from)
     if len(goals) == 1:
         assumed = f"the goal {origin}" if origin else "what the last unit makes"

@@ -6,17 +6,17 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from foon_asp.dataset.prices import DataPrices
-from foon_asp.dataset.python_names import NamesAndUnits
+from foon_asp.dataset.python_names import NodeAndUnitNames
 from foon_asp.network import (
     NO_AMOUNTS,
     DataAmounts,
     FunctionalUnit,
     Network,
+    Source,
     StartingKitchen,
     UnitPrices,
     starting_kitchen,
 )
-from foon_asp.network import Source as Place
 from foon_asp.problem import ContainerRule, Objective, Unpriced, count_unpriced, first_sources
 from foon_asp.text.object_list import ListedObject
 from foon_asp.text.repeated_node import RepeatedNode
@@ -26,7 +26,7 @@ if TYPE_CHECKING:  # text does without SQLite
     from foon_asp.store.unit_distances import UnitDistances
 
 
-class Source:
+class DataSource:
     """The source of a dataset: a network in memory; for a store, the subclass :class:`StoreSource`.
 
     Ids are those of the whole network.
@@ -40,7 +40,7 @@ class Source:
 
     kitchen: Collection[int] | None = None
     prices: DataPrices | None = None
-    names: NamesAndUnits
+    names: NodeAndUnitNames
 
     def __init__(
         self,
@@ -56,7 +56,7 @@ class Source:
 
     @property
     def amounts(self) -> DataAmounts:
-        """The amounts of units."""
+        """The numbers of copies that units take and make of object nodes."""
         return self._amounts
 
     @property
@@ -65,7 +65,7 @@ class Source:
         return MappingProxyType({})
 
     @property
-    def starting(self) -> StartingKitchen[Any]:
+    def starting_kitchen(self) -> StartingKitchen[Any]:
         """The starting kitchen."""
         return starting_kitchen(self._network)
 
@@ -74,20 +74,26 @@ class Source:
         """The motions of the network, each once."""
         return self._network.different_motions
 
-    def motion_places(self) -> Iterable[tuple[str, Place]]:
-        """Return pairs of a motion and a place of a unit with it; each motion's first place is among them."""
+    def motion_sources(self) -> Iterable[tuple[str, Source]]:
+        """Return pairs of a motion and the source of a unit with this motion.
+
+        The first source of each motion is among them.
+        """
         return first_sources(self._network)
 
-    def whole(self) -> Network:
+    def whole_network(self) -> Network:
         """Return the whole network."""
         return self._network
 
-    def touched(self) -> Network:
-        """Return the whole network; for a store, one that reads each unit and node on access."""
+    def network_read_on_access(self) -> Network:
+        """Return the whole network; that of a store reads each unit and node when it is accessed."""
         return self._network
 
-    def part(self, units: Iterable[int], objects: Iterable[int]) -> Network:
-        """Return a network that has at least these units and object nodes."""
+    def network_part(self, units: Iterable[int], objects: Iterable[int]) -> Network:
+        """Return a network that has at least these units and object nodes, by id.
+
+        A source in memory returns the whole network.
+        """
         return self._network
 
     def cone(
@@ -98,9 +104,10 @@ class Source:
         available: Container[int],
         max_units: int | None,
     ) -> "Cone | None":
-        """Return the cone of goals, or about ``max_units`` of its units; ``None`` for a network in memory.
+        """Return the cone of goals: all units that the goals can need; ``None`` for a network in memory.
 
-        The cone of goals has all units that the goals can need.
+        Unless ``max_units`` is ``None``, the cone has only about so many of these units, those near the
+        goals. The goals and the ``available`` nodes are ids.
         """
         return None
 
@@ -111,32 +118,37 @@ class Source:
         rates: Mapping[str, Fraction] | None,
         objective: Objective,
     ) -> "UnitDistances | None":
-        """Return the distance of each unit by an objective: a lower bound on the cost of trees with the unit.
+        """Return the distance of each unit: a lower bound on the cost of any tree with the unit.
 
-        Inputs that are ``utensils``, by label, are ignored. ``None`` if the network is in memory.
+        Costs are by ``objective``, and the nodes of ``kitchen`` are available, by id. Inputs whose labels are
+        ``utensils`` are ignored. Returns ``None`` for a network in memory.
         """
         return None
 
-    def true_digests(self) -> dict[str, str]:
-        """Compute the digests that a store states; raises :class:`UserError` if a stated digest is wrong."""
+    def checked_digests(self) -> dict[str, str]:
+        """Compute the digests that a store states, and return them; empty without a store.
+
+        Raises :class:`UserError` if a stated digest is wrong.
+        """
         return {}
 
     def unit_prices(self, network: Network, from_file: bool) -> Mapping[FunctionalUnit, Fraction] | None:
-        """Return the prices of single units of a network in a store; ``None`` without a store or prices.
+        """Return the prices that a store has for single units of a network; ``None`` if it has none.
 
         If ``from_file``, the imported file of prices takes precedence over the prices that networks state.
+        Returns ``None`` for a network in memory, too.
         """
         return None
 
     def unpriced(self, prices: DataPrices) -> Sequence[Unpriced]:
-        """Return the units that have no price, by motion."""
+        """Return the number of units without a price, for each motion that has any."""
         network = self._network
         unit_prices = UnitPrices(prices.motions or {}, prices.units).of_units(network)
         unpriced = (unit for unit, price in enumerate(unit_prices) if price is None)
         return count_unpriced((network.motions[unit], network.sources[unit]) for unit in unpriced)
 
     def kitchen_items(self) -> tuple[ListedObject, ...]:
-        """Return the entries of the kitchen that was imported."""
+        """Return the entries of the kitchen that was imported; empty without a store."""
         return ()
 
     def close(self) -> None:

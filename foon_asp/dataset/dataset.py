@@ -8,15 +8,15 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
-from foon_asp.dataset.data_source import Source
+from foon_asp.dataset.data_source import DataSource
 from foon_asp.dataset.kitchen import Kitchen
 from foon_asp.dataset.prices import NO_PRICES, DataPrices
 from foon_asp.dataset.python_names import (
-    NamesAndUnits,
+    NodeAndUnitNames,
     changed_prices,
     changed_rates,
     item_id,
-    listed,
+    names_as_list,
     node_id,
     node_ids,
     stated_copies,
@@ -56,13 +56,16 @@ if TYPE_CHECKING:  # plain answers do not need it
     from foon_asp.store.unit_distances import UnitDistances
 
 
-def ask(
+def pose_problem(
     data: Data, goals: Sequence[int], containers: str, origin: "Dataset", items: UsedUp | None = None
 ) -> Problem:
-    """Return the problem of goals over ``data``, which is a part of the dataset ``origin``.
+    """Return the problem of goals over ``data``, which is all or a part of the data of ``origin``.
 
     ``goals`` are ids in the network of ``data``. ``items`` says how items are used up; ``None`` if items
-    last.
+    last. If a motion has no success rate, the problem has no rates.
+
+    Raises :class:`UserError` for an unknown container rule, and for contradictory amounts if items are used
+    up.
     """
     if items is not None and data.amounts.conflict:
         raise UserError(data.amounts.conflict)
@@ -102,7 +105,7 @@ class Dataset:
     ``stock``: the amounts that the kitchen states; other items never run out.
     """
 
-    source: Source
+    source: DataSource
     kitchen: Kitchen
     listed: Sequence[ListedObject] = ()
     rates: Mapping[str, Fraction] | None = None
@@ -122,7 +125,7 @@ class Dataset:
     def of(cls, data: Data, seconds: float = 0.0) -> Self:
         """Return the dataset of data that are in memory; ``seconds`` is how long reading them took."""
         return cls(
-            Source(data.network, seconds, data.left_out, data.repeated, data.amounts),
+            DataSource(data.network, seconds, data.left_out, data.repeated, data.amounts),
             Kitchen(data.kitchen),
             data.goals,
             data.rates,
@@ -139,41 +142,41 @@ class Dataset:
         self.source.close()
 
     @property
-    def names(self) -> NamesAndUnits:
-        """The names of object nodes and units."""
+    def names(self) -> NodeAndUnitNames:
+        """The lookup of object nodes and units by name."""
         return self.source.names
 
     @property
     def read_seconds(self) -> float:
-        """The seconds that reading took so far."""
+        """The seconds spent on reading so far."""
         return self.source.seconds
 
     @cached_property
     def unrated(self) -> str:
         """A text about the motions without a success rate.
 
-        Empty where all have one, or no rates are known.
+        It is empty if all motions have a rate, or if there are no rates at all.
         """
         if self.rates is None or self.rates.keys() >= set(self.source.motions):
             return ""
-        return unrated_text(self.source.motion_places(), self.rates)
+        return unrated_text(self.source.motion_sources(), self.rates)
 
     @cached_property
     def data(self) -> Data:
-        """All data; from a store, everything is read."""
-        network = self.source.whole()
+        """The whole data; of a store, everything is read at the first access."""
+        network = self.source.whole_network()
         items = self.source.kitchen_items() if self.kitchen_items is None else self.kitchen_items
-        return self._data(network, self.kitchen.ids)._replace(kitchen_items=items)
+        return self._data_with(network, self.kitchen.ids)._replace(kitchen_items=items)
 
-    def _data_of(self, network: Network) -> Data:
-        """Return the data of a part of the network, or of all of it where it is in memory."""
+    def _data_of_network(self, network: Network) -> Data:
+        """Return the data of this dataset for the whole network or for a part of it."""
         if network is self.names:
             return self.data
         kitchen = (local_id for local_id, o in enumerate(network.object_numbers) if o in self.kitchen)
-        return self._data(network, frozenset(kitchen))
+        return self._data_with(network, frozenset(kitchen))
 
-    def _data(self, network: Network, kitchen: frozenset[int]) -> Data:
-        """Return the data of this dataset with another network and kitchen."""
+    def _data_with(self, network: Network, kitchen: frozenset[int]) -> Data:
+        """Return the data of this dataset with another network, and with a kitchen of ids in this network."""
         return Data(
             network,
             kitchen,
@@ -191,7 +194,7 @@ class Dataset:
         )
 
     def _unit_prices(self, network: Network) -> UnitPrices | None:
-        """Return the prices of units, those of a store included; ``None`` without any."""
+        """Return the prices of the units of a network, with those in a store; ``None`` if there are none."""
         motions, units, from_file = self.prices
         stored = self.source.unit_prices(network, from_file)
         if motions is None and not units and stored is None:
@@ -201,7 +204,7 @@ class Dataset:
     @property
     def whole_network(self) -> Network:
         """The whole network; of a store, units and nodes are read on access."""
-        return self.source.touched()
+        return self.source.network_read_on_access()
 
     @property
     def unit_prices(self) -> UnitPrices | None:
@@ -214,39 +217,41 @@ class Dataset:
         return sorted(self.source.motions)
 
     def at_hand(self, o: int) -> bool:
-        """Whether the kitchen has an object node, by id."""
+        """Whether an object node, by id, is in the kitchen."""
         return o in self.kitchen
 
-    def made_too(self, objects: Iterable[int]) -> list[int]:
-        """Return the nodes of a starting kitchen that a unit makes out of others."""
-        return [o for o in objects if self.source.starting.makers(o)]
+    def made_by_units(self, objects: Iterable[int]) -> list[int]:
+        """Return those of the ``objects``, by id, that a unit makes and does not need."""
+        return [o for o in objects if self.source.starting_kitchen.makers(o)]
 
-    def for_goals(self, goals: Iterable[int]) -> "Dataset":
-        """Return the dataset with the kitchen for some goals.
+    def with_kitchen_for(self, goals: Iterable[int]) -> "Dataset":
+        """Return the dataset with the kitchen that it has for some goals, by id.
 
-        A starting kitchen omits goals that units make.
+        A starting kitchen loses goals that units make, and may gain other nodes; see
+        :meth:`StartingKitchen.changes_for_goals`. Any other kitchen stays.
         """
         if not self.starting:
             return self
-        starting = self.source.starting
-        added, lacking = starting.changes(goals)
+        starting = self.source.starting_kitchen
+        added, lacking = starting.changes_for_goals(goals)
         # nodes that the user removed stay removed
         added = frozenset(o for o in added if o in self.kitchen or o not in starting.nodes)
         if not added and not lacking:
             return self
-        return replace(self, kitchen=self.kitchen.changed(added, lacking))
+        return replace(self, kitchen=self.kitchen.with_changes(added, lacking))
 
-    def goals(self, names: Sequence[str | ObjectNode]) -> tuple[int, ...]:
-        """Return the ids of the goals with these names.
+    def command_goal_ids(self, names: Sequence[str | ObjectNode]) -> tuple[int, ...]:
+        """Return the ids of the goals that a command names, each once.
 
-        Without names, returns all assumed goals; if a file lists goals, it has to list exactly one.
+        Without names, return all assumed goals, or the only goal of the goals file. Raises :class:`UserError`
+        if the file has several goals, or if there is no goal to assume.
         """
         if not names and self.goals_from and not self.listed:
             raise UserError(
                 "no functional unit makes anything, so there is no goal: expected a recipe or a network"
             )
         if not names and self.goals_from:
-            return tuple(dict.fromkeys(self.each_goal(())))
+            return tuple(dict.fromkeys(self.goal_ids(())))
         if not names and len(self.listed) == 1:
             return (node_of_entry(self.listed[0], self.names),)
         if not names:
@@ -254,18 +259,22 @@ class Dataset:
                 f"  --goal {shlex.quote(name)}" for name in entry_names(self.listed, self.names)
             )
             raise UserError("name a goal with --goal" + (f"; the goals file has\n{listed}" if listed else ""))
-        return tuple(dict.fromkeys(self.each_goal(names)))
+        return tuple(dict.fromkeys(self.goal_ids(names)))
 
     def assumed_goals(self) -> list[ObjectNode]:
         """Return the goals that were assumed because no file lists goals; empty if a file does."""
         return self.listed_goals() if self.goals_from else []
 
     def listed_goals(self) -> list[ObjectNode]:
-        """Return the goals of the goals file, or those that were assumed."""
-        return [self.names.node(o) for o in dict.fromkeys(self.each_goal(()))]
+        """Return the goals of the goals file, or else those that were assumed, each once."""
+        return [self.names.node(o) for o in dict.fromkeys(self.goal_ids(()))]
 
-    def each_goal(self, names: Sequence[str | ObjectNode]) -> list[int]:
-        """Return the id of the goal for each name; without names, the ids of all nodes of the goals file."""
+    def goal_ids(self, names: Sequence[str | ObjectNode]) -> list[int]:
+        """Return the id of the goal for each name, in order.
+
+        Without names, return the ids of all goals of the goals file, or else of those that were assumed. An
+        id may be repeated.
+        """
         if names:
             return [
                 node_id(self, name, "goal")
@@ -276,16 +285,19 @@ class Dataset:
         return [node for entry in self.listed for node in nodes_of_entry(entry, self.names)]
 
     def with_kitchen(self, items: Sequence[ListedObject]) -> "Dataset":
-        """Return the same data with the kitchen of another file."""
+        """Return the same data with another kitchen: the nodes that match entries of a kitchen file.
+
+        The amounts in these entries become the stock.
+        """
         names = self.names
         patterns = [pattern_at_level(item.pattern, names.level) for item in items]
         kitchen = Kitchen(frozenset(o for pattern in patterns for o in names.find(pattern)))
         stock = amounts_of_items(names, items)
-        return self._varied(kitchen=kitchen, kitchen_items=tuple(items), starting=False, stock=stock)
+        return self._with_fields(kitchen=kitchen, kitchen_items=tuple(items), starting=False, stock=stock)
 
     @property
-    def wanted(self) -> dict[int, int]:
-        """The amounts that the goals file states, by the id of the goal."""
+    def goal_amounts(self) -> dict[int, int]:
+        """The numbers of copies of goals that the goals file states, by the id of the goal."""
         return {
             o: entry.amount
             for entry in self.listed
@@ -294,34 +306,40 @@ class Dataset:
         }
 
     def with_goals(self, goals: Sequence[ListedObject]) -> "Dataset":
-        """Return the same data with other entries of a goals file."""
-        return self._varied(listed=tuple(goals), goals_from="", has_kitchen=self.has_kitchen)
+        """Return the same data with these entries as its goals file; no goals are assumed then."""
+        return self._with_fields(listed=tuple(goals), goals_from="", has_kitchen=self.has_kitchen)
 
     def with_starting_kitchen(self) -> "Dataset":
         """Return the same data with the starting kitchen."""
-        kitchen = Kitchen(self.source.starting.nodes)
-        return self._varied(kitchen=kitchen, kitchen_items=(), starting=True, stock={})
+        kitchen = Kitchen(self.source.starting_kitchen.nodes)
+        return self._with_fields(kitchen=kitchen, kitchen_items=(), starting=True, stock={})
 
-    def _varied(self, **changes: Any) -> "Dataset":
-        """Return a copy with some fields changed, and without remarks on assumptions made while reading."""
+    def _with_fields(self, **changes: Any) -> "Dataset":
+        """Return a copy with some fields changed.
+
+        Unless they are changed too, the remarks on assumptions are dropped, and the kitchen counts as given.
+        """
         return replace(self, **{"remarks": (), "brief": (), "has_kitchen": True, **changes})
 
     def with_remarks(
         self, warnings: Iterable[str], brief: Iterable[str], remarks: Sequence[str], has_kitchen: bool
     ) -> "Dataset":
-        """Return the same data with remarks; ``brief`` is a summary of the warnings."""
+        """Return the same data with ``warnings`` and ``remarks`` as its remarks.
+
+        ``brief`` is a summary of the warnings, which takes their place in the brief remarks.
+        """
         all_remarks, brief_remarks = (*warnings, *remarks), (*brief, *remarks)
         return replace(self, remarks=all_remarks, brief=brief_remarks, has_kitchen=has_kitchen)
 
-    def measured(self, measures: Mapping[str, Measure]) -> "Dataset":
+    def with_measures(self, measures: Mapping[str, Measure]) -> "Dataset":
         """Return the same data with other user measures."""
         return replace(self, measures=measures)
 
     def with_stand_in_table(self, table: StandInTable | None) -> "Dataset":
-        """Return the same data with stand-ins by a table, ``None`` for none.
+        """Return the same data with stand-ins by a table; ``None`` allows no stand-ins.
 
-        With a table, only those assumed goals that are of the first file stay goals; the other files help to
-        make them.
+        With a table, assumed goals that are not of the first file are dropped: the other files help to make
+        the goals of the first one.
         """
         goals = self.listed
         if table is not None and self.goals_from and len(goals) > 1:
@@ -329,27 +347,31 @@ class Dataset:
             goals = [goal for goal in goals if copies and goal.source.file == copies[0].file] or goals
         return replace(self, stand_ins=table, listed=goals)
 
-    def varied(
+    def with_kitchen_changes(
         self,
         added: Collection[int],
         removed: Collection[int],
-        only: Collection[int] | None,
+        replacement: Collection[int] | None,
     ) -> "Dataset":
-        """Return the same data with a changed kitchen: object nodes, by id, are added and removed.
+        """Return the same data with object nodes, by id, added to the kitchen and removed from it.
 
-        If ``only`` is not ``None``, it replaces the whole kitchen before that. Added nodes never run out.
+        Before that, the nodes in ``replacement`` take the place of the whole kitchen; ``None`` keeps it.
+        Added nodes never run out.
         """
-        if only is not None:
-            kitchen = Kitchen(only, added, removed)
-            return self._varied(kitchen=kitchen, kitchen_items=(), starting=False, stock={})
+        if replacement is not None:
+            kitchen = Kitchen(replacement, added, removed)
+            return self._with_fields(kitchen=kitchen, kitchen_items=(), starting=False, stock={})
         endless = set(map(self.names.node, added)) if self.stock else set()
         stock = {node: amount for node, amount in self.stock.items() if node not in endless}
-        return self._varied(kitchen=self.kitchen.changed(added, removed), stock=stock)
+        return self._with_fields(kitchen=self.kitchen.with_changes(added, removed), stock=stock)
 
     def with_rates_and_prices(
         self, rates: Mapping[str, Number] | None, unit_prices: UnitPricesNamed | None
     ) -> "Dataset":
-        """Return the same data with other success rates and prices for some motions and units."""
+        """Return the same data with other success rates and prices for some motions and units.
+
+        ``None`` changes nothing.
+        """
         if rates is None and unit_prices is None:
             return self
         motions, units, _ = prices = self.prices
@@ -357,20 +379,23 @@ class Dataset:
             listed_prices = UnitPrices(motions or {}, units)
             motions, units = changed_prices(listed_prices, unit_prices, self.motions, self.names)
             prices = prices._replace(motions=motions, units=units)
-        return self._varied(rates=changed_rates(self.rates, rates, self.motions), prices=prices)
+        return self._with_fields(rates=changed_rates(self.rates, rates, self.motions), prices=prices)
 
     def vary(self, changes: Changes) -> "Dataset":
-        """Return the same data with another kitchen, other success rates or other prices."""
+        """Return the same data with changes, as :meth:`foon_asp.Foon.vary` does.
+
+        Entries of a kitchen file that match no object node cause a warning.
+        """
         kitchen, adding, without, rates, unit_prices, measures = changes
         dataset = self.with_rates_and_prices(rates, unit_prices)
         if measures is not None:
             # imports the facts for rules, which most questions do without
             from foon_asp.rules.measure import read_measures  # noqa: PLC0415
 
-            dataset = dataset.measured(read_measures(measures))
+            dataset = dataset.with_measures(read_measures(measures))
         if kitchen is None and not adding and not without:
             return dataset
-        only = None
+        replacement = None
         if kitchen is not None and is_starting(kitchen):
             dataset = dataset.with_starting_kitchen()
         elif isinstance(kitchen, Path):
@@ -381,20 +406,23 @@ class Dataset:
                 if not names.find(pattern_at_level(item.pattern, names.level)):
                     warn(str(kitchen_item_warning(item)))
         elif kitchen is not None:
-            only = frozenset(node_ids(self, kitchen, "kitchen item"))
+            replacement = frozenset(node_ids(self, kitchen, "kitchen item"))
         added = frozenset(node_ids(self, adding, "kitchen item"))
-        with_added = dataset.varied(added, frozenset(), only)
+        with_added = dataset.with_kitchen_changes(added, frozenset(), replacement)
         if isinstance(kitchen, Mapping):
             with_added = replace(with_added, stock=stated_copies(dataset, kitchen, "kitchen item"))
-        removed = frozenset(item_id(with_added, name) for name in listed(without))
-        return with_added.varied((), removed, None) if removed else with_added
+        removed = frozenset(item_id(with_added, name) for name in names_as_list(without))
+        return with_added.with_kitchen_changes((), removed, None) if removed else with_added
 
     def vary_problem(
         self, problem: Problem, goals: Names | None, containers: str | None, changes: Changes
     ) -> Problem:
-        """Return a problem of this dataset with changes, as :meth:`Problem.vary` describes."""
+        """Return a variation of a problem over changed data, as :meth:`Problem.vary` describes.
+
+        ``None`` keeps the goals or the container rule of the problem.
+        """
         dataset = self.with_kitchen_of(problem).vary(changes)
-        ids = _whole_goals(problem) if goals is None else dataset.named_goals(goals)
+        ids = _whole_goal_ids(problem) if goals is None else dataset.python_goal_ids(goals)
         items = problem.items
         if items is not None and changes.kitchen is not None:
             items = replace(items, stock=dict(dataset.stock))
@@ -402,45 +430,47 @@ class Dataset:
         return _with_own_rates(posed, problem)
 
     def extend_to_whole(self, problem: Problem) -> Problem:
-        """Return the same problem over the whole network of this dataset."""
+        """Return the same problem over the whole network, with the units that no goal needs."""
         dataset = self.with_kitchen_of(problem)
-        posed = dataset.problem(_whole_goals(problem), problem.containers, True, problem.items)
+        posed = dataset.problem(_whole_goal_ids(problem), problem.containers, True, problem.items)
         return _with_own_rates(posed, problem)
 
     def extend_to_units(self, problem: Problem, units: Iterable[FunctionalUnit]) -> Problem:
         """Return the same problem over a part of the network that has its goals and the given units."""
         dataset = self.with_kitchen_of(problem)
-        data, goals = dataset.part(_whole_goals(problem), tree=units)
-        return _with_own_rates(ask(data, goals, problem.containers, dataset, problem.items), problem)
+        data, goals = dataset.data_part(_whole_goal_ids(problem), tree=units)
+        return _with_own_rates(pose_problem(data, goals, problem.containers, dataset, problem.items), problem)
 
     def subject(self, everything: bool = True, goals: Iterable[int] = ()) -> "Subject":
-        """Return the network, kitchen and prices that a certificate is about.
+        """Return what a certificate is about: network, kitchen and prices, with the digests of the store.
 
-        A store is read on access only if ``everything`` is false, the kitchen is no starting kitchen, and the
-        prices are those of the store. Otherwise all data are read; raises :class:`UserError` if they do not
-        have a digest that the store states. A starting kitchen is the one for ``goals``.
+        A starting kitchen is the one for ``goals``, by id. A store is read on access, and its digests are
+        trusted, unless all data have to be read. This is so if ``everything`` is true, for a starting
+        kitchen, for prices that are not those of the store, and for a store without digests.
+
+        Raises :class:`UserError` if all data are read and do not have a digest that the store states.
         """
         from foon_asp.proof.certificate_subject import Subject  # noqa: PLC0415 (few answers need it)
 
-        source, stocked = self.source, self.for_goals(goals)
+        source, with_goal_kitchen = self.source, self.with_kitchen_for(goals)
         rates = None if self.unrated else self.rates
         own_prices = self.prices == source.prices
         everything = everything or self.starting or not own_prices or not source.digests
-        stated = dict(source.true_digests() if everything else source.digests)
-        if not self.kitchen.is_all_of(source.kitchen):
+        stated = dict(source.checked_digests() if everything else source.digests)
+        if not self.kitchen.is_exactly(source.kitchen):
             stated.pop("kitchen", None)
         if not own_prices:
             stated.pop("prices", None)
         if everything:
             data = self.data
-            kitchen, prices, trusted = stocked.kitchen.ids, data.unit_prices, ()
+            kitchen, prices, trusted = with_goal_kitchen.kitchen.ids, data.unit_prices, ()
             return Subject(
                 data.network, kitchen, rates, self.utensils, prices, stated, trusted, data.amounts.units
             )
-        network = source.touched()
+        network = source.network_read_on_access()
         return Subject(
             network,
-            stocked.kitchen,
+            with_goal_kitchen.kitchen,
             rates,
             self.utensils,
             None,
@@ -452,32 +482,35 @@ class Dataset:
     def subject_with_stand_ins(
         self, goals: Sequence[int], containers: str, everything: bool, steps: Sequence[int] = ()
     ) -> "Subject":
-        """Return the network and kitchen of a certificate about a network with the stand-ins for goals.
+        """Return the network and kitchen of a certificate about a network with stand-ins.
 
-        With ``steps``, the ids of the units of a tree, the stand-ins are those for the repair of this tree.
+        Without ``steps``, these are the stand-ins for the goals; ``everything`` adds those that no goal
+        needs. With ``steps``, the ids of the units of a tree, they are the stand-ins for the repair of this
+        tree.
         """
         from foon_asp.proof.certificate_subject import Subject  # noqa: PLC0415 (few answers need it)
 
         if steps and self.stand_ins is not None:
             from foon_asp.standins.repair import Repair  # noqa: PLC0415 (few questions have stand-ins)
 
-            posed = ask(self.for_goals(goals).data, goals, containers, self)
+            posed = pose_problem(self.with_kitchen_for(goals).data, goals, containers, self)
             problem = Repair.over(posed, tuple(steps), self.stand_ins).shown
         else:
             problem = self.problem(goals, containers, everything)
         values = problem.kitchen, problem.rates, problem.utensils, problem.unit_prices
         return Subject(problem.network, *values, stand_ins=self.stand_ins)
 
-    def named_goals(self, names: Names) -> tuple[int, ...]:
+    def python_goal_ids(self, names: Names) -> tuple[int, ...]:
         """Return the ids of the goals that a Python caller names, each once.
 
-        Without a name, return the only goal of the goals file; raises :class:`UserError` if it has several.
+        Without a name, return the only goal of the goals file, or else the only one that was assumed. Raises
+        :class:`UserError` if there are several or none.
         """
         named = tuple(dict.fromkeys(node_ids(self, names, "goal")))
         if named:
             return named
         if self.goals_from:
-            assumed = self.each_goal(())
+            assumed = self.goal_ids(())
             if len(assumed) == 1:
                 return tuple(assumed)
             choices = ", ".join(repr(str(self.names.node(o))) for o in assumed)
@@ -489,20 +522,20 @@ class Dataset:
 
     def with_kitchen_of(self, problem: Problem) -> "Dataset":
         """Return the same data with the kitchen of ``problem``, which is a problem of this dataset."""
-        from foon_asp.dataset.nearby import shown  # noqa: PLC0415 (few answers need it)
+        from foon_asp.dataset.nearby import without_reading_more  # noqa: PLC0415 (few answers need it)
 
-        added, removed = self.kitchen_changes(shown(problem), _whole_goals(problem))
-        return self.varied(added, removed, None) if added or removed else self
+        added, removed = self.kitchen_changes(without_reading_more(problem), _whole_goal_ids(problem))
+        return self.with_kitchen_changes(added, removed, None) if added or removed else self
 
     def kitchen_changes(
         self, problem: Problem, goals: Iterable[int]
     ) -> tuple[frozenset[int], frozenset[int]]:
-        """Return how the kitchen of a problem differs from the kitchen that this dataset has for ``goals``.
+        """Return the nodes that only the problem has available, and those that only the dataset has.
 
-        Return the nodes that only the problem has available, and those that only the dataset has. All ids,
-        also those of ``goals``, are ids of the whole network.
+        The kitchen of the dataset is the one for ``goals``. All ids, also those of ``goals``, are ids of the
+        whole network. If the problem is about a part of the network, only nodes of this part are compared.
         """
-        kitchen, network = self.for_goals(goals).kitchen, problem.network
+        kitchen, network = self.with_kitchen_for(goals).kitchen, problem.network
         if not network.object_numbers:
             own_items, problem_items = kitchen.ids, problem.kitchen
             return (
@@ -515,7 +548,7 @@ class Dataset:
         return problem_items - own_items, own_items - problem_items
 
     def unpriced(self) -> Sequence[Unpriced]:
-        """Return the units that have no price, by motion."""
+        """Return the number of units without a price, for each motion that has any."""
         return self.source.unpriced(self.prices)
 
     def problem(
@@ -525,37 +558,39 @@ class Dataset:
         everything: bool = False,
         items: UsedUp | None = None,
     ) -> Problem:
-        """Return the problem of goals, in the same order, under a container rule.
+        """Return the problem of goals, by id, under the container rule with the name ``containers``.
 
-        With ``everything``, its network also has units that no goal needs. ``items`` says how items are used
-        up; ``None`` if items last.
+        Its network has the units that the goals can need; with ``everything``, all units. ``items`` says how
+        items are used up; ``None`` if items last. The goals keep their order.
         """
-        dataset = self.for_goals(goals)
+        dataset = self.with_kitchen_for(goals)
         if self.stand_ins is not None:
             from foon_asp.standins import with_stand_ins  # noqa: PLC0415 (few questions have stand-ins)
 
-            posed = ask(dataset.data, goals, containers, self, items)
+            posed = pose_problem(dataset.data, goals, containers, self, items)
             return with_stand_ins(posed, self.stand_ins, everything)
         if everything:
-            return ask(dataset.data, goals, containers, self, items)
+            return pose_problem(dataset.data, goals, containers, self, items)
         # items of the stock may run out, and then have to be made
         stocked_ids = {self.names.object_id(node) for node in (items.stock if items else ())}
-        kitchen = dataset.kitchen.changed((), [o for o in stocked_ids if o is not None])
+        kitchen = dataset.kitchen.with_changes((), [o for o in stocked_ids if o is not None])
         cone = self.source.cone(goals, container_rule(containers), self.utensils, kitchen, None)
-        network = self.source.whole() if cone is None else self.source.part(cone.units, goals)
-        return ask(dataset._data_of(network), _local_ids(network, goals), containers, self, items)
+        network = self.source.whole_network() if cone is None else self.source.network_part(cone.units, goals)
+        return pose_problem(
+            dataset._data_of_network(network), _local_ids(network, goals), containers, self, items
+        )
 
     def nearby(
         self, goals: Sequence[int], containers: str, items: UsedUp | None = None, first: int = 1000
     ) -> Problem:
         """Return the problem of goals; of a store, only about ``first`` units near the goals are read now.
 
-        Other units are read on access. If no kitchen was given, all units that the goals can need are read
-        now, since the starting kitchen follows from them.
+        Other units are read when the fields of the problem are accessed. If no kitchen was given, if items
+        are used up, or if there are stand-ins, all units that the goals can need are read now.
         """
         cone = None
         if items is None and self.has_kitchen and self.stand_ins is None:
-            kitchen = self.for_goals(goals).kitchen
+            kitchen = self.with_kitchen_for(goals).kitchen
             cone = self.source.cone(goals, container_rule(containers), self.utensils, kitchen, first)
         if cone is None:
             return self.problem(goals, containers, items=items)
@@ -563,15 +598,20 @@ class Dataset:
 
         return NearbyProblem.of(Nearby(self, cone, containers), first)
 
-    def among(self, units: Iterable[int], goals: Sequence[int], containers: str) -> Problem:
-        """Return the problem of goals over a part of the network that has these units."""
-        network = self.source.part(units, goals)
-        return ask(self.for_goals(goals)._data_of(network), _local_ids(network, goals), containers, self)
+    def problem_of_units(self, units: Iterable[int], goals: Sequence[int], containers: str) -> Problem:
+        """Return the problem of goals over a part of the network that has these units; both are by id."""
+        network = self.source.network_part(units, goals)
+        return pose_problem(
+            self.with_kitchen_for(goals)._data_of_network(network),
+            _local_ids(network, goals),
+            containers,
+            self,
+        )
 
     def unit_distances(self, containers: str, objective: Objective) -> "UnitDistances | None":
-        """Return the distance of each unit of a store: a lower bound on the cost of trees with it.
+        """Return the distance of each unit of a store: a lower bound on the cost of any tree with it.
 
-        ``None`` where the data are text, and with a starting kitchen.
+        Returns ``None`` if the data are text, and for a starting kitchen.
         """
         if self.starting:
             return None
@@ -580,10 +620,10 @@ class Dataset:
             self.kitchen.ids, self.utensils if implied else (), self.rates, objective
         )
 
-    def part(
+    def data_part(
         self, goals: Sequence[int], units: Iterable[int] = (), tree: Iterable[FunctionalUnit] = ()
     ) -> tuple[Data, tuple[int, ...]]:
-        """Return a part of the data, and the ids that the goals have in it.
+        """Return a part of the data, and the ids that the goals have in its network.
 
         The part has at least the ``goals`` and ``units``, both by id, and the units and nodes of ``tree``.
         Raises :class:`UserError` for an id that no unit has.
@@ -597,33 +637,36 @@ class Dataset:
         tree_ids = [number for unit in tree if (number := names.unit_id(unit)) is not None]
         nodes = {node for unit in tree for node in (*unit.inputs, *unit.outputs)}
         objects = [o for node in nodes if (o := names.object_id(node)) is not None]
-        network = self.source.part([*units, *tree_ids], [*goals, *objects])
-        return self.for_goals(goals)._data_of(network), _local_ids(network, goals)
+        network = self.source.network_part([*units, *tree_ids], [*goals, *objects])
+        return self.with_kitchen_for(goals)._data_of_network(network), _local_ids(network, goals)
 
 
 def _local_ids(network: Network, goals: Sequence[int]) -> tuple[int, ...]:
-    """Return the ids that goals of the whole network have in ``network``, which may be a part of it."""
+    """Return the ids that goals of the whole network have in ``network``, a part of it or all of it."""
     if not network.object_numbers:
         return tuple(goals)
     local_ids = {o: local_id for local_id, o in enumerate(network.object_numbers)}
     return tuple(local_ids[goal] for goal in goals)
 
 
-def left_out(count: int) -> str:
+def left_out_warning(count: int) -> str:
     """Return a warning that ``count`` lines were not understood and left out."""
     return f"warning: {counted(count, 'line')} left out"
 
 
-def _whole_goals(problem: Problem) -> tuple[int, ...]:
-    """Return the goals of a problem by their ids in the whole network."""
-    from foon_asp.dataset.nearby import shown  # noqa: PLC0415 (few answers need it)
+def _whole_goal_ids(problem: Problem) -> tuple[int, ...]:
+    """Return the ids that the goals of a problem have in the whole network; no more of a store is read."""
+    from foon_asp.dataset.nearby import without_reading_more  # noqa: PLC0415 (few answers need it)
 
-    problem = shown(problem)
+    problem = without_reading_more(problem)
     return tuple(problem.network.object_number(goal) for goal in problem.goals)
 
 
 def _with_own_rates(posed: Problem, problem: Problem) -> Problem:
-    """Return ``posed`` with the success rates of single units that ``problem`` has."""
+    """Return ``posed`` with the success rates that ``problem`` has for single units.
+
+    Units that ``posed`` does not have are left out.
+    """
     if not problem.own_rates:
         return posed
     numbered = {problem.network.unit_number(unit): rate for unit, rate in problem.own_rates.items()}

@@ -28,28 +28,32 @@ def items_for(
     stock: Stock | None,
     stays: Stays | None,
 ) -> UsedUp | None:
-    """Return how items are used up in a question about ``goals``; ``None`` if items last.
+    """Return how items are used up in a question about ``goals``, by id; ``None`` if items last.
 
-    ``goals`` are ids. ``amounts`` has the number of copies wanted of each goal; if it is empty, the amounts
-    of the goals file count. If ``items`` is ``None``, items are used up if amounts are wanted, and last
-    otherwise. Raises :class:`UserError` as :func:`items_of` does, for amounts that do not fit the goals, and
-    for amounts where items last.
+    ``amounts`` has the number of copies wanted of each goal; if it is empty, the amounts of the goals file
+    count. ``items`` is ``used-up`` or ``lasting``. If it is ``None``, items are used up if there are amounts
+    of the goals, and last otherwise.
+
+    Raises :class:`UserError` as :func:`items_of` does, for amounts that do not fit the goals, and for
+    ``amounts`` where items last.
     """
     if not amounts:
-        listed = dataset.wanted
-        stated = {dataset.names.node(goal): listed[goal] for goal in goals if goal in listed}
-        items = items or ("used-up" if stated else "lasting")
-        return items_of(dataset, items, stock, stays, {} if items == "lasting" else stated)
-    wanted = _wanted(dataset, goals, amounts)
+        amounts_by_id = dataset.goal_amounts
+        goal_copies = {
+            dataset.names.node(goal): amounts_by_id[goal] for goal in goals if goal in amounts_by_id
+        }
+        items = items or ("used-up" if goal_copies else "lasting")
+        return items_of(dataset, items, stock, stays, {} if items == "lasting" else goal_copies)
+    wanted = _amounts_by_goal(dataset, goals, amounts)
     if items == "lasting":
         raise UserError("an amount of a goal is for items that are used up: leave --items lasting out")
     return items_of(dataset, items or "used-up", stock, stays, wanted)
 
 
-def _wanted(dataset: Dataset, goals: Sequence[int], amounts: Sequence[int]) -> dict[ObjectNode, int]:
-    """Return the number of copies wanted of each goal; ``amounts`` has a number for each goal, in order.
+def _amounts_by_goal(dataset: Dataset, goals: Sequence[int], amounts: Sequence[int]) -> dict[ObjectNode, int]:
+    """Return the number of copies wanted of each goal; ``amounts`` has them in the order of the goals.
 
-    Raises :class:`UserError` for another number of amounts than of goals, and for an amount out of range.
+    Raises :class:`UserError` unless there is an amount for each goal, and for an amount out of range.
     """
     if len(amounts) != len(goals):
         numbers = f"{counted(len(amounts), 'amount')} for {counted(len(goals), 'goal')}"
@@ -72,11 +76,11 @@ def items_of(
 
     ``items`` is ``used-up`` or ``lasting``.
     Amounts in ``stock`` replace those of the kitchen.
-    ``stays`` are exceptions: which nodes stay, and which are used up.
+    ``stays`` says of labels or nodes whether they stay (true) or are used up, whatever the usual rule says.
     ``wanted`` has the number of copies of each goal.
 
-    Raises :class:`UserError` for another word as ``items``, for a stock or exceptions where items last, for a
-    node that the kitchen lacks, for a name that the network lacks, and below level 3.
+    Raises :class:`UserError` for another word as ``items``, and for a stock or ``stays`` where items last. It
+    also raises it for stock that the kitchen lacks, for names that the network lacks, and below level 3.
     """
     if items not in ITEMS:
         raise UserError(f"found the items {items!r}, expected one of {', '.join(ITEMS)}")
@@ -86,15 +90,15 @@ def items_of(
             raise UserError(f"{option} is for items that are used up: add --items used-up (items='used-up')")
         return None
     require_contents(dataset.names.level)
-    exceptions = {} if stays is None else _exceptions(dataset, stays)
+    exceptions = {} if stays is None else _read_exceptions(dataset, stays)
     copies = {node: n for node, n in dataset.stock.items() if dataset.at_hand(node_id(dataset, node, "item"))}
     if stock is not None:
-        copies |= _copies(dataset, stock)
+        copies |= _read_stock_copies(dataset, stock)
     return UsedUp(exceptions, copies, {node: amount for node, amount in wanted.items() if amount > 1})
 
 
 def require_contents(level: int) -> None:
-    """Raise :class:`UserError` below level 3, where contents do not show which items are used up."""
+    """Raise :class:`UserError` below level 3: without contents, it is unknown which items are used up."""
     if level < 3:
         raise UserError(
             f"items are used up at level 3 only, and this is level {level}: whether an input stays depends "
@@ -102,8 +106,12 @@ def require_contents(level: int) -> None:
         )
 
 
-def _exceptions(dataset: Dataset, stays: Stays) -> dict[str | ObjectNode, bool]:
-    """Return, by label or node, whether items stay when they are used, from a file or a mapping of names."""
+def _read_exceptions(dataset: Dataset, stays: Stays) -> dict[str | ObjectNode, bool]:
+    """Return whether items stay when they are used, by label or node.
+
+    ``stays`` is the path of a file, or a mapping of names. Raises :class:`UserError` for a name that the
+    network lacks.
+    """
     if isinstance(stays, str | PathLike):
         exceptions = STAYS.read(Path(stays))
     else:
@@ -121,8 +129,12 @@ def _exceptions(dataset: Dataset, stays: Stays) -> dict[str | ObjectNode, bool]:
     return exceptions
 
 
-def _copies(dataset: Dataset, stock: Stock) -> dict[ObjectNode, int]:
-    """Return the number of copies of nodes in the stock, from a file or a mapping of names."""
+def _read_stock_copies(dataset: Dataset, stock: Stock) -> dict[ObjectNode, int]:
+    """Return the number of copies in the stock by object node.
+
+    ``stock`` is the path of a file, or a mapping of names. Raises :class:`UserError` for a node that the
+    kitchen lacks.
+    """
     if isinstance(stock, str | PathLike):
         copies = read_stock(Path(stock))
     else:

@@ -7,18 +7,19 @@ from functools import cached_property
 class Kitchen(Collection[int]):
     """The available object nodes, by id in the whole network: a ``base`` with nodes added and removed.
 
-    The base of a kitchen in a store is read on access.
+    The base of a kitchen in a store is read on access. A node that is both added and removed is not
+    available.
     """
 
     def __init__(self, base: Collection[int], added: Iterable[int] = (), removed: Iterable[int] = ()) -> None:
         self._base, self._added, self._removed = base, frozenset(added), frozenset(removed)
 
-    def changed(self, added: Collection[int], removed: Collection[int]) -> "Kitchen":
-        """Return a copy with further nodes added and removed."""
+    def with_changes(self, added: Collection[int], removed: Collection[int]) -> "Kitchen":
+        """Return this kitchen with further nodes added and removed."""
         return Kitchen(self, added, removed) if added or removed else self
 
-    def is_all_of(self, base: Collection[int] | None) -> bool:
-        """Whether the kitchen is this base, without added or removed nodes."""
+    def is_exactly(self, base: Collection[int] | None) -> bool:
+        """Whether the base of the kitchen is this object, without added or removed nodes."""
         return self._base is base and not self._added and not self._removed
 
     def __contains__(self, o: object) -> bool:

@@ -1,11 +1,11 @@
 """Statistics of data at each level of FOON."""
 
 from foon_asp.network import LEVELS, network_at_level
-from foon_asp.network.statistics import Statistics, count
+from foon_asp.network.statistics import Statistics, network_statistics
 from foon_asp.text.data_folder import Data, kitchen_nodes
 
 
-def count_levels(data: Data) -> list[Statistics]:
+def statistics_by_level(data: Data) -> list[Statistics]:
     """Return the statistics of a network and its kitchen at the levels 1 to 3.
 
     A network below level 3 is counted at its own level only.
@@ -13,6 +13,6 @@ def count_levels(data: Data) -> list[Statistics]:
     whole = data.network
     networks = [whole] if whole.level < max(LEVELS) else [network_at_level(whole, level) for level in LEVELS]
     return [
-        count(network, None if data.starting else kitchen_nodes(network, data.kitchen_items))
+        network_statistics(network, None if data.starting else kitchen_nodes(network, data.kitchen_items))
         for network in networks
     ]

@@ -1,4 +1,4 @@
-"""A question to a large store: the units near its goals are read first, and others only as needed."""
+"""A problem of a large store: the units near its goals are read first, and others only as needed."""
 
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import fields, replace
@@ -15,30 +15,30 @@ if TYPE_CHECKING:  # plain answers do not need it
 
 
 class UnreadData(Protocol):
-    """A dataset whose problems may cover only a part of its network; ids are those of the whole network."""
+    """The interface of a dataset whose problems may cover a part of its network; ids are of the whole one."""
 
     def problem(self, goals: Sequence[int], containers: str) -> Problem:
         """Return the problem of goals over all units that they can need."""
 
-    def among(self, units: Iterable[int], goals: Sequence[int], containers: str) -> Problem:
+    def problem_of_units(self, units: Iterable[int], goals: Sequence[int], containers: str) -> Problem:
         """Return the problem of goals over a part of the network that has these units."""
 
     def nearby(self, goals: Sequence[int], containers: str, items: UsedUp | None, first: int) -> Problem:
         """Return the problem of goals, after reading about ``first`` units near them."""
 
     def unit_distances(self, containers: str, objective: Objective) -> "UnitDistances | None":
-        """Return the distance of each unit by an objective, ``None`` if they are not known."""
+        """Return for each unit a lower bound on the cost of any tree with it; ``None`` if unknown."""
 
     def subject(self, everything: bool, goals: Iterable[int]) -> "Subject":
         """Return the network and kitchen that a certificate is about."""
 
 
 class Nearby:
-    """A question to a store over the units read so far, which are near its goals; :meth:`grow` reads more.
+    """A problem of a store over the units read so far, which are near its goals; :meth:`grow` reads more.
 
     ``cone`` has the units read, out of all units that the goals can need. A node is *open* if it is needed,
-    but the units that make it were not all read. ``data`` is the dataset that is asked, under the container
-    rule ``containers``.
+    but the units that make it were not all read. ``data`` is the dataset, and ``containers`` the name of the
+    container rule.
     """
 
     def __init__(self, data: UnreadData, cone: Cone, containers: str) -> None:
@@ -52,7 +52,7 @@ class Nearby:
         """The goals, by id in the whole network."""
         return self._cone.goals
 
-    def copied(self) -> "Nearby":
+    def copy(self) -> "Nearby":
         """Return a copy with the same units read; reading more units in one does not affect the other."""
         other = Nearby(self.data, self._cone.copy(), self.containers)
         other._problem, other._relaxed = self._problem, self._relaxed
@@ -60,34 +60,34 @@ class Nearby:
 
     @property
     def problem(self) -> Problem:
-        """The question over the units read so far; each of its trees is also a tree of the whole network."""
+        """The problem over the units read so far; each of its trees is also a tree of the whole network."""
         if self._problem is None:
-            self._problem = self.among(self._cone.units)
+            self._problem = self.problem_of_units(self._cone.units)
         return self._problem
 
-    def among(self, units: Iterable[int]) -> Problem:
-        """Return the question over the given units, by id in the whole network."""
-        return self.data.among(units, self.goals, self.containers)
+    def problem_of_units(self, units: Iterable[int]) -> Problem:
+        """Return the problem over the given units, by id in the whole network."""
+        return self.data.problem_of_units(units, self.goals, self.containers)
 
     def unit_distances(self, objective: Objective) -> "UnitDistances | None":
-        """Return the distance of each unit by an objective, ``None`` if they are not known."""
+        """Return for each unit a lower bound on the cost of any tree with it; ``None`` if unknown."""
         return self.data.unit_distances(self.containers, objective)
 
     def subject(self) -> "Subject":
         """Return the network and kitchen that a certificate of the answer is about."""
         return self.data.subject(False, self.goals)
 
-    def whole(self) -> Problem:
-        """Return the question over all units that the goals can need."""
+    def full_problem(self) -> Problem:
+        """Return the problem over all units that the goals can need; those not read yet are read."""
         return self.data.problem(self.goals, self.containers) if self._cone.open else self.problem
 
     @property
-    def relaxed(self) -> Problem:
-        """The relaxation of the question in which all open nodes are available.
+    def relaxation(self) -> Problem:
+        """The relaxation of the problem in which all open nodes are available.
 
         In any tree of the whole network, the units that were read are a tree of the relaxation: each of their
-        inputs is available, made by another such unit, or open. So the optimum of the relaxation is a
-        lower bound on the optimum of the whole network, for objectives that are sums over units.
+        inputs is available, made by another such unit, or open. So the optimum of the relaxation is a lower
+        bound on the optimum of the whole network, for objectives that are sums over units.
 
         User rules see the kitchen without the open nodes. So a rule that does not depend on the available
         nodes holds for the same units here as in the whole network.
@@ -99,22 +99,22 @@ class Nearby:
             self._relaxed = replace(problem, kitchen=kitchen, as_seen=problem, origin=None)
         return self._relaxed
 
-    def lacking(self, units: Iterable[int]) -> list[int]:
-        """Return the open nodes that a tree of the relaxation uses without making them.
+    def open_nodes_used(self, units: Iterable[int]) -> list[int]:
+        """Return the open nodes that a tree of the relaxation needs and does not make.
 
-        ``units`` are in an order that executes in the relaxation; the ids returned are those of the whole
-        network. A tree that lacks no node is a tree of the question.
+        They are ids in the whole network. ``units`` are the units of the tree by id in :attr:`problem`, in an
+        order that executes in the relaxation. A tree that needs no open node is also a tree of the problem.
         """
         problem = self.problem
-        available, lacking = set(problem.kitchen), set[int]()
+        available, used_nodes = set(problem.kitchen), set[int]()
         for unit in units:
-            lacking.update(o for o in problem.needs[unit] if o not in available)
+            used_nodes.update(o for o in problem.needs[unit] if o not in available)
             available.update(problem.gives[unit])
-        lacking.update(goal for goal in problem.goals if goal not in available)
-        return sorted(map(problem.network.object_number, lacking))
+        used_nodes.update(goal for goal in problem.goals if goal not in available)
+        return sorted(map(problem.network.object_number, used_nodes))
 
     def grow(self, objects: Iterable[int], step: int) -> None:
-        """Read more units that lead to open objects, by id in the whole network.
+        """Read more units that lead to ``objects``, open nodes by id in the whole network.
 
         With ``n`` units read so far, ``n // step + 1`` more are read: a smaller ``step`` reads more.
         """
@@ -122,43 +122,51 @@ class Nearby:
         self._problem = self._relaxed = None
 
     @property
-    def units(self) -> int:
+    def unit_count(self) -> int:
         """The number of units read."""
         return len(self._cone.units)
 
-    def open_to(self, units: Iterable[int]) -> list[int]:
-        """Return the open nodes among the goals and the inputs of units, by id in the whole network."""
+    def open_nodes_needed(self, units: Iterable[int]) -> list[int]:
+        """Return the open nodes among the goals and the inputs of units, by id in the whole network.
+
+        ``units`` are ids in :attr:`problem`.
+        """
         problem, open_nodes = self.problem, self._cone.open
         needed = {o for unit in units for o in problem.needs[unit]}.union(problem.goals)
         return sorted(open_nodes.intersection(map(problem.network.object_number, needed)))
 
 
-class _ReadLater:
-    """A field of a problem that is read at its first access, unless it was set."""
+class _FieldReadLater:
+    """A field of a problem that is read at its first access, unless the problem has its own value."""
 
     def __set_name__(self, owner: type, name: str) -> None:
-        self._name, self._own = name, f"_own_{name}"
+        self._name, self._own_name = name, f"_own_{name}"
 
     def __get__(self, problem: "NearbyProblem | None", owner: type) -> Any:
+        """Return the own value of a problem, or that of its :attr:`~NearbyProblem.full_problem`."""
         if problem is None:
             return self
-        return getattr(problem, self._own) if problem.start is None else getattr(problem.read, self._name)
+        return (
+            getattr(problem, self._own_name)
+            if problem.start is None
+            else getattr(problem.full_problem, self._name)
+        )
 
     def __set__(self, problem: "NearbyProblem", value: object) -> None:
-        object.__setattr__(problem, self._own, value)  # a problem is frozen
+        object.__setattr__(problem, self._own_name, value)  # a problem is frozen
 
 
 class NearbyProblem(Problem):
-    """A question to a large store; all units that its goals can need are read on first access.
+    """A problem of a large store; all units that its goals can need are read at the first access to a field.
 
-    :meth:`nearby` is the question over the units near the goals, for searches that need no more units. A copy
-    with changed fields has the values passed to it, and reads nothing.
+    These fields are the network, the kitchen, the goals and the prices. Searches that need fewer units use
+    :meth:`nearby` instead. A copy with changed fields has the values passed to it, and reads nothing.
     """
 
-    network: Network = _ReadLater()  # type: ignore[assignment]
-    kitchen: frozenset[int] = _ReadLater()  # type: ignore[assignment]
-    goals: tuple[int, ...] = _ReadLater()  # type: ignore[assignment]
-    unit_prices: UnitPrices | None = _ReadLater()  # type: ignore[assignment]
+    network: Network = _FieldReadLater()  # type: ignore[assignment]
+    kitchen: frozenset[int] = _FieldReadLater()  # type: ignore[assignment]
+    goals: tuple[int, ...] = _FieldReadLater()  # type: ignore[assignment]
+    unit_prices: UnitPrices | None = _FieldReadLater()  # type: ignore[assignment]
 
     start: Nearby | None = None
     """The question over the units read at first; ``None`` for a problem with its own values."""
@@ -166,31 +174,34 @@ class NearbyProblem(Problem):
 
     @classmethod
     def of(cls, start: Nearby, units_at_first: int) -> "NearbyProblem":
-        """Make the problem of a question of which about ``units_at_first`` units near the goals were read."""
+        """Make a problem from ``start``, for which about ``units_at_first`` units were read."""
         problem = cls(**{field.name: getattr(start.problem, field.name) for field in fields(Problem)})
         for name, value in (("start", start), ("units_at_first", units_at_first)):
             object.__setattr__(problem, name, value)
         return problem
 
     @property
-    def first(self) -> Problem | None:
-        """The question over the units read at first."""
+    def first_problem(self) -> Problem | None:
+        """The problem over the units read at first; ``None`` for a problem with its own values."""
         return None if self.start is None else self.start.problem
 
     @cached_property
-    def read(self) -> Problem:
-        """The question over all units that the goals can need."""
+    def full_problem(self) -> Problem:
+        """The problem over all units that the goals can need, which are read now."""
         assert self.start is not None
-        return self.start.whole()
+        return self.start.full_problem()
 
     def nearby(self) -> Nearby | None:
-        """Return a copy of the question over units near the goals; ``None`` if all units were read."""
-        return None if self.start is None or "read" in vars(self) else self.start.copied()
+        """Return a copy of ``start``, to read more units in it; ``None`` if all units were read."""
+        return None if self.start is None or "full_problem" in vars(self) else self.start.copy()
 
-    def each_goal(self) -> list[Problem]:
-        """Return the question for each goal by itself, with about as many units read as for this question."""
+    def single_goal_problems(self) -> list[Problem]:
+        """Return a problem for each goal by itself.
+
+        Unless all units of this problem were read, about ``units_at_first`` units are read for each of them.
+        """
         start = self.start
-        if start is None or "read" in vars(self):
+        if start is None or "full_problem" in vars(self):
             return [replace(self, goals=(goal,)) for goal in self.goals]
         return [
             start.data.nearby((goal,), start.containers, None, self.units_at_first) for goal in start.goals
@@ -199,26 +210,26 @@ class NearbyProblem(Problem):
     @property
     def goal_nodes(self) -> tuple[ObjectNode, ...]:
         """The goals as object nodes."""
-        return super().goal_nodes if self.first is None else self.first.goal_nodes
+        return super().goal_nodes if self.first_problem is None else self.first_problem.goal_nodes
 
     @property
     def conditions(self) -> str:
-        """The conditions of every claim about this question, in a few words."""
-        return super().conditions if self.first is None else self.first.conditions
+        """The conditions of every claim about this problem, in a few words."""
+        return super().conditions if self.first_problem is None else self.first_problem.conditions
 
     def require_known_for(self, objectives: Collection[Objective]) -> None:
         """Require the rates and prices that objectives need, as :meth:`Problem.require_known_for` does."""
-        if self.first is None:
+        if self.first_problem is None:
             super().require_known_for(objectives)
         else:
-            self.first.require_known_for(objectives)
+            self.first_problem.require_known_for(objectives)
 
 
-def shown(problem: Problem) -> Problem:
-    """Return a problem with the same goals and kitchen whose access reads no more units of a store.
+def without_reading_more(problem: Problem) -> Problem:
+    """Return a problem with the same goals and kitchen, whose fields are accessed without reading a store.
 
-    For a :class:`NearbyProblem`, this is the question over the units read at first.
+    For a :class:`NearbyProblem`, this is the problem over the units read at first.
     """
     if isinstance(problem, NearbyProblem):
-        return problem.first or problem
+        return problem.first_problem or problem
     return problem

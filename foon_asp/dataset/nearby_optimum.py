@@ -1,4 +1,4 @@
-"""Optimal trees for a question to a large store, reading only the units that a proof needs."""
+"""Optimal trees for a problem of a large store, reading only the units that a proof needs."""
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
@@ -29,9 +29,9 @@ if TYPE_CHECKING:  # plain answers do not need it
 class RefinementTuning(NamedTuple):
     """How many units of a store are read in each round, and when rounds do without a proof.
 
-    ``proved_units``: above this number of units read, trees without a proof choose the units to read next.
-    Below, each round proves its tree, which is quick and reads the fewest units. With twice as many, the
-    hardest questions take twice as long (``benchmarks/store.py``, family ``deep``).
+    ``proved_units``: up to this number of units read, each round proves the optimality of its tree, which is
+    quick and reads the fewest units. Above it, trees without a proof choose the units to read next. With
+    twice as many, the hardest questions take twice as long (``benchmarks/store.py``, family ``deep``).
     ``narrow_step``: a round reads one more unit for each ``narrow_step`` units that were read.
     ``wide_step``: the same for long rounds, where it matters less to read few units.
     """
@@ -45,7 +45,7 @@ REFINEMENT = RefinementTuning()
 
 
 def near_goals(problem: Problem, objectives: Sequence[Objective], settings: Settings) -> "Nearby | None":
-    """Return the question over the units near the goals of a problem.
+    """Return the units of a large store near the goals of a problem, as a :class:`Nearby`.
 
     Return ``None`` if the problem is not about a large store, or if its settings or objectives need all
     units.
@@ -53,20 +53,22 @@ def near_goals(problem: Problem, objectives: Sequence[Objective], settings: Sett
     nearby_of: Callable[[], Nearby | None] | None = getattr(problem, "nearby", None)
     if nearby_of is None or settings.reductions != ALL or settings.clingo_options:
         return None
-    only_units_add = all(objective in Objective and not objective.row.item for objective in objectives)
-    return nearby_of() if only_units_add and hold_for_subtrees(settings) else None
+    are_sums_over_units = all(objective in Objective and not objective.row.item for objective in objectives)
+    return nearby_of() if are_sums_over_units and hold_for_subtrees(settings) else None
 
 
 def solve_nearby(
     nearby: "Nearby", objectives: Sequence[Objective], settings: Settings, reporter: Reporter | None = None
 ) -> Outcome | None:
-    """Solve a question to a large store by relaxation and refinement, reading only the units that are needed.
+    """Solve a problem of a large store by relaxation and refinement, reading only units that are needed.
 
     Each round solves the relaxation, in which open nodes are available. If its optimal tree uses none of
     them, this tree is optimal in the whole network, too. Otherwise more units that lead to these nodes are
-    read. This repeats until a tree is optimal or all units are read. User rules have to be antimonotone: if a
-    tree keeps them, so does every part of the tree. For some rules, the units of the optimal tree without
-    rules are read first, then those of the smallest tree that keeps the rules.
+    read. This repeats until a tree is optimal or all units are read.
+
+    User rules have to be antimonotone: if a tree keeps them, so does every part of the tree. For some rules,
+    the units of the optimal tree without rules are read first, then those of the smallest tree that keeps the
+    rules.
 
     At a limit, return the best tree among the units read, with the bound of the relaxation. Return ``None``
     if no tree exists even without rules: the caller then reads all units, to explain why.
@@ -81,10 +83,10 @@ def solve_nearby(
     tighter = min if multiplies(first_objective) else max
     bounds_found: list[int | Fraction] = []  # on the first objective
     units_of_rules = set[int]()  # units, by number, on which the rules depend
-    smallest: list[int] | None = None  # with the rules, by number; ``None`` before the search
+    smallest_tree: list[int] | None = None  # with the rules, by number; ``None`` before the search
     unconstrained: Outcome | None = None
     if need_clingo(settings):  # the optimum without rules is needed anyway, and read quickly
-        unconstrained = solve_nearby(nearby, objectives, without_rules, _OnlyWarnings(reporter))
+        unconstrained = solve_nearby(nearby, objectives, without_rules, _WarningsAndBounds(reporter))
         if unconstrained is None:
             return None
         bounds_found += [
@@ -92,24 +94,26 @@ def solve_nearby(
         ]
     while True:
         problem = nearby.problem
-        outcome = solve(nearby.relaxed, objectives, with_rules, _OnlyWarnings(reporter), units_of_rules)
+        outcome = solve(
+            nearby.relaxation, objectives, with_rules, _WarningsAndBounds(reporter), units_of_rules
+        )
         if outcome.status is Status.INFEASIBLE:
-            rules_alone = unconstrained is not None or (
+            excluded_by_rules = unconstrained is not None or (
                 bool(settings.constraints) and _has_tree(nearby, deadline)
             )
-            return outcome._replace(problem=nearby.problem) if rules_alone else None
+            return outcome._replace(problem=nearby.problem) if excluded_by_rules else None
         bounds_found += [bound for objective, bound in outcome.bounds.items() if objective == first_objective]
-        lacking = [] if outcome.units is None else nearby.lacking(outcome.units)
-        if lacking and outcome.status is Status.OPTIMAL:
+        open_nodes = [] if outcome.units is None else nearby.open_nodes_used(outcome.units)
+        if open_nodes and outcome.status is Status.OPTIMAL:
             try:
                 with deadline.watched("reading"):  # stops early, so that time for a tree remains
-                    _read_more(nearby, lacking, objectives, settings)
+                    _read_more(nearby, open_nodes, objectives, settings)
             except KeyboardInterrupt:
                 deadline.interrupt()
                 outcome = outcome._replace(proof=None, stopped=deadline.stopped)
             else:
-                if unconstrained is not None and smallest is None:
-                    smallest = (
+                if unconstrained is not None and smallest_tree is None:
+                    smallest_tree = (
                         []
                         if first_objective is Objective.UNITS
                         else _read_smallest_tree(nearby, with_rules, units_of_rules)
@@ -119,39 +123,44 @@ def solve_nearby(
             {**outcome.bounds, first_objective: tighter(bounds_found)} if bounds_found else outcome.bounds
         )
         outcome = outcome._replace(problem=problem, bounds=bounds)
-        if lacking:  # at a limit: the bound holds, and the units read may have a tree
-            tree = solve(problem, objectives, with_rules, _OnlyWarnings(Reporter()))
+        if open_nodes:  # at a limit: the bound holds, and the units read may have a tree
+            tree = solve(problem, objectives, with_rules, _WarningsAndBounds(Reporter()))
             status = Status.UNKNOWN if tree.units is None else Status.FEASIBLE
             outcome = outcome._replace(status=status, units=tree.units, costs=tree.costs)
-        if outcome.status is Status.UNKNOWN and smallest:
+        if outcome.status is Status.UNKNOWN and smallest_tree:
             units = [
-                unit for number in smallest if (unit := problem.network.unit_of_number(number)) is not None
+                unit
+                for number in smallest_tree
+                if (unit := problem.network.unit_of_number(number)) is not None
             ]
             outcome = outcome._replace(
                 status=Status.FEASIBLE, units=executable_order(problem, units), costs=problem.costs(units)
             )
         if outcome.units is not None:
-            holds = Postconditions(problem, levels(tuple(objectives)), settings)
-            outcome = outcome._replace(units=holds.require_executable(outcome.units))
+            postconditions = Postconditions(problem, levels(tuple(objectives)), settings)
+            outcome = outcome._replace(units=postconditions.require_executable(outcome.units))
             assert outcome.costs is not None
             reporter.tree(outcome.costs)
         return outcome
 
 
 def _has_tree(nearby: "Nearby", deadline: Deadline) -> bool:
-    """Whether a tree exists without rules; reads units until that is known. Also true at a limit."""
+    """Whether the goals have a tree without rules; units are read until that is known.
+
+    Returns true at a limit, too.
+    """
     while True:
-        relaxed = nearby.relaxed
+        relaxed = nearby.relaxation
         reached = reach(relaxed)
         tree = follow_achievers(relaxed.goals, reached.makers, relaxed.needs, relaxed.kitchen)
         if tree is None:
             return False
-        lacking = nearby.lacking(unit for unit in reached.units if unit in tree)
-        if not lacking:
+        open_nodes = nearby.open_nodes_used(unit for unit in reached.units if unit in tree)
+        if not open_nodes:
             return True
         try:
             with deadline.watched("reading"):
-                nearby.grow(lacking, REFINEMENT.wide_step)
+                nearby.grow(open_nodes, REFINEMENT.wide_step)
         except KeyboardInterrupt:
             deadline.interrupt()
             return True
@@ -160,61 +169,63 @@ def _has_tree(nearby: "Nearby", deadline: Deadline) -> bool:
 def _read_smallest_tree(nearby: "Nearby", settings: Settings, units_of_rules: set[int]) -> list[int]:
     """Search for the tree of fewest units that keeps the rules, reading units until it is found.
 
-    Return its units by id in the whole network; empty if there is no tree, or at a limit. Fewest units are
-    found faster than the optimum of other objectives. Better trees mostly use units near this tree.
+    Return its units by id in the whole network; empty if there is no tree, or at a limit. The fewest units
+    are found faster than the optimum of other objectives, and better trees mostly use units near this tree.
     ``units_of_rules`` collects the units on which the rules depend.
     """
     while True:
-        outcome = solve(nearby.relaxed, (Objective.UNITS,), settings, mattered=units_of_rules)
+        outcome = solve(nearby.relaxation, (Objective.UNITS,), settings, mattered=units_of_rules)
         if outcome.status is not Status.OPTIMAL or outcome.units is None:
             return []
-        lacking = nearby.lacking(outcome.units)
-        if not lacking:
+        open_nodes = nearby.open_nodes_used(outcome.units)
+        if not open_nodes:
             return [*map(nearby.problem.network.unit_number, outcome.units)]
         try:
             with settings.begun.watched("reading"):
-                nearby.grow(lacking, REFINEMENT.wide_step)
+                nearby.grow(open_nodes, REFINEMENT.wide_step)
         except KeyboardInterrupt:
             settings.begun.interrupt()
             return []
 
 
 def _read_more(
-    nearby: "Nearby", lacking: Sequence[int], objectives: Sequence[Objective], settings: Settings
+    nearby: "Nearby", open_nodes: Sequence[int], objectives: Sequence[Objective], settings: Settings
 ) -> None:
-    """Read more units that lead to the nodes that an optimal tree of the relaxation lacks.
+    """Read more units that lead to ``open_nodes``, which an optimal tree of the relaxation uses.
 
     If many units were read before and there are no rules, repeat this for trees found by ``h_add``, until one
-    lacks no node. Such trees mostly lead to the units of an optimal tree, in a tenth of the time of a proof.
+    uses no open node. Such trees mostly lead to the units of an optimal tree, in a tenth of the time of a
+    proof.
     """
-    many_read = nearby.units > REFINEMENT.proved_units
+    many_read = nearby.unit_count > REFINEMENT.proved_units
     long_rounds = many_read or need_clingo(settings)
-    nearby.grow(lacking, REFINEMENT.wide_step if long_rounds else REFINEMENT.narrow_step)
+    nearby.grow(open_nodes, REFINEMENT.wide_step if long_rounds else REFINEMENT.narrow_step)
     if not many_read or settings.constraints:
         return
-    while (tree := h_add_tree(nearby.relaxed, levels(tuple(objectives)))) is not None:
-        order = executable_order(nearby.relaxed, tree)
+    while (tree := h_add_tree(nearby.relaxation, levels(tuple(objectives)))) is not None:
+        order = executable_order(nearby.relaxation, tree)
         assert order is not None
-        lacking = nearby.lacking(order)
-        if not lacking:
+        open_nodes = nearby.open_nodes_used(order)
+        if not open_nodes:
             return
-        nearby.grow(lacking, REFINEMENT.narrow_step)
+        nearby.grow(open_nodes, REFINEMENT.narrow_step)
 
 
 def least_with_more(
     costs: Costs, order: Sequence[Objective], extra_units: int = 1
 ) -> tuple[int | Fraction, ...]:
-    """Return a lower bound on the key of any tree with at least ``extra_units`` more units than ``costs``.
+    """Return a lower bound on the cost of any tree with at least ``extra_units`` more units than ``costs``.
 
-    The tree costs at least ``costs`` by every objective. A key has the cost by each objective in ``order``.
+    The tree costs at least ``costs`` by every objective. The bound has the cost by each objective in
+    ``order``.
     """
     least_costs = dict(zip(order, costs.key(order), strict=True))
     least_costs[Objective.UNITS] += extra_units
     return tuple(least_costs.values())
 
 
-class _OnlyWarnings(Reporter):
-    """A reporter that passes on only warnings and bounds; they hold for the whole network, unlike trees."""
+class _WarningsAndBounds(Reporter):
+    """A reporter that passes on warnings and bounds, but no trees, which may not be trees of the whole."""
 
     def __init__(self, reporter: Reporter) -> None:
         self.warning = reporter.warning  # type: ignore[method-assign]

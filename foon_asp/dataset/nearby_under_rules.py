@@ -1,12 +1,14 @@
 """Optimal trees under rules that may require units of a large store that lead to no goal.
 
-Call the units read for the goals near, and all others far. Let c be the optimum of the relaxation of
+Units read for the goals are called near, and all others far. Let c be the optimum of the relaxation of
 :class:`~foon_asp.dataset.nearby.Nearby` without rules. A tree with a far unit v has units for the goals,
 which cost at least c, and units that lead to v. These cost at least the distance of v from the near units;
 the outline of the store has the distances of all units. So a tree that costs less than q has only far units
-whose distance is less than q - c. Once all such units that rules may require were read, with all units that
-lead to them, the units read of any such tree are a tree of the relaxation that keeps the rules. So no tree is
-better than both the optimum of that relaxation and q.
+whose distance is less than q - c.
+
+All such units that rules may require are read, with all units that lead to them. In any tree that costs less
+than q, the units that were read are then a tree of the relaxation that keeps the rules. So no tree is better
+than both the optimum of that relaxation and q.
 """
 
 from collections.abc import Sequence
@@ -44,7 +46,7 @@ NEARBY = NearbyTuning()
 def solve_nearby_under(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, reporter: Reporter
 ) -> Outcome | None:
-    """Solve a question to a large store under rules, reading units near the goals and units for the rules.
+    """Solve a problem of a large store under rules, reading units near the goals and units for the rules.
 
     Return an outcome with a proved optimum, or with a tree that may not be optimal; its ``stopped`` is set
     only at a limit. Return ``None`` if no tree was found or the method does not apply: the caller then reads
@@ -59,7 +61,7 @@ def solve_nearby_under(
         return None
     program_of(nearby.problem, settings, reporter.warning)
     if unconstrained.status is not Status.OPTIMAL:
-        return _unknown(nearby, unconstrained)
+        return _outcome_without_tree(nearby, unconstrained)
     search = _Search(nearby, unconstrained, settings, reporter)
     try:
         outcome = search.result()
@@ -72,7 +74,7 @@ def solve_nearby_under(
 
 
 class _Search:
-    """A search for a tree that is proved optimal; ``unconstrained`` is the optimum without rules."""
+    """A search for a proved optimum under rules; ``unconstrained`` is the optimum without rules."""
 
     def __init__(
         self, nearby: Nearby, unconstrained: Outcome, settings: Settings, reporter: Reporter
@@ -81,7 +83,7 @@ class _Search:
         self._nearby, self._unconstrained = nearby, unconstrained
         self._settings, self._reporter = settings, reporter
         self._order = levels(unconstrained.objectives)
-        self.best = _unknown(nearby, unconstrained)  # the incumbent, without a proof
+        self.best = _outcome_without_tree(nearby, unconstrained)  # the incumbent, without a proof
 
     def result(self) -> Outcome | None:
         """Return the optimum, or the incumbent if a limit is reached or optimality is not proved.
@@ -105,21 +107,21 @@ class _Search:
                 None if requests is None else [distances.units_matching(request.rows) for request in requests]
             )
         if requests is None or kinds is None:  # the rules depend only on the units of a tree
-            tree = self._solved(nearby.problem)
+            tree = self._solve_part(nearby.problem)
         else:
-            tree = self._some_tree(distances, kinds, [request.always for request in requests])
+            tree = self._find_tree(distances, kinds, [request.always for request in requests])
             if tree.status is Status.INFEASIBLE:
                 return tree
-        problem = None if tree.stopped else self._with_better_trees(tree, distances, kinds)
+        problem = None if tree.stopped else self._problem_of_better_trees(tree, distances, kinds)
         if problem is None:
             return self.best._replace(stopped=tree.stopped)
-        outcome = self._solved(problem)
+        outcome = self._solve_part(problem)
         if outcome.status is not Status.OPTIMAL:
             return self.best._replace(stopped=outcome.stopped)
-        return self._proved(outcome)
+        return self._as_proved(outcome)
 
-    def _solved(self, problem: Problem) -> Outcome:
-        """Solve the question over a part of the network; if there is a tree, make it the incumbent."""
+    def _solve_part(self, problem: Problem) -> Outcome:
+        """Solve the problem of a part of the network; if there is a tree, make it the incumbent."""
         outcome = solve(problem, self._unconstrained.objectives, self._settings)
         if outcome.units is not None:
             self.best = self.best._replace(
@@ -127,21 +129,22 @@ class _Search:
             )
         return outcome
 
-    def _some_tree(
+    def _find_tree(
         self, distances: UnitDistances, kinds: Sequence[Mask], is_required: Sequence[bool]
     ) -> Outcome:
         """Search for a tree that keeps the rules, first among few units, then among more.
 
-        These are the units of the optimum without rules, and the nearest units of each kind that the rules
-        can require. If no tree is found, the status of the outcome is ``infeasible`` if a required kind has
-        no unit that can execute, else ``unknown``.
+        The units are those of the optimum without rules, and the nearest units of each kind that the rules
+        can require. ``is_required`` says of each kind whether the rules always require it. If no tree is
+        found, the status of the outcome is ``infeasible`` if a required kind has no unit that can execute,
+        else ``unknown``.
         """
-        tree = _numbers(self._unconstrained)
+        tree = _whole_unit_ids(self._unconstrained)
         for max_units, max_steps in NEARBY.widths:
             with self._settings.begun.watched("reading"):
                 units, least_distances = distances.nearest_units(kinds, tree, max_units, max_steps)
-                problem = self._nearby.among({*tree, *units})
-            outcome = self._solved(problem)
+                problem = self._nearby.problem_of_units({*tree, *units})
+            outcome = self._solve_part(problem)
             if outcome.units is not None or outcome.stopped:
                 return outcome
             if any(
@@ -151,10 +154,10 @@ class _Search:
                 return outcome
         return outcome._replace(status=Status.UNKNOWN)
 
-    def _with_better_trees(
+    def _problem_of_better_trees(
         self, tree: Outcome, distances: UnitDistances, kinds: Sequence[Mask] | None
     ) -> Problem | None:
-        """Return the question over all units that a tree as good as ``tree``, or better, can have.
+        """Return the problem over all units that can be in a tree as good as ``tree`` or better.
 
         Return ``None`` if these units are more than :attr:`NearbyTuning.max_units`, or if ``tree`` is an
         outcome without a tree.
@@ -167,16 +170,16 @@ class _Search:
             far_units = [] if near_units is None else distances.relevant_units(kinds, near_units, max_cost)
             if near_units is None or len(far_units) > NEARBY.max_units:
                 return None
-            return self._nearby.among({*near_units, *far_units, *_numbers(tree)})
+            return self._nearby.problem_of_units({*near_units, *far_units, *_whole_unit_ids(tree)})
 
     def _read_near_units(self, costs: Costs) -> set[int] | None:
-        """Read all units that a tree for the goals can have if it costs at most ``costs``.
+        """Read all units for the goals that can be in a tree that costs at most ``costs``.
 
         Return their ids in the whole network, maybe with a few more units; ``None`` if they are too many.
         """
         nearby, deadline = self._nearby, self._settings.begun
-        while nearby.units <= NEARBY.max_units:
-            relaxed = nearby.relaxed
+        while nearby.unit_count <= NEARBY.max_units:
+            relaxed = nearby.relaxation
             relaxed_bound = reduce_under_rules(
                 relaxed, self._order, expired=lambda: deadline.passed, course=BOUND
             )
@@ -185,7 +188,7 @@ class _Search:
                 return None
             units = subproblem.units_within(subproblem.costs.combined_cost(costs), lambda: deadline.passed)
             deadline.check()
-            open_nodes = nearby.open_to(units)
+            open_nodes = nearby.open_nodes_needed(units)
             if not open_nodes:
                 return {*map(relaxed.network.unit_number, units)}
             nearby.grow(open_nodes, REFINEMENT.wide_step)
@@ -203,8 +206,8 @@ class _Search:
             return FAR - 1
         return next(extra for extra in count() if key <= least_with_more(least_costs, order, extra + 1))
 
-    def _proved(self, outcome: Outcome) -> Outcome:
-        """Return the outcome as proved for the whole network.
+    def _as_proved(self, outcome: Outcome) -> Outcome:
+        """Return the outcome as proved for the whole network, and report its tree.
 
         Its cuts are omitted, because they hold only for a part of the network.
         """
@@ -215,18 +218,18 @@ class _Search:
         return outcome._replace(proof=proof, cuts=(), cases=None)
 
 
-def _numbers(outcome: Outcome) -> list[int]:
+def _whole_unit_ids(outcome: Outcome) -> list[int]:
     """Return the units of the tree of an outcome, by id in the whole network; empty without a tree."""
     return [*map(outcome.problem.network.unit_number, outcome.units or ())]
 
 
-def _unknown(nearby: Nearby, unconstrained: Outcome) -> Outcome:
-    """Return an outcome without a tree, whose bound is that of the optimum without rules."""
+def _outcome_without_tree(nearby: Nearby, unconstrained: Outcome) -> Outcome:
+    """Return an outcome of unknown status, whose bound is that of the optimum without rules."""
     first_objective = levels(unconstrained.objectives)[0]
     bounds = {
         objective: bound for objective, bound in unconstrained.bounds.items() if objective == first_objective
     }
-    blank = unconstrained._replace(
+    without_tree = unconstrained._replace(
         status=Status.UNKNOWN, units=None, costs=None, proof=None, cuts=(), cases=None
     )
-    return blank._replace(problem=nearby.problem, bounds=bounds)
+    return without_tree._replace(problem=nearby.problem, bounds=bounds)

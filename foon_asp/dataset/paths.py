@@ -10,8 +10,8 @@ File = str | PathLike[str]
 Files = File | Iterable[File]
 
 
-def files(paths: Files) -> tuple[Path, ...]:
-    """Return one path or several as a tuple."""
+def as_paths(paths: Files) -> tuple[Path, ...]:
+    """Return one path or several as a tuple of paths."""
     is_single = isinstance(paths, str | PathLike)
     return tuple(map(as_path, [paths] if is_single else paths))  # type: ignore[arg-type]
 

@@ -22,7 +22,7 @@ class DataPrices(NamedTuple):
 
     @classmethod
     def of(cls, prices: UnitPrices | None) -> "DataPrices":
-        """Return prices that are all in memory."""
+        """Return the prices of data in memory; ``None`` is no prices."""
         return cls() if prices is None else cls(prices.motions, prices.units)
 
 

@@ -15,32 +15,33 @@ from foon_asp.text.object_list import ListedObject
 from foon_asp.text.unknown_node import GoalError, Wording
 
 
-class Named(Protocol):
-    """Data that names are looked up in."""
+class NamedData(Protocol):
+    """The interface of data in which names are looked up."""
 
     @property
     def names(self) -> NodeNames:
-        """The names of object nodes."""
+        """The lookup of object nodes by name."""
 
     @property
     def listed(self) -> Sequence[ListedObject]:
-        """The entries of the goals file, whose names mean goals."""
+        """The entries of the goals file; a goal may be named as they name it."""
 
     def at_hand(self, o: int) -> bool:
-        """Whether the kitchen has an object node, by id."""
+        """Whether an object node, by id, is in the kitchen."""
 
 
-class NamesAndUnits(NodeNames, Protocol):
-    """The names of object nodes and units."""
+class NodeAndUnitNames(NodeNames, Protocol):
+    """The lookup of object nodes by name, and of the ids of units."""
 
     def unit_id(self, unit: FunctionalUnit) -> int | None:
         """Return the id of a unit, or ``None`` where the network does not have it."""
 
 
-def node_id(dataset: Named, name: str | ObjectNode, what: str) -> int:
+def node_id(dataset: NamedData, name: str | ObjectNode, what: str) -> int:
     """Return the id of a named node in the whole network; ``what`` is its noun, such as ``kitchen item``.
 
-    Raises :class:`UserError` with candidates for a name that means no object node, or several.
+    If the noun is ``goal``, names of the goals file count too. Raises :class:`UserError` with candidates for
+    a name that means no object node, or several.
     """
     names = dataset.names
     if isinstance(name, ObjectNode):
@@ -51,21 +52,21 @@ def node_id(dataset: Named, name: str | ObjectNode, what: str) -> int:
     try:
         return find_goal(name, names, dataset.listed if what == "goal" else (), Wording(what, ""))
     except GoalError as error:
-        raise UserError(in_python(error)) from None
+        raise UserError(python_error_text(error)) from None
 
 
-def node_ids(dataset: Named, names: Names, what: str) -> list[int]:
+def node_ids(dataset: NamedData, names: Names, what: str) -> list[int]:
     """Return the ids of named object nodes, each found as by :func:`node_id`."""
-    return [node_id(dataset, name, what) for name in listed(names)]
+    return [node_id(dataset, name, what) for name in names_as_list(names)]
 
 
 def stated_copies(
-    dataset: Named, amounts: Mapping[Any, int | None], what: str, least: int = 1
+    dataset: NamedData, amounts: Mapping[Any, int | None], what: str, least: int = 1
 ) -> dict[ObjectNode, int]:
-    """Return amounts by object node, from amounts by name; names with the amount ``None`` are left out.
+    """Return numbers of copies by object node, from numbers by name; ``None`` as a number is left out.
 
-    Raises :class:`UserError` as :func:`node_id` does, and for an amount that is not a whole number of at
-    least ``least``.
+    Raises :class:`UserError` as :func:`node_id` does, and for a number that is not a whole one of at least
+    ``least``.
     """
     copies: dict[ObjectNode, int] = {}
     for name, amount in amounts.items():
@@ -80,13 +81,14 @@ def stated_copies(
     return copies
 
 
-def item_id(dataset: Named, name: str | ObjectNode) -> int:
-    """Return the id of a kitchen item; a label means the node with nothing else, or the only item with it.
+def item_id(dataset: NamedData, name: str | ObjectNode) -> int:
+    """Return the id of a named kitchen item.
 
-    Raises :class:`UserError` for a name that is no item, and with candidates for a label of several items.
+    A label means the item with nothing but the label, or else the only item with it. Raises
+    :class:`UserError` for a name that is no item, and with candidates for a label of several items.
     """
     names = dataset.names
-    label = None if isinstance(name, ObjectNode) else _label(name)
+    label = None if isinstance(name, ObjectNode) else _bare_label(name)
     if label is not None:
         bare_node = names.object_id(ObjectNode(label))
         if bare_node is not None and dataset.at_hand(bare_node):
@@ -97,7 +99,7 @@ def item_id(dataset: Named, name: str | ObjectNode) -> int:
         items = [o for o in ids if dataset.at_hand(o)]
         if len(items) > 1:
             message = f"the kitchen has {len(items)} items with the label {label!r}; name those you mean"
-            raise UserError(in_python(GoalError(message, [str(names.node(o)) for o in items])))
+            raise UserError(python_error_text(GoalError(message, [str(names.node(o)) for o in items])))
         if count:
             if not items:
                 raise UserError(f"the kitchen has nothing with the label {label!r}")
@@ -108,8 +110,8 @@ def item_id(dataset: Named, name: str | ObjectNode) -> int:
     return item
 
 
-def _label(name: str) -> str | None:
-    """Return the label in a name that has nothing but a label; ``None`` for a name of a whole node.
+def _bare_label(name: str) -> str | None:
+    """Return the label if a name is nothing but a label; ``None`` for a name of a whole node.
 
     A name that is not valid notation counts as a label, as written.
     """
@@ -123,7 +125,7 @@ def _label(name: str) -> str | None:
 def changed_rates(
     rates: Mapping[str, Fraction] | None, changed: Mapping[str, Number] | None, motions: Collection[str]
 ) -> Mapping[str, Fraction] | None:
-    """Return success rates by motion with some ``changed``; ``None`` if there are no rates at all.
+    """Return success rates by motion, with those in ``changed`` replaced; ``None`` if both are ``None``.
 
     ``motions`` are all motions of the network. Raises :class:`UserError` for an unknown motion.
     """
@@ -143,12 +145,12 @@ def changed_rates(
 
 
 def changed_prices(
-    prices: UnitPrices, changed: UnitPricesNamed, motions: Collection[str], names: NamesAndUnits
+    prices: UnitPrices, changed: UnitPricesNamed, motions: Collection[str], names: NodeAndUnitNames
 ) -> UnitPrices:
-    """Return ``prices`` with some prices changed, by the name of a motion or by unit.
+    """Return ``prices`` with some of them replaced; ``changed`` has prices by motion and by unit.
 
-    ``names`` looks units up. ``motions`` are all motions of the network; other motions raise
-    :class:`UserError`.
+    Below level 3, a price counts for all units that a unit stands for. ``names`` looks units up. ``motions``
+    are all motions of the network. Raises :class:`UserError` for other motions and units.
     """
     by_motion, by_unit = dict(prices.motions), dict(prices.units)
     for named, value in changed.items():
@@ -172,13 +174,13 @@ def changed_prices(
     return UnitPrices(by_motion, by_unit)
 
 
-def listed(names: Names) -> list[str | ObjectNode]:
+def names_as_list(names: Names) -> list[str | ObjectNode]:
     """Return one name or several as a list."""
     # a node is a tuple, and so could pass for several names
     return [names] if isinstance(names, str | ObjectNode) else list(names)
 
 
-def in_python(error: GoalError) -> str:
-    """Return the text of an error, whose candidates are written as Python strings."""
+def python_error_text(error: GoalError) -> str:
+    """Return the text of an error, with its candidates written as Python strings."""
     lines = [error.message, *(f"  {candidate!r}" for candidate in error.candidates)]
     return "\n".join(lines + ([f"  ... and {error.hidden} more"] if error.hidden else []))

@@ -2,7 +2,7 @@
 
 import time
 
-from foon_asp.dataset.dataset import Dataset, left_out
+from foon_asp.dataset.dataset import Dataset, left_out_warning
 from foon_asp.problem import first_sources, unrated_remarks
 from foon_asp.text.data_folder import DataFiles, read_data
 from foon_asp.text.diagnostics import brief_summary, summarize
@@ -11,18 +11,19 @@ from foon_asp.text.repeated_node import repeated_note
 
 
 def read_dataset(files: DataFiles, lenient: bool = False, level: int = 3) -> Dataset:
-    """Read text files, or open the store that is named in their place.
+    """Read text files, or open the store that is named as the network.
 
-    Raises :class:`UserError` for input that is not understood. ``remarks`` has the assumptions made.
+    The remarks of the dataset are the assumptions made. Raises :class:`UserError` for input that is not
+    understood.
     """
     began = time.perf_counter()
     if any(map(is_store, files.network)):
         # imports SQLite, which text does without
-        from foon_asp.dataset.reading_store import read_stored  # noqa: PLC0415
+        from foon_asp.dataset.reading_store import read_store  # noqa: PLC0415
 
-        return read_stored(files, level)
+        return read_store(files, level)
     data = read_data(files, lenient, level)
-    remarks = [left_out(data.left_out)] if data.left_out else []
+    remarks = [left_out_warning(data.left_out)] if data.left_out else []
     if data.rates is not None:
         remarks += unrated_remarks(first_sources(data.network), data.rates)
     remarks += repeated_note(data.repeated)

@@ -2,7 +2,7 @@
 
 import time
 
-from foon_asp.dataset.dataset import Dataset, left_out
+from foon_asp.dataset.dataset import Dataset, left_out_warning
 from foon_asp.dataset.kitchen import Kitchen
 from foon_asp.dataset.prices import DataPrices
 from foon_asp.dataset.store_source import StoreSource
@@ -25,10 +25,11 @@ from foon_asp.text.unit_amount_list import UNIT_AMOUNTS
 from foon_asp.text.unit_price_list import read_unit_prices
 
 
-def read_stored(files: DataFiles, level: int) -> Dataset:
-    """Open a store that is named in place of network files; other named files replace what was imported.
+def read_store(files: DataFiles, level: int) -> Dataset:
+    """Open the store that is named as the network; other named files replace what was imported.
 
-    Below level 3 the whole store is read, since nodes are merged at such a level.
+    Below level 3, the whole store is read and closed, since nodes are merged at such a level. Raises
+    :class:`UserError` if another network is named, too.
     """
     if len(files.network) > 1:
         raise UserError(
@@ -67,10 +68,10 @@ def read_stored(files: DataFiles, level: int) -> Dataset:
         dataset = dataset.with_kitchen(kitchen)
     remarks = [] if dataset.rates is None else [*unrated_remarks(store.motion_sources(), dataset.rates)]
     if store.left_out:
-        remarks.append(f"{left_out(store.left_out)} when the store was made")
+        remarks.append(f"{left_out_warning(store.left_out)} when the store was made")
     remarks += repeated_note(store.repeated)
     if level < 3:
-        dataset = Dataset.of(_at_level(dataset.data, level))
+        dataset = Dataset.of(_data_at_level(dataset.data, level))
         store.close()
     dataset.source.seconds = time.perf_counter() - began
     return dataset.with_remarks(
@@ -78,8 +79,8 @@ def read_stored(files: DataFiles, level: int) -> Dataset:
     )
 
 
-def _at_level(data: Data, level: int) -> Data:
-    """Return data at a level, with the kitchen and the goals matched at that level."""
+def _data_at_level(data: Data, level: int) -> Data:
+    """Return data reduced to a level, with the kitchen and the goals matched at that level."""
     network = network_at_level(data.network, level)
     goals = tuple(entry._replace(pattern=pattern_at_level(entry.pattern, level)) for entry in data.goals)
     kitchen = starting_kitchen(network).nodes if data.starting else kitchen_nodes(network, data.kitchen_items)

@@ -7,11 +7,10 @@ from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from foon_asp.dataset.data_source import Source
+from foon_asp.dataset.data_source import DataSource
 from foon_asp.dataset.prices import DataPrices
 from foon_asp.errors import UserError
-from foon_asp.network import DataAmounts, FunctionalUnit, Network, UnitPrices
-from foon_asp.network import Source as Place
+from foon_asp.network import DataAmounts, FunctionalUnit, Network, Source, UnitPrices
 from foon_asp.problem import ContainerRule, Objective, Unpriced
 from foon_asp.store.cone import Cone
 from foon_asp.store.store import Store
@@ -27,7 +26,7 @@ if TYPE_CHECKING:  # few answers need numpy
     from foon_asp.store.unit_distances import UnitDistances
 
 
-class StoreSource(Source):
+class StoreSource(DataSource):
     """A store as the source of a dataset; variants of the dataset share what was read from it."""
 
     names: Store
@@ -36,32 +35,37 @@ class StoreSource(Source):
 
     def __init__(self, store: Store, unit_amounts: Sequence[Row[UnitAmount, int]] = ()) -> None:
         """Take an open store, and the rows of a table of amounts that replace imported amounts."""
-        self._table = unit_amounts
+        self._amount_table = unit_amounts
         self.names, self.seconds = store, 0.0
         self.unit_count, self.left_out, self.repeated = store.unit_count, store.left_out, store.repeated
         self.kitchen = StoredIds(store, "kitchen")
         self.prices = DataPrices(store.motion_prices, {}, from_file=True)
-        self._starting = StoredStartingKitchen(store)
+        self._starting_kitchen = StoredStartingKitchen(store)
 
     @cached_property
-    def _amounts_and_unmatched(self) -> tuple[DataAmounts, list[Diagnostic]]:
-        units = self.names.units_with_motions({row.name[0] for row in self._table}) if self._table else ()
-        return apply_amount_table(self.names.amounts, self._table, units)
+    def _amounts_and_warnings(self) -> tuple[DataAmounts, list[Diagnostic]]:
+        """The amounts of units, and warnings about rows of the table of amounts that match no unit."""
+        units = (
+            self.names.units_with_motions({row.name[0] for row in self._amount_table})
+            if self._amount_table
+            else ()
+        )
+        return apply_amount_table(self.names.amounts, self._amount_table, units)
 
     @property
     def amounts(self) -> DataAmounts:
-        """The amounts of units."""
-        return self._amounts_and_unmatched[0] if self._table else self.names.amounts
+        """The numbers of copies that units take and make of object nodes."""
+        return self._amounts_and_warnings[0] if self._amount_table else self.names.amounts
 
     @property
     def unmatched_amounts(self) -> list[Diagnostic]:
         """Warnings about rows of the table of amounts that match no unit."""
-        return self._amounts_and_unmatched[1] if self._table else []
+        return self._amounts_and_warnings[1] if self._amount_table else []
 
     @property
-    def starting(self) -> StoredStartingKitchen:
+    def starting_kitchen(self) -> StoredStartingKitchen:
         """The starting kitchen."""
-        return self._starting
+        return self._starting_kitchen
 
     @property
     def motions(self) -> Collection[str]:
@@ -74,23 +78,29 @@ class StoreSource(Source):
         return self.names.digests
 
     @contextmanager
-    def _timed(self) -> Iterator[None]:
+    def _add_reading_time(self) -> Iterator[None]:
+        """Add the time of a ``with`` block to :attr:`seconds`."""
         began = time.perf_counter()
         yield
         self.seconds += time.perf_counter() - began
 
     @cached_property
-    def _whole(self) -> tuple[Network, frozenset[int]]:
-        with self._timed():
+    def _network_and_kitchen(self) -> tuple[Network, frozenset[int]]:
+        """The whole network and the kitchen, read at the first access."""
+        with self._add_reading_time():
             return self.names.read_whole()
 
-    def whole(self) -> Network:
-        """Read the whole network."""
-        return self._whole[0]
+    def whole_network(self) -> Network:
+        """Return the whole network, which is read at the first call."""
+        return self._network_and_kitchen[0]
 
-    def touched(self) -> Network:
+    def network_read_on_access(self) -> Network:
         """Return the whole network: in memory if it was read, otherwise one that reads on access."""
-        return self._whole[0] if "_whole" in vars(self) else TouchedNetwork.of(self.names)
+        return (
+            self._network_and_kitchen[0]
+            if "_network_and_kitchen" in vars(self)
+            else TouchedNetwork.of(self.names)
+        )
 
     def cone(
         self,
@@ -100,13 +110,13 @@ class StoreSource(Source):
         available: Container[int],
         max_units: int | None,
     ) -> Cone:
-        """Read the cone of goals, or about ``max_units`` units of it."""
-        with self._timed():
+        """Read the cone of goals, or about ``max_units`` units of it; see :meth:`DataSource.cone`."""
+        with self._add_reading_time():
             return self.names.cone(goals, containers, utensils, available, max_units)
 
-    def part(self, units: Iterable[int], objects: Iterable[int]) -> Network:
+    def network_part(self, units: Iterable[int], objects: Iterable[int]) -> Network:
         """Read a network that has the given units with their nodes, and the given further nodes."""
-        with self._timed():
+        with self._add_reading_time():
             return self.names.read_part(units, objects)
 
     def unit_distances(
@@ -116,9 +126,10 @@ class StoreSource(Source):
         rates: Mapping[str, Fraction] | None,
         objective: Objective,
     ) -> "UnitDistances":
-        """Return the distance of each unit by an objective: a lower bound on the cost of trees with the unit.
+        """Return the distance of each unit: a lower bound on the cost of any tree with the unit.
 
-        Inputs that are ``utensils``, by label, are ignored.
+        Costs are by ``objective``, and the nodes of ``kitchen`` are available, by id. Inputs whose labels are
+        ``utensils`` are ignored.
         """
         from foon_asp.store.unit_distances import UnitDistances  # noqa: PLC0415 (few answers need numpy)
 
@@ -126,14 +137,17 @@ class StoreSource(Source):
         available, skipped = outline.node_mask(kitchen), outline.labelled_nodes(utensils)
         return UnitDistances(outline, available, skipped, rates, objective)
 
-    def true_digests(self) -> dict[str, str]:
-        """Compute the digests that the store states; raises :class:`UserError` if one is not true."""
+    def checked_digests(self) -> dict[str, str]:
+        """Read everything, compute the digests that the store states, and return them.
+
+        Raises :class:`UserError` if a stated digest is wrong.
+        """
         from foon_asp.proof.certificate_subject import Subject  # noqa: PLC0415 (few answers need it)
 
-        store, (network, kitchen) = self.names, self._whole
-        single = self.unit_prices(network, self.prices.from_file)
-        has_prices = self.prices.motions is not None or single is not None
-        prices = UnitPrices(self.prices.motions or {}, single or {}) if has_prices else None
+        store, (network, kitchen) = self.names, self._network_and_kitchen
+        single_prices = self.unit_prices(network, self.prices.from_file)
+        has_prices = self.prices.motions is not None or single_prices is not None
+        prices = UnitPrices(self.prices.motions or {}, single_prices or {}) if has_prices else None
         computed = Subject(network, kitchen, None, frozenset(), prices).digests()
         for name, stated in store.digests.items():
             if stated != computed[name]:
@@ -143,8 +157,8 @@ class StoreSource(Source):
                 )
         return {name: computed[name] for name in store.digests}
 
-    def motion_places(self) -> Iterable[tuple[str, Place]]:
-        """Read the motions of the network, each with the first place of the first unit that has it."""
+    def motion_sources(self) -> Iterable[tuple[str, Source]]:
+        """Read the motions of the network, each with the first source of the first unit that has it."""
         return self.names.motion_sources()
 
     def unit_prices(self, network: Network, from_file: bool) -> Mapping[FunctionalUnit, Fraction] | None:
@@ -152,7 +166,7 @@ class StoreSource(Source):
         return self.names.unit_prices(network, from_file) if self.names.has_unit_prices else None
 
     def unpriced(self, prices: DataPrices) -> Sequence[Unpriced]:
-        """Return the units that have no price, by motion."""
+        """Return the number of units without a price, for each motion that has any."""
         return self.names.unpriced(prices.motions or {}, prices.units, prices.from_file)
 
     def kitchen_items(self) -> tuple[ListedObject, ...]:

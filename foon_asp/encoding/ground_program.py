@@ -147,7 +147,7 @@ def _statistics_lines(statistics: Any, name: str = "") -> Iterator[str]:
 def _wait(handle: SolveHandle, deadline: Deadline) -> None:
     """Wait for the end of a search, and cancel it at the deadline or ctrl-C."""
     try:
-        while not handle.wait(deadline.slice()):
+        while not handle.wait(deadline.seconds_to_next_check()):
             if deadline.passed:
                 handle.cancel()
                 break

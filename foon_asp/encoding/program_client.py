@@ -13,8 +13,8 @@ from foon_asp.encoding.derived import Value
 from foon_asp.encoding.run import Ended, FoundAnswer, ProgramError
 from foon_asp.encoding.stated import Stated
 from foon_asp.errors import BugError, UserError
-from foon_asp.processes.pipe import OUT_OF_MEMORY, packed
-from foon_asp.processes.worker import DiedError, Worker, give_back, take
+from foon_asp.processes.pipe import OUT_OF_MEMORY, pack_message
+from foon_asp.processes.worker import DiedError, Worker, give_back_worker, take_worker
 
 _KEY = "foon_asp.encoding.program_worker"
 _OF_MEMORY = {OUT_OF_MEMORY, -signal.SIGABRT, -9}
@@ -40,7 +40,7 @@ class WorkerProgram:
 
         ``products`` is the number of products of rates in the text.
         """
-        self._worker = take(_KEY, _start)
+        self._worker = take_worker(_KEY, _start)
         self._give_back = weakref.finalize(self, _forget, self._worker)
         command = "ground", _folder(), list(files), text, list(arguments), products, _memory_left(deadline)
         self.deadline = deadline
@@ -76,7 +76,7 @@ class WorkerProgram:
 
 def derive(text: str, name: str, arity: int, deadline: Deadline) -> list[tuple[Value, ...]]:
     """Run :func:`foon_asp.encoding.derived.derive` in another process, which is killed at the limits."""
-    worker = take(_KEY, _start)
+    worker = take_worker(_KEY, _start)
     try:
         rows: list[tuple[Value, ...]] = _ask(
             worker, deadline, "derive", text, name, arity, _memory_left(deadline)
@@ -101,7 +101,7 @@ def _folder() -> str | None:
 
 def start_in_advance() -> None:
     """Start a worker process for a later program, unless one is waiting."""
-    give_back(_KEY, take(_KEY, _start))
+    give_back_worker(_KEY, take_worker(_KEY, _start))
 
 
 def _start() -> Worker:
@@ -111,9 +111,9 @@ def _start() -> Worker:
 
 def _forget(worker: Worker) -> None:
     """Make the process drop its program, and return it to the pool."""
-    if worker.ready:
-        worker.tell(packed(("forget",)))
-    give_back(_KEY, worker)
+    if worker.is_ready:
+        worker.tell(pack_message(("forget",)))
+    give_back_worker(_KEY, worker)
 
 
 def _ask(worker: Worker, deadline: Deadline, *command: object, handlers: _Handlers | None = None) -> Any:
@@ -123,7 +123,7 @@ def _ask(worker: Worker, deadline: Deadline, *command: object, handlers: _Handle
     a limit. Raises :class:`BugError` for any other error in the worker.
     """
     try:
-        kind, value = worker.ask(packed(command), deadline, handlers)
+        kind, value = worker.ask(pack_message(command), deadline, handlers)
     except DiedError as died:
         raise _error_of_death(died.code, worker.has_spoken, deadline) from None
     if kind == "refused":
@@ -141,7 +141,7 @@ def _error_of_death(code: int, has_spoken: bool, deadline: Deadline) -> UserErro
     It is :class:`LimitError` if memory ran out; else the rules, or the start of Python, are to blame.
     """
     if code in _OF_MEMORY or (deadline.memory is not None and code == -signal.SIGSEGV):
-        deadline.out_of_memory()
+        deadline.stop_out_of_memory()
         return LimitError(deadline)
     if code == -signal.SIGFPE:
         return UserError(

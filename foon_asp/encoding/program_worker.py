@@ -10,7 +10,7 @@ from foon_asp.encoding.ground_program import GroundProgram
 from foon_asp.encoding.run import ProgramError
 from foon_asp.errors import UserError
 from foon_asp.processes.memory_limit import limit_own_memory
-from foon_asp.processes.pipe import OUT_OF_MEMORY, receive, requests, send
+from foon_asp.processes.pipe import OUT_OF_MEMORY, become_worker, receive, send
 
 
 def serve() -> None:
@@ -19,7 +19,7 @@ def serve() -> None:
     A command is a tuple of its name and parameters. An answer is a pair: ``done`` with the result, or
     ``refused``, ``fault`` or ``bug`` with the error. The process exits if memory runs out.
     """
-    commands, answers = requests(receive)
+    commands, answers = become_worker(receive)
     program: GroundProgram | None = None
 
     def obey(command: str, *parameters: Any) -> object:

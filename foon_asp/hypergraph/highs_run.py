@@ -99,11 +99,11 @@ class _Run:
             self._highs.startCallback(getattr(kinds, name))
         thread = DaemonThread(self._highs.run)
         try:
-            while not thread.ended(RUN.poll_seconds) and not self._expired():
+            while not thread.wait_for_end(RUN.poll_seconds) and not self._expired():
                 pass
         finally:
-            self._stopped = not thread.ended(0)
-            ended = thread.ended(RUN.end_seconds)
+            self._stopped = not thread.wait_for_end(0)
+            ended = thread.wait_for_end(RUN.end_seconds)
         if not ended:
             raise KeyboardInterrupt
         return bool(self._highs.getModelStatus() != highspy.HighsModelStatus.kInterrupt)

@@ -10,7 +10,7 @@ from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from foon_asp.garbage_collection import uncollected
+from foon_asp.garbage_collection import without_garbage_collection
 from foon_asp.hypergraph import greedy_stages as greedy
 from foon_asp.hypergraph import tuning
 from foon_asp.hypergraph.exact_costs import CoarseCosts, ExactCosts, TooFineError
@@ -119,7 +119,7 @@ def reduce(
     ``guard``: returns a context in which time being up interrupts computations, as ctrl-C does.
     ``solved``: solved goals of the same question. They speed up this one, and its answer is added to them.
     """
-    with uncollected():
+    with without_garbage_collection():
         with guard():
             presolve = _Presolve(_task_of(problem, objectives, reductions, expired), listener, guard)
         if solved is None or not can_use_solved_goals(presolve.task):
@@ -146,7 +146,7 @@ def reduce_under_rules(
     :data:`ROUNDS` (the default). Other arguments are those of :func:`reduce`.
     """
     presolve_tuning = tuning.PRESOLVE._replace(branching_budget=0, landmark_actions=math.inf)
-    with uncollected():
+    with without_garbage_collection():
         with guard():
             task = _task_of(problem, objectives, reductions, expired, presolve_tuning)
             presolve = _Presolve(task, listener, guard, redundant)
@@ -185,7 +185,7 @@ def reduce_at_costs(
     if below:  # clingo gets the remaining actions with an incumbent
         presolve_tuning = presolve_tuning._replace(relaxed_actions=presolve_tuning.easy_actions)
     reductions = {Reduction.DEAR, Reduction.BOUNDS} if below else ALL
-    with uncollected():
+    with without_garbage_collection():
         task = _task_of(subproblem.problem, objectives, reductions, expired, presolve_tuning)
         task = replace(task, costs=costs, coarse_costs=costs, below=below, scope=subproblem.remaining)
 

@@ -4,7 +4,7 @@ import re
 from collections.abc import Collection, Container, Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from foon_asp.network.spelling import joined, one_letter_apart, without_doubles
+from foon_asp.network.spelling import one_letter_apart, without_doubles, without_separators
 
 _PLURAL_ENDING = re.compile(r"e?s$")
 _VERB_ENDING = re.compile(r"(?:e?[sdr]|[ey])$")  # juice, juiced; flakes, flaked; mix, mixer; salt, salty
@@ -111,7 +111,9 @@ def _spelling_variants(counts: dict[str, int], known_words: Collection[str]) -> 
             continue
         usual = max(names, key=lambda name: (not _has_unknown_word(name, known_words), counts[name]))
         for name in names:
-            if name != usual and (len(skeleton) >= _SLIPS.long or joined(name) == joined(usual)):
+            if name != usual and (
+                len(skeleton) >= _SLIPS.long or without_separators(name) == without_separators(usual)
+            ):
                 yield name, usual
 
 

@@ -2,5 +2,8 @@
 
 
 def counted(number: int, noun: str, form: str = "") -> str:
-    """Return a number with its noun: ``1 unit``, ``2 units``; ``form`` is how to write it."""
+    """Return a number with its noun, in the plural unless the number is 1: ``1 unit``, ``2 units``.
+
+    ``form`` is a format specification of Python for the number: ``,`` makes ``1,000 units``.
+    """
     return f"{number:{form}} {noun}" + ("" if number == 1 else "s")

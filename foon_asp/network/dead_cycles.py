@@ -9,11 +9,11 @@ from foon_asp.network.graph import cycles
 
 
 class DeadCycle(NamedTuple):
-    """A set of object nodes, each made only by units that need one of the set.
+    """A set of object nodes, each made only by units that need a node of the set.
 
-    ``steps`` are a shortest cycle through the node that is needed first in the order of the units. Each step
-    is a node and the unit that needs it and makes the node of the next step; the last unit makes the node of
-    the first step. ``nodes`` is the whole set.
+    ``nodes`` are the ids of the set. ``steps`` are a shortest cycle in it, which begins with the node that
+    the earliest unit needs. Each step is the id of a node and the id of a unit that needs the node. The unit
+    makes the node of the next step; the last unit makes the node of the first step.
     """
 
     steps: tuple[tuple[int, int], ...]
@@ -21,49 +21,53 @@ class DeadCycle(NamedTuple):
 
 
 def dead_cycles(network: Network, available: Collection[int] = ()) -> list[DeadCycle]:
-    """Find the dead cycles among nodes that are not ``available``, in time linear in the size of the network.
+    """Return the dead cycles among nodes that are not ``available``, in time linear in the network.
 
     A node that a unit needs, such as the knife that chops, does not count as made by this unit. Nodes that no
-    unit makes are available too. If no dead cycle is found, every node can be made.
+    unit makes count as available. If there is no dead cycle, every node can be made.
 
-    From each strongly connected component, the nodes that can be made are removed. The dead cycles of the
-    component are those components of the remainder that need no other component of the remainder.
+    Algorithm: nodes that can be made are removed from each strongly connected component. The rest of the
+    component falls into components of its own. Such a component is a dead cycle if it needs no other one.
     """
     inputs = [frozenset(nodes) for nodes in network.inputs]
     made = [
         tuple(node for node in outputs if node not in needed)
         for needed, outputs in zip(inputs, network.outputs, strict=True)
     ]
-    waiting = {node for nodes in made for node in nodes}.difference(available)
-    component = _components(network, made, waiting)
+    made_nodes = {node for nodes in made for node in nodes}.difference(available)
+    component = _components(network, made, made_nodes)
     if not component:
         return []
-    dead = _unreachable(network, made, component)
+    dead = _dead_nodes(network, made, component)
     component = {node: number for node, number in component.items() if node in dead}
-    roots = _components(network, made, dead)
+    subcomponent = _components(network, made, dead)
     members: dict[int, set[int]] = {}
-    for node, root in roots.items():
-        members.setdefault(root, set()).add(node)
-    producers: dict[int, list[int]] = {root: [] for root in members}
+    for node, subnumber in subcomponent.items():
+        members.setdefault(subnumber, set()).add(node)
+    producers: dict[int, list[int]] = {subnumber: [] for subnumber in members}
     for unit, outputs in enumerate(made):
-        needed: dict[int, set[int | None]] = {}  # by component: the roots of its input nodes
+        needed: dict[int, set[int | None]] = {}  # by component: the subcomponents of its input nodes
         for node in network.inputs[unit]:
             if node in component:
-                needed.setdefault(component[node], set()).add(roots.get(node))
-        for root, number in {roots[node]: component[node] for node in outputs if node in roots}.items():
-            if needed.get(number) != {root}:  # the unit needs another set too
-                members.pop(root, None)
+                needed.setdefault(component[node], set()).add(subcomponent.get(node))
+        for subnumber, number in {
+            subcomponent[node]: component[node] for node in outputs if node in subcomponent
+        }.items():
+            if needed.get(number) != {subnumber}:  # the unit needs another set too
+                members.pop(subnumber, None)
             else:
-                producers[root].append(unit)
+                producers[subnumber].append(unit)
     return [
-        _shortest_cycle(network, made, frozenset(nodes), producers[root]) for root, nodes in members.items()
+        _shortest_cycle(network, made, frozenset(nodes), producers[subnumber])
+        for subnumber, nodes in members.items()
     ]
 
 
 def _components(network: Network, made: list[tuple[int, ...]], nodes: Collection[int]) -> dict[int, int]:
-    """Return the number of the strongly connected component of each node on a cycle, by node.
+    """Map each node on a cycle to the number of its strongly connected component.
 
-    Only ``nodes`` count. ``made`` has for each unit the nodes that it makes out of others.
+    Only ``nodes`` and the edges between them count. ``made`` has for each unit the nodes that it makes and
+    does not need.
     """
     subnetwork = replace(
         network,
@@ -73,8 +77,11 @@ def _components(network: Network, made: list[tuple[int, ...]], nodes: Collection
     return {node: number for number, component in enumerate(cycles(subnetwork)) for node in component}
 
 
-def _unreachable(network: Network, made: list[tuple[int, ...]], component: dict[int, int]) -> set[int]:
-    """Return the nodes of each component that cannot be made even if all nodes outside are available."""
+def _dead_nodes(network: Network, made: list[tuple[int, ...]], component: dict[int, int]) -> set[int]:
+    """Return the nodes that cannot be made even if all nodes outside of their component are available.
+
+    ``component`` maps each node on a cycle to the number of its component.
+    """
     lacking: dict[tuple[int, int], int] = {}  # inputs that a unit lacks, within a component of its outputs
     for unit, outputs in enumerate(made):
         for number in {component[node] for node in outputs if node in component}:
@@ -99,10 +106,10 @@ def _unreachable(network: Network, made: list[tuple[int, ...]], component: dict[
 def _shortest_cycle(
     network: Network, made: list[tuple[int, ...]], nodes: frozenset[int], producers: list[int]
 ) -> DeadCycle:
-    """Return the dead cycle of strongly connected ``nodes``, its steps found by breadth-first search.
+    """Return the dead cycle of strongly connected ``nodes``, with a shortest cycle as its steps.
 
-    ``producers`` are the units that make a node of the set, in order. The search begins at the node that they
-    need first.
+    ``producers`` are the units that make a node of the set, in order. The cycle is found by breadth-first
+    search from the node that the first of them needs.
     """
     consumers: dict[int, list[int]] = {}
     for unit in producers:

@@ -10,8 +10,8 @@ from foon_asp.network.object_node import ObjectNode
 class FunctionalUnit:
     """A motion with its input and output object nodes.
 
-    ``motion`` is its name; ``inputs`` and ``outputs`` list each node once, in the order first read. Two
-    units are the same if motion, set of inputs and set of outputs are; the order is only for people.
+    ``motion`` is its name; ``inputs`` and ``outputs`` list each node once, in the order first read. Units are
+    equal if they have the same motion, set of inputs and set of outputs, whatever the order.
 
     Example:
         >>> water, tea = foon_asp.parse_node("water"), foon_asp.parse_node("tea; hot")
@@ -36,7 +36,7 @@ class FunctionalUnit:
 
     @property
     def identity(self) -> tuple[str, frozenset[ObjectNode], frozenset[ObjectNode]]:
-        """The motion, the set of inputs and the set of outputs, which identify the unit."""
+        """The motion, the set of inputs and the set of outputs: units are equal if these are."""
         return self.motion, frozenset(self.inputs), frozenset(self.outputs)
 
     def __eq__(self, other: object) -> bool:

@@ -8,24 +8,25 @@ UNREACHED = -1
 
 
 def layers(network: Network, start: Iterable[int]) -> tuple[list[int], list[int]]:
-    """Return the layer of every object node and of every unit, or ``UNREACHED``, when ``start`` is available.
+    """Return the layers of all object nodes and of all units, by id; the nodes ``start`` are available.
 
-    A node of ``start`` is in layer 0; a unit is one layer above the highest of its inputs, and a node in the
-    layer of the lowest unit that makes it. A unit without inputs is in layer 1.
+    A node of ``start`` is in layer 0. A unit is one layer above the highest of its inputs, and in layer 1 if
+    it has none. Any other node is in the layer of the lowest unit that makes it. The layer of what cannot be
+    reached is ``UNREACHED``.
     """
     node_layer = [UNREACHED] * len(network.objects)
     unit_layer = [UNREACHED] * len(network)
-    waiting = [len(inputs) for inputs in network.inputs]
+    missing_inputs = [len(inputs) for inputs in network.inputs]
     frontier = list(dict.fromkeys(start))
     for node in frontier:
         node_layer[node] = 0
-    ready = [unit for unit, inputs in enumerate(waiting) if not inputs]
+    ready = [unit for unit, inputs in enumerate(missing_inputs) if not inputs]
     layer = 0
     while frontier or ready:
         for node in frontier:
             for unit in network.consumers[node]:
-                waiting[unit] -= 1
-                if not waiting[unit]:
+                missing_inputs[unit] -= 1
+                if not missing_inputs[unit]:
                     ready.append(unit)
         layer += 1
         frontier = []
@@ -40,11 +41,13 @@ def layers(network: Network, start: Iterable[int]) -> tuple[list[int], list[int]
 
 
 def cycles(network: Network) -> list[list[int]]:
-    """Return the sets of object nodes that need each other: strongly connected components with a cycle.
+    """Return the strongly connected components of object nodes that have a cycle, each as sorted ids.
 
     There is an edge from each input of a unit to each of its outputs. A node that is an input and an output
-    of one unit is a cycle by itself. (Tarjan, SIAM J. Comput. 1, 1972; units are vertices too, so that a unit
-    with many inputs and outputs does not have the product of them as edges.)
+    of one unit is a cycle by itself.
+
+    The algorithm is that of Tarjan (SIAM J. Comput. 1, 1972). Units are vertices too, which saves an edge for
+    each pair of an input and an output.
     """
     size = len(network.objects)
     index = [0] * (size + len(network))  # 0: not met
@@ -92,11 +95,12 @@ def cycles(network: Network) -> list[list[int]]:
     return components
 
 
-def parts(network: Network) -> list[int]:
-    """Return the number of units of each connected component of the network, largest first (union-find)."""
+def component_sizes(network: Network) -> list[int]:
+    """Return the number of units of each connected component, largest first (union-find)."""
     parent = list(range(len(network.objects)))
 
     def root(node: int) -> int:
+        """Return the representative node of a component, and shorten the path to it."""
         while parent[node] != node:
             parent[node] = parent[parent[node]]
             node = parent[node]

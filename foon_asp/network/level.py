@@ -15,14 +15,17 @@ LEVELS = (1, 2, 3)
 
 
 def node_at_level(node: ObjectNode, level: int) -> ObjectNode:
-    """Return a node with only the parts that count at a level."""
+    """Return a node reduced to its label at level 1, or to label, states and relations at level 2.
+
+    At level 3, return it unchanged.
+    """
     if level == 3:
         return node
     return ObjectNode(node.label) if level == 1 else ObjectNode(node.label, node.states, node.relations)
 
 
 def unit_at_level(unit: FunctionalUnit, level: int) -> FunctionalUnit:
-    """Return a unit with the parts of its nodes that count at a level; equal nodes are listed once."""
+    """Return a unit whose nodes are reduced to a level; nodes that are then equal are listed once."""
     if level == 3:
         return unit
     inputs, outputs = (
@@ -32,17 +35,22 @@ def unit_at_level(unit: FunctionalUnit, level: int) -> FunctionalUnit:
 
 
 def pattern_at_level(pattern: NodePattern, level: int) -> NodePattern:
-    """Return a kitchen or goals entry with only the parts that count at a level."""
+    """Return an entry of a kitchen or goals file with only the parts that count at a level.
+
+    At level 2 it has no contents, at level 1 its label alone. At level 3, return it unchanged.
+    """
     if level == 3:
         return pattern
     return NodePattern(pattern.label) if level == 1 else pattern._replace(ingredients=(), contents=())
 
 
 def network_at_level(network: Network, level: int) -> Network:
-    """Return a level-3 network at a level, with new ids; ``detailed`` and ``stands_for`` lead to the old ids.
+    """Return a network of level 3 reduced to a level; units that are then equal are merged.
 
-    A unit keeps the sources of all units that it stands for. Raises :class:`ValueError` when the network is
-    not of level 3 or there is no such level.
+    Nodes and units have new ids; ``detailed``, ``stands_for`` and ``objects_stand_for`` lead to the old ones.
+    A merged unit has the sources of all its units. At level 3, the network itself is returned.
+
+    Raises :class:`ValueError` if the network is not of level 3, or if there is no such level.
     """
     if level not in LEVELS or network.level != 3:
         raise ValueError(f"no way from level {network.level} to level {level}")

@@ -12,12 +12,14 @@ _NodePart = tuple[str, str]
 
 
 class UnitDifference(NamedTuple):
-    """A difference of two units, listed once however often it occurs.
+    """A difference of two units, listed once even if it occurs in several nodes.
 
-    ``kind`` is motion, label, state, relation, ingredient, input or output; the last two are whole object
-    nodes, in one-line notation. ``left`` and ``right`` are the texts of the two units, empty for a unit that
-    has no counterpart. ``of`` is the label of the first object that has the difference, empty for a motion,
-    a label and whole nodes.
+    ``kind`` is motion, label, state, relation, ingredient, input or output. ``left`` and ``right`` are the
+    different texts of the first and the second unit; a text is empty if its unit has no counterpart. For
+    input and output, they are whole object nodes in one-line notation.
+
+    ``of`` is the label of the first object with the difference. It is empty for the kinds motion, label,
+    input and output.
     """
 
     kind: str
@@ -27,15 +29,19 @@ class UnitDifference(NamedTuple):
 
     @property
     def is_slip(self) -> bool:
-        """Whether both texts of the difference are names, and almost alike."""
-        one, other = self.left, self.right
-        return bool(one and other) and (
-            one_letter_apart(one, other) or without_doubles(one) == without_doubles(other)
+        """Whether the two texts are spelled almost alike, so that one may be a typing error.
+
+        They are one letter apart, or differ only in doubled letters, capitals, blanks and the like. Neither
+        is empty.
+        """
+        return bool(self.left and self.right) and (
+            one_letter_apart(self.left, self.right)
+            or without_doubles(self.left) == without_doubles(self.right)
         )
 
 
 class NearUnits(NamedTuple):
-    """Two units that are nearly the same."""
+    """Two units that are nearly the same, and their differences."""
 
     left: FunctionalUnit
     right: FunctionalUnit
@@ -43,9 +49,10 @@ class NearUnits(NamedTuple):
 
 
 def unit_differences(left: FunctionalUnit, right: FunctionalUnit) -> tuple[UnitDifference, ...]:
-    """Return the differences of two units, each pair of names once.
+    """Return the differences of two units, each once.
 
-    Object nodes are paired greedily, those with the fewest differences first.
+    Different nodes of one side are paired greedily, those with the fewest differences first. A node without a
+    partner is a difference as a whole. A different label is not listed again as a container or an ingredient.
     """
     differences: list[UnitDifference] = []
     if left.motion != right.motion:
@@ -92,20 +99,20 @@ def unit_differences(left: FunctionalUnit, right: FunctionalUnit) -> tuple[UnitD
         # a label that differs does so as a container and as an ingredient, too
         if (
             difference.kind not in {"ingredient", "relation"}
-            or (_object(difference.left), _object(difference.right)) not in labels
+            or (_related_object(difference.left), _related_object(difference.right)) not in labels
         ):
             distinct.setdefault(difference[:3], difference)
     return tuple(distinct.values())
 
 
 def nearest_units(left: Iterable[FunctionalUnit], right: Iterable[FunctionalUnit]) -> list[NearUnits]:
-    """Return disjoint pairs of units of two lists that are nearly the same, those that differ least first.
+    """Return pairs of nearly equal units, one of each list, those with the fewest differences first.
 
-    The units of a pair have at most three differences and more than half of their features in common. At
-    least one of the common features is rare.
+    Each unit is in at most one pair. The units of a pair have at most three differences, and more than half
+    of their features in common (:func:`_features`). They share a rare key (:func:`_candidate_indices`).
     """
     lefts, rights = list(left), list(right)
-    candidates = _candidates(lefts, rights)
+    candidates = _candidate_indices(lefts, rights)
     ranked_pairs = []
     for i, unit in enumerate(lefts):
         for j in candidates[i]:
@@ -123,35 +130,35 @@ def nearest_units(left: Iterable[FunctionalUnit], right: Iterable[FunctionalUnit
     return pairs
 
 
-def units_kept_apart(units: Iterable[FunctionalUnit]) -> list[NearUnits]:
-    """Return the pairs of units in one list that have a single difference, which may be a slip.
+def units_with_one_difference(units: Iterable[FunctionalUnit]) -> list[NearUnits]:
+    """Return the pairs of units in one list that have a single difference, which may be a mistake.
 
-    The difference is in the motion, a state or a relation, or it is between two names that are spelt almost
-    alike. Units with two quite different labels are meant to be different.
+    It is a difference of motion, state or relation, or of two names that are spelled almost alike. Quite
+    different labels are taken to be intended. Both units have equally many inputs and equally many outputs.
     """
     listed = list(units)
     pairs = []
-    for i, others in enumerate(_candidates(listed, listed)):
+    for i, others in enumerate(_candidate_indices(listed, listed)):
         for j in sorted(others):
             one, other = listed[i], listed[j]
-            sizes = len(one.inputs) == len(other.inputs) and len(one.outputs) == len(other.outputs)
-            if i < j and sizes and len(differences := unit_differences(one, other)) == 1:
+            same_sizes = len(one.inputs) == len(other.inputs) and len(one.outputs) == len(other.outputs)
+            if i < j and same_sizes and len(differences := unit_differences(one, other)) == 1:
                 (only,) = differences
                 if only.kind in {"motion", "state", "relation"} or only.is_slip:
                     pairs.append(NearUnits(one, other, differences))
     return pairs
 
 
-def _candidates(
+def _candidate_indices(
     lefts: Sequence[FunctionalUnit],
     rights: Sequence[FunctionalUnit],
     max_candidates: int = 12,
     max_sharing: int = 300,
 ) -> list[list[int]]:
-    """Return for each unit of ``lefts`` the indices in ``rights`` that share the most rare keys with it.
+    """Return for each unit of ``lefts`` the indices of up to ``max_candidates`` similar units of ``rights``.
 
-    For each unit, these are at most ``max_candidates`` indices. A key that more than ``max_sharing`` units
-    have is not rare.
+    These share the most rare keys with the unit (:func:`_index_keys`), most similar first. A key is rare if
+    at most ``max_sharing`` units of ``rights`` have it.
     """
     by_key: defaultdict[object, list[int]] = defaultdict(list)
     for j, unit in enumerate(rights):
@@ -170,7 +177,11 @@ def _candidates(
 
 
 def _index_keys(unit: FunctionalUnit) -> set[object]:
-    """Return the keys of a unit: its motion, nodes, ingredients, and labels alone and with the motion."""
+    """Return the keys by which similar units are looked up.
+
+    These are the motion, and for each side its nodes, ingredients and labels. Labels are keys by themselves
+    and together with the motion.
+    """
     keys: set[object] = {unit.motion}
     for side, nodes in enumerate((unit.inputs, unit.outputs)):
         for node in nodes:
@@ -186,15 +197,15 @@ def _mostly_agree(left: FunctionalUnit, right: FunctionalUnit) -> bool:
 
 
 def _features(unit: FunctionalUnit) -> Iterator[object]:
-    """Yield the motion and each part of each node, with its side and label."""
+    """Yield the features of a unit: motion, and each part of each node with side and label of the node."""
     yield unit.motion
     for side, nodes in enumerate((unit.inputs, unit.outputs)):
         for node in nodes:
-            yield from ((side, node.label, node_part) for node_part in _parts(node))
+            yield from ((side, node.label, node_part) for node_part in _named_parts(node))
 
 
-def _parts(node: ObjectNode) -> list[_NodePart]:
-    """Return the names in a node, each with its kind."""
+def _named_parts(node: ObjectNode) -> list[_NodePart]:
+    """Return the names in a node, each after its kind: ``("state", "chopped")``."""
     return [
         ("label", node.label),
         *(("state", state) for state in sorted(node.states)),
@@ -204,28 +215,34 @@ def _parts(node: ObjectNode) -> list[_NodePart]:
 
 
 def _node_differences(node: ObjectNode, other: ObjectNode) -> tuple[UnitDifference, ...]:
-    """Return the differences of two nodes; different names of a kind are paired if equally many."""
-    parts, other_parts = Counter(_parts(node)), Counter(_parts(other))
+    """Return the differences of two nodes.
+
+    Different names of one kind are paired in alphabetical order if both nodes have equally many. Otherwise
+    each of them is a difference with an empty text on the other side.
+    """
+    parts, other_parts = Counter(_named_parts(node)), Counter(_named_parts(other))
     differences = []
     for kind in ("label", "state", "relation", "ingredient"):
         names, other_names = (
-            sorted(name for part_kind, name in (one - two).elements() if part_kind == kind)
-            for one, two in ((parts, other_parts), (other_parts, parts))
+            sorted(name for part_kind, name in (minuend - subtrahend).elements() if part_kind == kind)
+            for minuend, subtrahend in ((parts, other_parts), (other_parts, parts))
         )
-        of = "" if kind == "label" else node.label
+        label = "" if kind == "label" else node.label
         if len(names) == len(other_names):
-            differences += [UnitDifference(kind, *pair, of) for pair in zip(names, other_names, strict=True)]
+            differences += [
+                UnitDifference(kind, *pair, label) for pair in zip(names, other_names, strict=True)
+            ]
         else:
-            differences += [UnitDifference(kind, name, "", of) for name in names]
-            differences += [UnitDifference(kind, "", name, of) for name in other_names]
+            differences += [UnitDifference(kind, name, "", label) for name in names]
+            differences += [UnitDifference(kind, "", name, label) for name in other_names]
     return tuple(differences)
 
 
 def _may_correspond(node: ObjectNode, other: ObjectNode, differences: Sequence[UnitDifference]) -> bool:
-    """Whether two nodes may be meant to be one: they have one label, or two differences at most."""
+    """Whether two nodes may be versions of one: they have the same label, or at most two differences."""
     return node.label == other.label or len(differences) <= 2
 
 
-def _object(part: str) -> str:
-    """Return the object of a relation; an ingredient is returned unchanged."""
+def _related_object(part: str) -> str:
+    """Return the object in the text of a relation, such as ``in [bowl]``; return other texts unchanged."""
     return part.partition(" [")[2].rstrip("]") or part

@@ -29,13 +29,13 @@ class Network:
     ``inputs[u]`` and ``outputs[u]`` are node ids, and ``sources[u]`` lists where each copy of it was read. A
     :class:`NetworkBuilder` makes networks.
 
-    A network below ``level`` 3 has in ``detailed`` the network of level 3 that it was made from.
-    ``stands_for[u]`` are the ids there of the units that ``u`` stands for, ``objects_stand_for[o]`` those of
-    the nodes.
+    A network below ``level`` 3 was made from a network of level 3, which is ``detailed``. Unit ``u`` stands
+    for the detailed units with the ids ``stands_for[u]``, and node ``o`` for the detailed nodes with the ids
+    ``objects_stand_for[o]``.
 
     A network may be a part of a larger one that was not read in full. ``unit_numbers`` and
-    ``object_numbers`` are then the ids in the larger one, in rising order; these are the ids to show. They
-    are empty if the network is whole.
+    ``object_numbers`` then have the ids of its units and nodes in the larger one, in rising order. Users are
+    shown these ids. Both are empty if the network is whole.
 
     Example:
         >>> network = foon_asp.load().network
@@ -76,7 +76,7 @@ class Network:
         return f"<Network: {size}, level {self.level}>"
 
     def __iter__(self) -> Iterator[FunctionalUnit]:
-        """Return the units as values, in order of id."""
+        """Return an iterator over the units, in order of id."""
         return map(self.unit, range(len(self)))
 
     def is_like(self, other: "Network") -> bool:
@@ -122,7 +122,7 @@ class Network:
         return graph
 
     def unit(self, unit_id: int) -> FunctionalUnit:
-        """Return a unit as a value.
+        """Return the unit with an id.
 
         Parameters:
             unit_id: The id of the unit.
@@ -143,7 +143,7 @@ class Network:
         return self.unit_numbers[unit_id] if self.unit_numbers else unit_id
 
     def unit_of_number(self, number: int) -> int | None:
-        """Return the id of a unit here, or ``None`` if it is not here.
+        """Return the id that a unit of the whole network has here, or ``None`` if it is not here.
 
         Parameters:
             number: The id of the unit in the whole network.
@@ -154,7 +154,9 @@ class Network:
         return position if position < len(self) and self.unit_numbers[position] == number else None
 
     def units_of_numbers(self, numbers: Iterable[int]) -> tuple[int, ...]:
-        """Return the ids of units here, in the same order, without those that are not here.
+        """Return the ids that units of the whole network have here, without those that are not here.
+
+        The order stays.
 
         Parameters:
             numbers: The ids of the units in the whole network.
@@ -191,7 +193,10 @@ class Network:
         return self._unit_ids.get((unit.motion, inputs, outputs))
 
     def without(self, units: Iterable[int]) -> "Network":
-        """Return this network without some units; nodes keep their ids.
+        """Return this network without some units.
+
+        Nodes keep their ids. The other units have new ids; ``unit_numbers`` has their ids in the whole
+        network.
 
         Parameters:
             units: The ids of the units to leave out.
@@ -213,13 +218,14 @@ class Network:
     def with_copies(self, units: Sequence[int]) -> "Network":
         """Return this network with some units a second time, after all others.
 
-        Only the ids distinguish a copy from its unit; looked up as a value, a unit has the lower id.
+        Only the ids distinguish a copy from its unit; :meth:`unit_id` returns the id of the unit.
 
         Parameters:
             units: The ids of the units to copy, in the order of the copies.
         """
 
         def extended(values: tuple[_Value, ...]) -> tuple[_Value, ...]:
+            """Return values of units followed by those of the copies; an empty tuple stays empty."""
             return (*values, *(values[unit] for unit in units)) if values else ()
 
         numbers = self.unit_numbers
@@ -242,17 +248,17 @@ class Network:
 
     @cached_property
     def producers(self) -> tuple[tuple[int, ...], ...]:
-        """For each object node, the units that have it as an output, in order."""
-        return _invert(self.outputs, len(self.objects))
+        """For each object node, the ids of the units that have it as an output, in rising order."""
+        return _lists_containing(self.outputs, len(self.objects))
 
     @cached_property
     def consumers(self) -> tuple[tuple[int, ...], ...]:
-        """For each object node, the units that have it as an input, in order."""
-        return _invert(self.inputs, len(self.objects))
+        """For each object node, the ids of the units that have it as an input, in rising order."""
+        return _lists_containing(self.inputs, len(self.objects))
 
     @cached_property
     def by_label(self) -> dict[str, tuple[int, ...]]:
-        """Node ids by object label, in order."""
+        """The ids of the object nodes with each label, in rising order."""
         ids_by_label: defaultdict[str, list[int]] = defaultdict(list)
         for object_id, node in enumerate(self.objects):
             ids_by_label[node.label].append(object_id)
@@ -260,7 +266,7 @@ class Network:
 
     @cached_property
     def by_ingredient(self) -> dict[str, tuple[int, ...]]:
-        """Node ids by ingredient, in order."""
+        """The ids of the object nodes that contain each ingredient, in rising order."""
         ids_by_ingredient: defaultdict[str, list[int]] = defaultdict(list)
         for object_id, node in enumerate(self.objects):
             if node.contents:
@@ -269,7 +275,7 @@ class Network:
         return {ingredient: tuple(ids) for ingredient, ids in ids_by_ingredient.items()}
 
     def node(self, object_id: int) -> ObjectNode:
-        """Return a node as a value.
+        """Return the object node with an id.
 
         Parameters:
             object_id: The id of the node.
@@ -286,10 +292,10 @@ class Network:
         return len(ids), ids
 
     def beginning(self, start: str, max_labels: int) -> list[str]:
-        """Return labels with a given beginning, in alphabetical order.
+        """Return labels that begin with a text, in alphabetical order.
 
         Parameters:
-            start: The beginning.
+            start: The text.
             max_labels: The greatest number of labels to return.
         """
         return sorted(label for label in self.by_label if label.startswith(start))[:max_labels]
@@ -345,7 +351,7 @@ class NetworkBuilder:
     def add(
         self, motion: str, inputs: Iterable[ObjectNode], outputs: Iterable[ObjectNode], *sources: Source
     ) -> int:
-        """Add a copy of a unit, and return the unit's id.
+        """Add a unit, and return its id. If it was added before, only the sources are added to it.
 
         Parameters:
             motion: The label of the motion.
@@ -355,21 +361,21 @@ class NetworkBuilder:
         """
         ids = self._object_ids
         # dict.fromkeys: a node that one unit lists twice is one input, in the place of its first mention
-        ins = tuple(dict.fromkeys([ids.setdefault(node, len(ids)) for node in inputs]))
-        outs = tuple(dict.fromkeys([ids.setdefault(node, len(ids)) for node in outputs]))
-        key = (motion, frozenset(ins), frozenset(outs))
+        input_ids = tuple(dict.fromkeys([ids.setdefault(node, len(ids)) for node in inputs]))
+        output_ids = tuple(dict.fromkeys([ids.setdefault(node, len(ids)) for node in outputs]))
+        key = (motion, frozenset(input_ids), frozenset(output_ids))
         unit_id = self._unit_ids.setdefault(key, len(self._motions))
         if unit_id == len(self._motions):
             self._motions.append(motion)
-            self._inputs.append(ins)
-            self._outputs.append(outs)
+            self._inputs.append(input_ids)
+            self._outputs.append(output_ids)
             self._sources.append([*sources])
         else:
             self._sources[unit_id] += sources
         return unit_id
 
     def build(self) -> Network:
-        """Freeze what was added so far into a network."""
+        """Return a network of the units that were added so far."""
         return Network(
             tuple(self._object_ids),
             tuple(self._motions),
@@ -381,8 +387,8 @@ class NetworkBuilder:
         )
 
 
-def _invert(lists: Sequence[Sequence[int]], size: int) -> tuple[tuple[int, ...], ...]:
-    """Return for each number below ``size`` the indexes of the lists that hold it, in order."""
+def _lists_containing(lists: Sequence[Sequence[int]], size: int) -> tuple[tuple[int, ...], ...]:
+    """Return for each number below ``size`` the indices of the lists that contain it, in rising order."""
     owners: list[list[int]] = [[] for _ in range(size)]
     for owner, members in enumerate(lists):
         for member in members:

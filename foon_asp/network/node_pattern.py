@@ -13,12 +13,13 @@ A label without states may stand in thousands of containers, so the container is
 
 
 class NodePattern(NamedTuple):
-    """An entry of a kitchen or goals file: a pattern that nodes match.
+    """An entry of a kitchen or goals file: a pattern that object nodes match.
 
-    ``container`` is an object that the node has to have a relation to, by any word. Without a container, the
-    node has to have exactly the ``relations``, word by word. ``ingredients`` is the sorted multiset of
-    everything that the node contains, under any word. ``contents``, unless empty, are the contents word by
-    word.
+    A node matches if it has the ``label``, exactly the ``states``, and exactly the ``ingredients``, a sorted
+    multiset. If the pattern has ``contents``, the words for the ingredients have to agree, too.
+
+    With a ``container``, the node needs a relation to this object, by any word, and at least the
+    ``relations``. Without a container, it needs exactly the ``relations``.
     """
 
     label: str
@@ -35,7 +36,7 @@ class NodePattern(NamedTuple):
 
     @property
     def lookup_key(self) -> LookupKey:
-        """The key of the entry, one of the :func:`lookup_keys` of every node that matches."""
+        """The key of the entry, which each matching node has among its :func:`lookup_keys`."""
         related_object = self.container
         if related_object is None and self.relations:
             related_object = min(self.relations).object
@@ -68,7 +69,7 @@ class NodePattern(NamedTuple):
 
 
 def lookup_keys(node: ObjectNode) -> list[LookupKey]:
-    """Return the keys under which a node is found: a key for each related object, or a single key."""
+    """Return the keys of a node, one for each related object; a node without relations has one key."""
     label, states, relations, contents = node
     ingredients = node.ingredients if contents else ()
     related_objects = {relation.object for relation in relations} if relations else (None,)

@@ -7,7 +7,7 @@ from foon_asp.network.quoted_name import FIRST, LISTED, in_quotes, quoted
 
 
 class Relation(NamedTuple):
-    """A located object: the word and the label of the related object, ``in [bowl]``."""
+    """A relation to another object, such as ``in [bowl]``: its word, and the label of that object."""
 
     word: str
     object: str
@@ -19,7 +19,10 @@ class Relation(NamedTuple):
 
 
 class Contents(NamedTuple):
-    """The contents of an object: the word and the sorted multiset of ingredients, ``contains {a,b}``."""
+    """Contents of an object, such as ``contains {a,b}``: their word, and the sorted ingredients.
+
+    An ingredient may be repeated.
+    """
 
     word: str
     ingredients: tuple[str, ...]
@@ -29,7 +32,7 @@ class Contents(NamedTuple):
 
 
 class ObjectNode(NamedTuple):
-    """An object in a state; two nodes are the same if all four parts are (level 3 of FOON).
+    """An object in a state; two nodes are equal if all four parts are, as at level 3 of FOON.
 
     ``label`` is its name, ``states`` the set of its states, ``relations`` what it is in or on, ``contents``
     what it contains. Motion flags, times and ids belong to the line that was read and are no part of it.

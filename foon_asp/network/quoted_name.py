@@ -1,4 +1,4 @@
-"""Names as the one-line notation of object nodes has them: in quotes where they would be read otherwise.
+"""Names in the one-line notation of object nodes: in quotes if they would be misread without.
 
 A name in quotes is a string of JSON. ``docs/formats.md`` describes the notation.
 """
@@ -21,16 +21,19 @@ _ESCAPED = re.compile(rf'["\\\t\n]|{UNSAFE.pattern}')
 
 
 def quoted(name: str, special: re.Pattern[str] = NAME) -> str:
-    """Return a name as the notation writes it: in quotes if ``special`` matches a part of it."""
+    """Return a name as the one-line notation has it: in quotes if the pattern ``special`` is found in it."""
     return in_quotes(name) if special.search(name) else name
 
 
 def in_quotes(name: str) -> str:
-    """Return a name as a JSON string; characters that are not sent to a terminal are escaped."""
+    """Return a name as a JSON string in quotes; characters that are unsafe in a terminal are escaped."""
     return '"' + _ESCAPED.sub(lambda letter: encode_basestring_ascii(letter[0])[1:-1], name) + '"'
 
 
 def unquoted(written: str) -> str:
-    """Return the name that a notation stands for, with or without quotes, stripped of blanks."""
+    """Return the name that a text of the notation stands for.
+
+    Blanks around it are removed. A text in quotes is read as a JSON string.
+    """
     written = written.strip(" ")
     return str(json.loads(written, strict=False)) if written.startswith('"') else written

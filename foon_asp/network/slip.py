@@ -12,9 +12,9 @@ _NodePart = tuple[str, str]
 
 
 class Slip(NamedTuple):
-    """The only name in which two nodes differ.
+    """The only name in which two nodes differ, spelled ``name`` in the one and ``other`` in the other node.
 
-    ``kind`` is label, state, relation, container or ingredient.
+    ``kind`` is the kind of name: label, state, relation, container or ingredient.
     """
 
     kind: str
@@ -23,14 +23,20 @@ class Slip(NamedTuple):
 
 
 def slip_between(node: ObjectNode, other: ObjectNode | NodePattern) -> Slip | None:
-    """Return the only name in which two nodes differ, if its two spellings are one edit apart, else ``None``.
+    """Return the only name in which two nodes differ if its spellings are one edit apart, else ``None``.
 
-    One edit adds, omits or changes a letter, or swaps it with the next. Differences in doubled letters,
+    An edit adds, omits or changes a letter, or swaps it with the next. Differences in doubled letters,
     capitals, blanks and hyphens count as one edit together. Two relations to one object by different words
     (``in [bowl]``, ``on [bowl]``) are one edit apart, too.
+
+    If ``other`` is an entry of a kitchen or goals file without relations, only the objects of relations are
+    compared, as containers.
     """
-    loose = isinstance(other, NodePattern) and not other.relations
-    remaining, other_remaining = list(_parts(node, loose)), list(_parts(other, loose))
+    as_containers = isinstance(other, NodePattern) and not other.relations
+    remaining, other_remaining = (
+        list(_named_parts(node, as_containers)),
+        list(_named_parts(other, as_containers)),
+    )
     for part in list(remaining):
         if part in other_remaining:
             remaining.remove(part)
@@ -50,26 +56,29 @@ def slip_between(node: ObjectNode, other: ObjectNode | NodePattern) -> Slip | No
     return None
 
 
-def nearest(node: ObjectNode, others: Iterable[ObjectNode], max_nodes: int) -> list[ObjectNode]:
-    """Return up to ``max_nodes`` nodes of the same label, those that differ in the fewest parts first."""
-    parts = set(_parts(node, loose=False))
+def nearest_nodes(node: ObjectNode, others: Iterable[ObjectNode], max_nodes: int) -> list[ObjectNode]:
+    """Return up to ``max_nodes`` of the ``others`` with the label of a node, most similar first.
+
+    Nodes with the fewest different parts are the most similar. The node itself is left out.
+    """
+    parts = set(_named_parts(node, as_containers=False))
     ranked = sorted(
-        (len(parts.symmetric_difference(_parts(other, loose=False))), str(other), other)
+        (len(parts.symmetric_difference(_named_parts(other, as_containers=False))), str(other), other)
         for other in others
         if other.label == node.label and other != node
     )
     return [other for _, _, other in ranked[:max_nodes]]
 
 
-def _parts(node: ObjectNode | NodePattern, loose: bool) -> Iterator[_NodePart]:
-    """Yield the names of a node with their kinds.
+def _named_parts(node: ObjectNode | NodePattern, as_containers: bool) -> Iterator[_NodePart]:
+    """Yield the names in a node, each after its kind: ``("state", "chopped")``.
 
-    If ``loose``, the objects of relations are yielded as containers, without the words.
+    If ``as_containers``, relations are yielded as the containers that they name, without their words.
     """
     yield "label", node.label
     yield from (("state", state) for state in sorted(node.states))
     yield from (("ingredient", ingredient) for ingredient in node.ingredients)
-    if loose:
+    if as_containers:
         if isinstance(node, NodePattern):
             if node.container is not None:
                 yield "container", node.container

@@ -6,8 +6,8 @@ from typing import NamedTuple
 class Source(NamedTuple):
     """The place in a ``file`` where a unit or an item was read.
 
-    ``line`` and ``column`` count from 1. ``videos`` are the addresses from the ``# Source:`` lines at the
-    top of the file, which the annotator worked from.
+    ``line`` and ``column`` count from 1. ``videos`` are the addresses in the ``# Source:`` lines at the
+    top of the file, of the videos that were annotated.
 
     Example:
         >>> str(foon_asp.Source("recipe.txt", 12))
@@ -20,14 +20,15 @@ class Source(NamedTuple):
     videos: tuple[str, ...] = ()
 
     def __str__(self) -> str:
-        return f"{_in_a_line(self.file)}:{self.line}"
+        return f"{_without_line_breaks(self.file)}:{self.line}"
 
     @property
     def short(self) -> str:
-        """The file and line for a step of a tree; of an absolute path only the file name."""
-        file = _in_a_line(self.file)
+        """The file and line, as steps of a tree have them; of an absolute path only the file name."""
+        file = _without_line_breaks(self.file)
         return f"{file.rpartition('/')[2] if file.startswith('/') else file}:{self.line}"
 
 
-def _in_a_line(file: str) -> str:
+def _without_line_breaks(file: str) -> str:
+    """Return the name of a file in one line, each line break as a backslash and ``n``."""
     return file.replace("\n", "\\n")  # whatever a file is called

@@ -1,25 +1,31 @@
-"""Two spellings of one name."""
+"""Comparison of spellings: names that differ only in blanks, doubled letters or one letter."""
 
 import re
 from collections import defaultdict
 from collections.abc import Iterable
 
 _DOUBLED = r"([^\W\d_])\1+"
-_BETWEEN = r"[\s\-_'’.]+"
+_SEPARATORS = r"[\s\-_'’.]+"
 
 
-def joined(name: str) -> str:
-    """Return a name without capitals, blanks, hyphens and the like."""
-    return re.sub(_BETWEEN, "", name.casefold()) or name
+def without_separators(name: str) -> str:
+    """Return a name in lower case, without blanks, hyphens, underscores, apostrophes and full stops.
+
+    A name that has nothing else is returned unchanged.
+    """
+    return re.sub(_SEPARATORS, "", name.casefold()) or name
 
 
 def without_doubles(name: str) -> str:
-    """Return a name as :func:`joined` does, with doubled letters written once."""
-    return re.sub(_DOUBLED, r"\1", joined(name))
+    """Return a name as :func:`without_separators` does, with repeated letters written once."""
+    return re.sub(_DOUBLED, r"\1", without_separators(name))
 
 
 def one_letter_apart(word: str, other: str) -> bool:
-    """Whether two words differ by one letter added, left out or changed, or by two letters swapped."""
+    """Whether two words differ by one letter added, left out or changed, or by two neighbours swapped.
+
+    Only letters count: ``egg 1`` and ``egg 2`` are not one letter apart.
+    """
     start = 0
     while start < min(len(word), len(other)) and word[start] == other[start]:
         start += 1
@@ -33,7 +39,11 @@ def one_letter_apart(word: str, other: str) -> bool:
 
 
 def near_labels(label: str, labels: Iterable[str], max_labels: int) -> list[str]:
-    """Return up to ``max_labels`` labels similar to ``label`` (difflib, any case), most similar first."""
+    """Return up to ``max_labels`` labels similar to ``label``, most similar first.
+
+    Similarity is measured by :mod:`difflib`, in lower case. Labels that differ only in case count once, and
+    are all returned.
+    """
     import difflib  # noqa: PLC0415 (for faults alone)
 
     by_lower_case: defaultdict[str, list[str]] = defaultdict(list)

@@ -17,31 +17,32 @@ class Edit(StrEnum):
     """A way in which the node that is used differs from the node that it is used for."""
 
     WORD = "word"
-    """The same place or the same ingredients, by another word: ``on [plate]`` for ``in [plate]``."""
+    """The same container or ingredients with another word: ``on [plate]`` for ``in [plate]``."""
     CONTAINER = "container"
-    """Something that it is in or on, more, fewer or another: ``in [bowl]`` for ``in [pot]``."""
+    """Another container or surface, an additional or a missing one: ``in [bowl]`` for ``in [pot]``."""
     MORE_STATE = "more state"
-    """A state that the other does not have."""
+    """A state that only the node that is used has."""
     FEWER_STATE = "fewer state"
-    """A state that it lacks."""
+    """A state that the node that is used lacks."""
     MORE_INGREDIENT = "more ingredient"
-    """An ingredient that the other does not have."""
+    """An ingredient that only the node that is used has."""
     FEWER_INGREDIENT = "fewer ingredient"
-    """An ingredient that it lacks."""
+    """An ingredient that the node that is used lacks."""
     CONTENTS = "other contents"
-    """Contents of which not more than half are in common: an empty bowl for a full one."""
+    """Contents with at most half of the ingredients in common: an empty bowl for a full one."""
     SPELLING = "spelling"
     """The same label in the plural, or with other blanks, hyphens or capitals: ``cherrytomatoes``."""
     LABEL = "label"
-    """Another label, as a list of pairs has it."""
+    """Another label; the table has the pair of labels."""
     NODE = "node"
-    """Another object node, as a list of pairs has it."""
+    """Another object node; the table has the pair of nodes."""
 
 
 class Difference(NamedTuple):
-    """One edit between two nodes: its kind, the differing parts of the nodes, and its price.
+    """An edit between two nodes, with its price.
 
-    ``served`` and ``serving`` are the parts as texts, empty for a node that lacks the part.
+    ``served`` is the different part of the node that is wanted, ``serving`` that of the node used in its
+    place. They are texts, and empty if the node lacks the part.
     """
 
     edit: Edit
@@ -54,12 +55,15 @@ Pairs = Mapping[tuple[str | ObjectNode, str | ObjectNode], Fraction | None]
 
 
 class StandInTable(NamedTuple):
-    """Prices of edits, and of pairs of labels or nodes; all are above 0, and ``None`` means never.
+    """The prices of using one object node in place of another.
 
-    ``edits`` has the price of each kind of edit. ``words`` has prices of edits of single states and
-    ingredients, by kind and name, which take precedence over the price of the kind. ``pairs`` has prices by
-    the label or node that serves and the label or node that is served. The price of a pair of nodes is the
-    whole price; the price of a pair of labels is added to the prices of other edits.
+    A price is above 0; ``None`` means that a difference is never allowed. ``edits`` has a price for each kind
+    of edit. ``words`` has prices for single states and ingredients, by kind of edit and name. They take
+    precedence over the price of the kind.
+
+    ``pairs`` has prices for pairs of labels or of nodes: the one that is used, and the one in whose place it
+    is used. The price of a pair of nodes is the whole price. The price of a pair of labels is added to the
+    prices of the other edits.
 
     Example:
         >>> table = foon_asp.StandInTable.usual()
@@ -97,7 +101,7 @@ class StandInTable(NamedTuple):
             served: The node in whose place it is used, another one.
         """
         differences: list[Difference] = []
-        for edit, served_part, serving_part, price in self._edits(serving, served):
+        for edit, served_part, serving_part, price in self._node_edits(serving, served):
             if price is None:
                 return None
             differences.append(Difference(edit, served_part, serving_part, price))
@@ -113,10 +117,13 @@ class StandInTable(NamedTuple):
         word = edit, name
         return self.words[word] if word in self.words else self.edits[edit]
 
-    def _edits(
+    def _node_edits(
         self, serving: ObjectNode, served: ObjectNode
     ) -> Iterator[tuple[Edit, str, str, Fraction | None]]:
-        """Yield the edits between two nodes: kind, parts of served and serving node, price."""
+        """Yield the edits between two nodes: kind, part of the served node, part of the serving one, price.
+
+        The price is ``None`` if the edit is never allowed.
+        """
         if (serving, served) in self.pairs:
             yield Edit.NODE, str(served), str(serving), self.pairs[serving, served]
             return
@@ -125,41 +132,43 @@ class StandInTable(NamedTuple):
             yield Edit.SPELLING, served.label, serving.label, self.edits[Edit.SPELLING]
         elif serving.label != served.label:
             yield Edit.LABEL, served.label, serving.label, self.pairs.get(labels)
-        yield from self._of_contents(serving, served)
+        yield from self._content_edits(serving, served)
         for state in sorted(served.states - serving.states):
             yield Edit.FEWER_STATE, state, "", self.price(Edit.FEWER_STATE, state)
         for state in sorted(serving.states - served.states):
             yield Edit.MORE_STATE, "", state, self.price(Edit.MORE_STATE, state)
-        ours = sorted(served.relations - serving.relations)
-        theirs = sorted(serving.relations - served.relations)
-        for relation in list(ours):
-            other = next((same for same in theirs if same.object == relation.object), None)
+        served_parts = sorted(served.relations - serving.relations)
+        serving_parts = sorted(serving.relations - served.relations)
+        for relation in list(served_parts):
+            other = next((part for part in serving_parts if part.object == relation.object), None)
             if other is not None:
-                ours.remove(relation)
-                theirs.remove(other)
+                served_parts.remove(relation)
+                serving_parts.remove(other)
                 yield Edit.WORD, str(relation), str(other), self.edits[Edit.WORD]
-        for position in range(max(len(ours), len(theirs))):
-            texts = [str(side[position]) if position < len(side) else "" for side in (ours, theirs)]
+        for position in range(max(len(served_parts), len(serving_parts))):
+            texts = [
+                str(side[position]) if position < len(side) else "" for side in (served_parts, serving_parts)
+            ]
             yield Edit.CONTAINER, texts[0], texts[1], self.edits[Edit.CONTAINER]
 
-    def _of_contents(
+    def _content_edits(
         self, serving: ObjectNode, served: ObjectNode
     ) -> Iterator[tuple[Edit, str, str, Fraction | None]]:
-        """Yield the edits between the contents of two nodes."""
+        """Yield the edits between the contents of two nodes, as :meth:`_node_edits` does."""
         if serving.contents == served.contents:
             return
-        ours, theirs = Counter(served.ingredients), Counter(serving.ingredients)
-        if ours == theirs:
+        served_parts, serving_parts = Counter(served.ingredients), Counter(serving.ingredients)
+        if served_parts == serving_parts:
             words = [" and ".join(contents.word for contents in node.contents) for node in (served, serving)]
             yield Edit.WORD, words[0], words[1], self.edits[Edit.WORD]
             return
-        common = (ours & theirs).total()
-        if 2 * common <= max(ours.total(), theirs.total()):
+        common = (served_parts & serving_parts).total()
+        if 2 * common <= max(served_parts.total(), serving_parts.total()):
             texts = ["; ".join(map(str, node.contents)) for node in (served, serving)]
             yield Edit.CONTENTS, texts[0], texts[1], self.edits[Edit.CONTENTS]
-        for item in sorted((ours - theirs).elements()):
+        for item in sorted((served_parts - serving_parts).elements()):
             yield Edit.FEWER_INGREDIENT, item, "", self.price(Edit.FEWER_INGREDIENT, item)
-        for item in sorted((theirs - ours).elements()):
+        for item in sorted((serving_parts - served_parts).elements()):
             yield Edit.MORE_INGREDIENT, "", item, self.price(Edit.MORE_INGREDIENT, item)
 
 
@@ -167,12 +176,15 @@ _PLURALS = {"sses": "ss", "shes": "sh", "ches": "ch", "ies": "y", "oes": "o", "s
 
 
 def spelled_alike(label: str, other: str) -> bool:
-    """Return whether two labels differ only in number, blanks, hyphens and capitals."""
+    """Whether two labels differ at most in singular or plural, blanks, hyphens and capitals."""
     return spelling_key(label) == spelling_key(other)
 
 
 def spelling_key(label: str) -> str:
-    """Return a key that is equal for labels that differ only in number, blanks, hyphens and capitals."""
+    """Return a label in lower case and in the singular, without blanks and hyphens, to be compared.
+
+    The key of ``Cherry tomatoes`` is ``cherrytomato``.
+    """
     letters = label.casefold().replace(" ", "").replace("-", "").replace("_", "")
     for plural, singular in _PLURALS.items():
         if letters.endswith(plural) and len(letters) > (5 if singular else 3) and not letters.endswith("ss"):
@@ -190,8 +202,8 @@ _EDITS: Mapping[Edit, Fraction | None] = {
     Edit.FEWER_INGREDIENT: Fraction(5),
     Edit.CONTENTS: None,
 }
-# What somebody has to do first is not made up for by a price.
-_DONE = (
+# States that an action has to bring about: nodes without them never stand in.
+_STATES_OF_ACTIONS = (
     *(
         "cooked",
         "baked",
@@ -219,6 +231,6 @@ _DONE = (
     *("peeled", "mashed", "ground", "melted", "beaten", "whipped", "kneaded", "hot"),
 )
 _WORDS: Mapping[tuple[Edit, str], Fraction | None] = {
-    **{(Edit.FEWER_STATE, state): None for state in _DONE},
+    **{(Edit.FEWER_STATE, state): None for state in _STATES_OF_ACTIONS},
     **{(Edit.MORE_STATE, state): None for state in ("dirty", "burnt", "rotten")},
 }

@@ -22,10 +22,10 @@ def is_starting(kitchen: object) -> bool:
 
 
 class RecipeKitchen(NamedTuple):
-    """The starting kitchen of one file, by id of nodes.
+    """The starting kitchen of one file, as ids of object nodes.
 
-    ``raw`` nodes are made by no unit. ``granted`` nodes are made by a unit, but are assumed to be available
-    so that all units can execute.
+    ``raw`` nodes are made by no unit out of others. ``granted`` nodes are made by a unit, but are assumed to
+    be available so that all units can execute.
     """
 
     raw: list[int]
@@ -37,11 +37,12 @@ def recipe_kitchen(
 ) -> RecipeKitchen:
     """Return the starting kitchen of one file, in time linear in its size; items are not used up.
 
-    ``units`` are the inputs and outputs of each unit in the order of the file, as ids of object nodes. Nodes
-    that no unit makes out of others are available. Then units execute as far as they can. When none can, the
-    missing inputs of the first unit in the file that lacks any are granted, except ``goals``. This repeats
-    until only goals are lacking. Then goals are granted in the same way, for example if two goals need each
-    other.
+    ``units`` has the inputs and the outputs of each unit, in the order of the file. They are ids of object
+    nodes, as ``goals`` are.
+
+    Nodes that no unit makes out of others are available. Then units execute as far as they can. When none
+    can, the first unit in the file that lacks inputs is granted these, except ``goals``. This repeats until
+    only goals are lacking. Then goals are granted in the same way, for example if two goals need each other.
     """
     unit_sides = list(units)
     missing = [len(inputs) for inputs, _ in unit_sides]  # by unit: how many inputs are not available yet
@@ -95,25 +96,24 @@ class StartingKitchen(ABC, Generic[File]):
 
     @abstractmethod
     def makers(self, o: int) -> Sequence[int]:
-        """Return the units that make a node out of others."""
+        """Return the ids of the units that make a node and do not need it."""
 
     @abstractmethod
     def granting_files(self, o: int) -> Iterable[File]:
-        """Return the files whose starting kitchen grants a node although a unit of the file makes it."""
+        """Return the files whose starting kitchen grants a node; see :class:`RecipeKitchen`."""
 
     @abstractmethod
     def files_of(self, units: Iterable[int]) -> Iterable[File]:
-        """Return the files that units are from."""
+        """Return the files in which units were read, with repetitions."""
 
     @abstractmethod
     def units_of(self, file: File) -> Iterable[tuple[Sequence[int], Sequence[int]]]:
-        """Return the inputs and outputs of the units of a file, in its order."""
+        """Return the inputs and the outputs of each unit of a file, in its order."""
 
-    def changes(self, goals: Iterable[int]) -> tuple[frozenset[int], frozenset[int]]:
+    def changes_for_goals(self, goals: Iterable[int]) -> tuple[frozenset[int], frozenset[int]]:
         """Return the nodes that these goals add to the kitchen, and those that they remove from it.
 
-        A goal that a unit can make from other nodes is not assumed to be available; other nodes may be
-        granted in its place.
+        A goal that a unit can make from other nodes is removed; other nodes may be granted in its place.
         """
         goals = [goal for goal in goals if goal in self.nodes and self.makers(goal)]
         kitchens = {
@@ -131,6 +131,7 @@ class StartingKitchen(ABC, Generic[File]):
         return frozenset(added - lacking), frozenset(lacking)
 
     def _nodes_of_file(self, file: File, goals: Collection[int]) -> set[int]:
+        """Return the nodes of the starting kitchen of one file for these goals."""
         raw, granted = recipe_kitchen(self.units_of(file), goals)
         return {*raw, *granted}
 
@@ -143,7 +144,7 @@ class NetworkStartingKitchen(StartingKitchen[str]):
         self._network = network
         self._files: dict[str, list[int]] = {}
         for unit, sources in enumerate(network.sources):
-            for file in _files(sources):
+            for file in _files_of_sources(sources):
                 self._files.setdefault(file, []).append(unit)
         self._granting: dict[int, list[str]] = {}
         nodes: set[int] = set()
@@ -161,40 +162,44 @@ class NetworkStartingKitchen(StartingKitchen[str]):
         return self._nodes
 
     @cached_property
-    def made_too(self) -> frozenset[int]:
-        """The nodes of the kitchen that a unit makes out of others."""
+    def made_by_units(self) -> frozenset[int]:
+        """The nodes of the kitchen that a unit makes and does not need."""
         return frozenset(filter(self.makers, self.nodes))
 
     @property
     def file_count(self) -> int:
-        """The number of files that the units are from."""
+        """The number of files in which units were read."""
         return len(self._files)
 
     def makers(self, o: int) -> list[int]:
-        """Return the units that make a node out of others."""
+        """Return the ids of the units that make a node and do not need it."""
         inputs = self._network.inputs
         return [unit for unit in self._network.producers[o] if o not in inputs[unit]]
 
     def granting_files(self, o: int) -> Sequence[str]:
-        """Return the files whose starting kitchen grants a node although a unit of the file makes it."""
+        """Return the files whose starting kitchen grants a node; see :class:`RecipeKitchen`."""
         return self._granting.get(o, ())
 
     def files_of(self, units: Iterable[int]) -> Iterator[str]:
-        """Yield the files that units are from."""
-        return (file for unit in units for file in _files(self._network.sources[unit]))
+        """Yield the files in which units were read, with repetitions."""
+        return (file for unit in units for file in _files_of_sources(self._network.sources[unit]))
 
     def units_of(self, file: str) -> Iterator[tuple[Sequence[int], Sequence[int]]]:
-        """Yield the inputs and outputs of the units of a file, in its order."""
+        """Yield the inputs and the outputs of each unit of a file, in its order."""
         network = self._network
         return ((network.inputs[unit], network.outputs[unit]) for unit in self._files[file])
 
 
-def _files(sources: Iterable[Source]) -> Iterable[str]:
+def _files_of_sources(sources: Iterable[Source]) -> Iterable[str]:
+    """Return the files of the sources of a unit, each once; a unit without a source has the file ``""``."""
     return dict.fromkeys(source.file for source in sources) or ("",)
 
 
 def _first_position(network: Network, unit: int, file: str) -> tuple[int, int]:
-    """Return the first line and column at which a file has a unit."""
+    """Return the first line and column at which a file has a unit.
+
+    A unit without a source has its id in place of the line.
+    """
     return min(
         ((source.line, source.column) for source in network.sources[unit] if source.file == file),
         default=(unit, 0),
@@ -203,12 +208,12 @@ def _first_position(network: Network, unit: int, file: str) -> tuple[int, int]:
 
 @lru_cache(maxsize=4)  # successive questions are about one network
 def starting_kitchen(network: Network) -> NetworkStartingKitchen:
-    """Return the starting kitchen of a network."""
+    """Return the starting kitchen of a network; those of the last four networks are cached."""
     return NetworkStartingKitchen(network)
 
 
 def starting_nodes(network: Network, goals: Collection[int] = ()) -> frozenset[int]:
-    """Return the ids of the nodes of the starting kitchen for these goals."""
+    """Return the ids of the nodes that are assumed to be available for these goals."""
     kitchen = starting_kitchen(network)
-    added, lacking = kitchen.changes(goals)
+    added, lacking = kitchen.changes_for_goals(goals)
     return kitchen.nodes.union(added).difference(lacking)

@@ -5,11 +5,11 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from foon_asp.network.graph import UNREACHED, cycles, layers, parts
+from foon_asp.network.graph import UNREACHED, component_sizes, cycles, layers
 from foon_asp.network.network import Network
 from foon_asp.network.starting_kitchen import starting_kitchen
 
-MANY = 4  # producers; object nodes with as many or more are counted together
+MANY = 4  # units that make a node; nodes with as many or more are counted together
 
 
 @dataclass(frozen=True)
@@ -17,11 +17,13 @@ class Statistics:
     """The counts of a network at one level; every mean is over units.
 
     ``producers[n]`` is the number of object nodes that exactly ``n`` units make; its last entry counts the
-    nodes that ``MANY`` or more units make. A cycle is a set of object nodes that need each other;
-    ``in_cycles`` counts the nodes in all cycles, ``largest_cycle`` those in the largest one. ``at_hand``
-    counts the available nodes. ``depth`` is the highest layer reached from them, and ``median_depth`` the
-    median layer of the units reached. ``parts`` counts the connected components, and ``largest_part`` the
-    units of the largest one.
+    nodes that ``MANY`` or more units make. ``unused`` counts the object nodes that no unit needs, and
+    ``unchanged`` the units whose inputs are their outputs.
+
+    A cycle is a set of object nodes that need each other. ``in_cycles`` counts the nodes in all cycles,
+    ``largest_cycle`` those in the largest one. ``at_hand`` counts the available nodes. ``depth`` is the
+    highest layer reached from them, and ``median_depth`` the median layer of the units reached. ``parts``
+    counts the connected components, and ``largest_part`` the units of the largest one.
     """
 
     level: int
@@ -52,17 +54,17 @@ class Statistics:
     largest_part: int
 
 
-def count(network: Network, at_hand: Iterable[int] | None = None) -> Statistics:
-    """Return the statistics of a network.
+def network_statistics(network: Network, at_hand: Iterable[int] | None = None) -> Statistics:
+    """Return the statistics of a network whose available nodes are ``at_hand``, by id.
 
-    Layers are counted from the object nodes ``at_hand``, by default from those of the starting kitchen.
+    ``None`` means the starting kitchen.
     """
     if at_hand is None:
         at_hand = starting_kitchen(network).nodes
     start = list(at_hand)
     node_layer, unit_layer = layers(network, start)
     node_cycles = cycles(network)
-    unit_counts = parts(network)
+    unit_counts = component_sizes(network)
     producers = [len(makers) for makers in network.producers]
     objects = network.objects
     inputs, outputs = (
@@ -105,7 +107,7 @@ def count(network: Network, at_hand: Iterable[int] | None = None) -> Statistics:
 
 
 def most_connected_labels(network: Network, shown: int) -> list[tuple[str, int]]:
-    """Return the labels that the most units have, with their numbers of units.
+    """Return the ``shown`` labels that the most units have, each with the number of these units.
 
     Labels with equal numbers are in alphabetical order.
     """
@@ -117,9 +119,10 @@ def most_connected_labels(network: Network, shown: int) -> list[tuple[str, int]]
 
 
 def most_connected_objects(network: Network, shown: int) -> list[tuple[int, int, int]]:
-    """Return the object nodes that most units touch: id, units that need it, units that make it.
+    """Return the ``shown`` object nodes that the most units need or make.
 
-    Nodes with equal numbers are in the order in which they were read.
+    Each is an id, the number of units that need the node, and the number of units that make it. Nodes with
+    equal numbers are in order of id.
     """
     sizes = [
         (len({*users, *makers}), -node)

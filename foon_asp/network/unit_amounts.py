@@ -9,7 +9,7 @@ from foon_asp.network.object_node import ObjectNode
 
 
 class UnitAmounts(NamedTuple):
-    """The amounts of a unit, by input node and by output node; nodes that are not listed have 1."""
+    """How many copies a unit takes of its inputs and makes of its outputs; 1 of a node that is not listed."""
 
     inputs: Mapping[ObjectNode, int] = MappingProxyType({})
     outputs: Mapping[ObjectNode, int] = MappingProxyType({})

@@ -9,36 +9,41 @@ from foon_asp.network.network import Network
 
 
 class UnitPrices(NamedTuple):
-    """Exact prices, none below 0: of single ``units`` of level 3, and by motion for all other units."""
+    """Exact prices of units, none below 0.
+
+    ``units`` has the prices of single units of level 3, ``motions`` those of all other units by motion.
+    """
 
     motions: Mapping[str, Fraction]
     units: Mapping[FunctionalUnit, Fraction]
 
     def of_units(self, network: Network) -> tuple[Fraction | None, ...]:
-        """Return the price of every unit of a network, ``None`` where it has none.
+        """Return the price of every unit of a network, in order of id; ``None`` for a unit without one.
 
-        Below level 3, the price is the least price of the units that a unit stands for, and ``None`` unless
-        all have a price.
+        A unit below level 3 has the least price of the units that it stands for, or ``None`` if one of them
+        has none.
         """
         if network.detailed is None:
-            return self._at_own_level(network)
-        detail_prices = self._at_own_level(network.detailed)
+            return self._own_level_prices(network)
+        detail_prices = self._own_level_prices(network.detailed)
         prices_by_unit = ([detail_prices[detail] for detail in details] for details in network.stands_for)
-        return tuple(map(_least, prices_by_unit))
+        return tuple(map(_least_price, prices_by_unit))
 
     def price(self, unit: FunctionalUnit, network: Network | None = None) -> Fraction | None:
-        """Return the price of a unit at the level of a network, ``None`` where it has none.
+        """Return the price of a unit at the level of a network; ``None`` if it has none.
 
-        A unit that is not in the network has the price of its motion.
+        Without a network, the level is 3. A unit that is not in the network has the price of its motion.
         """
         if network is None or network.detailed is None:
             return self.units.get(unit, self.motions.get(unit.motion))
         number = network.unit_id(unit)
         if number is None:
             return self.motions.get(unit.motion)
-        return _least([self.price(network.detailed.unit(detail)) for detail in network.stands_for[number]])
+        return _least_price(
+            [self.price(network.detailed.unit(detail)) for detail in network.stands_for[number]]
+        )
 
-    def _at_own_level(self, network: Network) -> tuple[Fraction | None, ...]:
+    def _own_level_prices(self, network: Network) -> tuple[Fraction | None, ...]:
         """Return the price of each unit of a network, looked up by the unit itself; ``None`` for none."""
         priced_motions = {unit.motion for unit in self.units}  # spares looking up units of other motions
         return tuple(
@@ -47,6 +52,7 @@ class UnitPrices(NamedTuple):
         )
 
 
-def _least(prices: list[Fraction | None]) -> Fraction | None:
-    present = [price for price in prices if price is not None]
-    return min(present) if len(present) == len(prices) else None
+def _least_price(prices: list[Fraction | None]) -> Fraction | None:
+    """Return the least price, or ``None`` if one of the prices is ``None``."""
+    known_prices = [price for price in prices if price is not None]
+    return min(known_prices) if len(known_prices) == len(prices) else None

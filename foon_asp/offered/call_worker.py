@@ -8,12 +8,12 @@ from importlib.metadata import EntryPoint
 from typing import Any
 
 from foon_asp.offered.offer import Offer
-from foon_asp.processes.pipe import receive_packed, requests, write
+from foon_asp.processes.pipe import become_worker, receive_pickled, write
 
 
 def serve() -> None:
     """Call the functions that requests on standard input name, and write their replies, without end."""
-    received, answers = requests(receive_packed)
+    received, answers = become_worker(receive_pickled)
     functions: dict[Offer, Callable[..., object]] = {}
     while True:
         offer, arguments = pickle.loads(received.get())

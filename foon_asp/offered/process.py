@@ -11,8 +11,8 @@ from typing import Any
 
 from foon_asp.deadline import Deadline
 from foon_asp.offered.offer import Offer, Raised
-from foon_asp.processes.pipe import CHUNK_BYTES, packed
-from foon_asp.processes.worker import DiedError, Worker, give_back, take
+from foon_asp.processes.pipe import CHUNK_BYTES, pack_message
+from foon_asp.processes.worker import DiedError, Worker, give_back_worker, take_worker
 
 
 def ask_offered(offer: Offer, deadline: Deadline, *arguments: object) -> Any:
@@ -23,15 +23,15 @@ def ask_offered(offer: Offer, deadline: Deadline, *arguments: object) -> Any:
     imported, ends its process, or returns anything but plain values.
     """
     key = (offer.package, *sys.path)  # with the path, another version of the package may be found
-    worker = take(key, _start_worker)
+    worker = take_worker(key, _start_worker)
     try:
-        kind, line = worker.ask(packed((offer, arguments)), deadline)
+        kind, line = worker.ask(pack_message((offer, arguments)), deadline)
     except DiedError as died:
         raise offer.fault(f"ended its process ({died.code})") from None
     if kind == "endless":
         worker.end()
         raise offer.fault("gave more than an answer can be")
-    give_back(key, worker)
+    give_back_worker(key, worker)
     try:
         kind, value = json.loads(line)
     except (ValueError, TypeError, RecursionError):

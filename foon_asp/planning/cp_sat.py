@@ -9,7 +9,7 @@ from io import FileIO
 from typing import Any
 
 from foon_asp.planning.schedule_task import ScheduleTask
-from foon_asp.processes.pipe import receive, requests, send
+from foon_asp.processes.pipe import become_worker, receive, send
 from foon_asp.proof.timetable import ToolName
 
 
@@ -18,7 +18,7 @@ def serve() -> None:
 
     Without OR-Tools, send ``missing`` and return.
     """
-    tasks, answers = requests(receive)
+    tasks, answers = become_worker(receive)
     try:
         from ortools.sat.python import cp_model  # noqa: PLC0415 (this process alone may have it)
     except ImportError as error:

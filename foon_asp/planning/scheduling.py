@@ -10,8 +10,8 @@ from foon_asp.deadline import Deadline, LimitError
 from foon_asp.errors import BugError, UserError
 from foon_asp.planning.schedule_task import ScheduleTask
 from foon_asp.planning.tool_order import first_schedule, tool_order
-from foon_asp.processes.pipe import packed
-from foon_asp.processes.worker import DiedError, Worker, give_back, take
+from foon_asp.processes.pipe import pack_message
+from foon_asp.processes.worker import DiedError, Worker, give_back_worker, take_worker
 from foon_asp.proof.timetable import TimedStep, Tool, ToolName
 
 _NOT_INSTALLED = "a schedule needs OR-Tools: pip install 'foon-asp[schedule]'"
@@ -64,10 +64,10 @@ def shortest_schedule(task: ScheduleTask, deadline: Deadline) -> BestSchedule:
         # a float, in ticks: so little above a whole number is that number
         bound = max(bound, ceil(value - 1e-6))
 
-    worker = take(_WORKER_KEY, lambda: Worker(_WORKER_KEY, "schedules are found"))
+    worker = take_worker(_WORKER_KEY, lambda: Worker(_WORKER_KEY, "schedules are found"))
     try:
         kind, status = worker.ask(
-            packed((task, incumbent)), deadline, {"found": improve, "bound": raise_bound}
+            pack_message((task, incumbent)), deadline, {"found": improve, "bound": raise_bound}
         )
     except LimitError:
         kind, status = "end", "limit"
@@ -76,7 +76,7 @@ def shortest_schedule(task: ScheduleTask, deadline: Deadline) -> BestSchedule:
     if kind == "missing":
         worker.end()
         raise UserError(f"{_NOT_INSTALLED} ({status})")
-    give_back(_WORKER_KEY, worker)
+    give_back_worker(_WORKER_KEY, worker)
     if status not in {"proved", "limit"}:
         raise BugError(f"CP-SAT ends with {status}")
     makespan = _makespan(task, incumbent)

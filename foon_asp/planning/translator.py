@@ -71,11 +71,11 @@ def _run(folder: Path, deadline: Deadline) -> tuple[int, str]:
         encoding="utf-8",
         errors="replace",
     )
-    deadline.count(process.pid)
+    deadline.count_memory_of(process.pid)
     try:
         while True:
             try:
-                output, _ = process.communicate(timeout=deadline.slice())
+                output, _ = process.communicate(timeout=deadline.seconds_to_next_check())
             except subprocess.TimeoutExpired:
                 deadline.check()
             else:
@@ -83,7 +83,7 @@ def _run(folder: Path, deadline: Deadline) -> tuple[int, str]:
     finally:
         process.kill()
         process.wait()
-        deadline.uncount(process.pid)
+        deadline.uncount_memory_of(process.pid)
         if process.stdout is not None:
             process.stdout.close()
 

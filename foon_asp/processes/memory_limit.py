@@ -4,9 +4,9 @@ import contextlib
 
 
 def limit_own_memory(size: int | None) -> None:
-    """Limit the data segment of this process to ``size`` bytes, where the system can; ``None`` is no limit.
+    """Limit the data segment of this process to ``size`` bytes, if the system can; ``None`` is no limit.
 
-    The process that has started this one only polls the memory, which can grow fast.
+    The parent process only polls the memory, which may grow too fast for that.
     """
     try:
         import resource  # noqa: PLC0415 (not on every system)

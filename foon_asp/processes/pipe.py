@@ -24,7 +24,7 @@ CHUNK_BYTES = 1 << 20
 _LENGTH_HEADER = struct.Struct("!Q")
 
 
-def packed(value: object) -> bytes:
+def pack_message(value: object) -> bytes:
     """Return a value as the bytes of a message, which :func:`receive` reads."""
     content = pickle.dumps(value, pickle.HIGHEST_PROTOCOL)
     return _LENGTH_HEADER.pack(len(content)) + content
@@ -38,33 +38,36 @@ def write(pipe: RawIOBase, content: bytes) -> None:
 
 
 def write_if_open(pipe: RawIOBase, content: bytes) -> None:
-    """Write bytes completely; do nothing if the other end is closed, as the reader of answers will notice."""
+    """Write all bytes; do nothing if the other end is closed, which the reader of answers will notice."""
     with contextlib.suppress(OSError, ValueError):
         write(pipe, content)
 
 
 def send(pipe: RawIOBase, value: object) -> None:
     """Write a value as a message; raises ``OSError`` where the other end is closed."""
-    write(pipe, packed(value))
+    write(pipe, pack_message(value))
 
 
 def receive(pipe: RawIOBase) -> Any:
     """Wait for a message, and return its value; raises ``EOFError`` where the other end is closed."""
-    return pickle.loads(receive_packed(pipe))
+    return pickle.loads(receive_pickled(pipe))
 
 
-def receive_packed(pipe: RawIOBase) -> bytes:
-    """Wait for a message, and return it pickled; raises ``EOFError`` where the other end is closed."""
-    (length,) = _LENGTH_HEADER.unpack(_exactly(pipe, _LENGTH_HEADER.size))
-    return _exactly(pipe, length)
+def receive_pickled(pipe: RawIOBase) -> bytes:
+    """Wait for a message, and return it without unpickling it.
+
+    Raises ``EOFError`` where the other end is closed.
+    """
+    (length,) = _LENGTH_HEADER.unpack(_read_exactly(pipe, _LENGTH_HEADER.size))
+    return _read_exactly(pipe, length)
 
 
-def requests(read: Callable[[RawIOBase], T]) -> "tuple[queue.SimpleQueue[T], FileIO]":
+def become_worker(read: Callable[[RawIOBase], T]) -> "tuple[queue.SimpleQueue[T], FileIO]":
     """Make this process a worker: return the queue of its requests, and the pipe for its answers.
 
-    A thread reads requests from standard input, each by ``read``, and ends the process once its parent has
-    ended, even during a computation. Answers go to what was standard output; anything else that this process
-    prints goes to standard error. Ctrl-C is ignored, since the parent handles it.
+    A thread reads requests from standard input, each by ``read``, into the queue. It ends the process once
+    its parent has ended, even during a computation. Answers go to what was standard output; anything else
+    that this process prints goes to standard error. Ctrl-C is ignored, since the parent handles it.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     incoming, answers = FileIO(os.dup(0), "rb"), FileIO(os.dup(1), "wb")
@@ -74,7 +77,7 @@ def requests(read: Callable[[RawIOBase], T]) -> "tuple[queue.SimpleQueue[T], Fil
     received: queue.SimpleQueue[T] = queue.SimpleQueue()
 
     def listen() -> None:
-        """Put each request into the queue; end the process when standard input ends."""
+        """Put each request into the queue; end the process when standard input ends, or without memory."""
         while True:
             try:
                 received.put(read(incoming))
@@ -87,8 +90,8 @@ def requests(read: Callable[[RawIOBase], T]) -> "tuple[queue.SimpleQueue[T], Fil
     return received, answers
 
 
-def _exactly(pipe: RawIOBase, size: int) -> bytes:
-    """Read a number of bytes; raises ``EOFError`` where the pipe ends before."""
+def _read_exactly(pipe: RawIOBase, size: int) -> bytes:
+    """Read ``size`` bytes; raises ``EOFError`` if the pipe ends before."""
     chunks: list[bytes] = []
     while size:
         try:

@@ -11,18 +11,29 @@ from queue import Empty, SimpleQueue
 from typing import Any, Generic, NamedTuple, TypeVar
 
 from foon_asp.errors import BugError
-from foon_asp.processes.pipe import packed, receive, receive_packed, requests, send, write, write_if_open
+from foon_asp.processes.pipe import (
+    become_worker,
+    pack_message,
+    receive,
+    receive_pickled,
+    send,
+    write,
+    write_if_open,
+)
 from foon_asp.processes.python_process import PythonProcess
 
 Task = TypeVar("Task")
 Answer = TypeVar("Answer")
 
-Begin = Callable[[], Callable[[Task], Answer]]
+TaskFunctionMaker = Callable[[], Callable[[Task], Answer]]
 """Called once in each process, it returns the function that does tasks there; it has to pickle."""
 
 
 class LostError(Exception):
-    """The process of a task died, with an exit ``code``, or was killed at its time limit (``None``)."""
+    """The process of a task died, or was killed at the time limit of the task.
+
+    ``code`` is its exit code; ``None`` after the time limit, when ``is_late`` is true.
+    """
 
     def __init__(self, code: int | None) -> None:
         if code is None:
@@ -35,10 +46,10 @@ class LostError(Exception):
         self.is_late = code is None
 
 
-class Done(NamedTuple, Generic[Task, Answer]):
+class FinishedTask(NamedTuple, Generic[Task, Answer]):
     """A finished task with its answer, or with the exception that was raised instead.
 
-    The exception is one of the work, or a :class:`LostError`.
+    The exception is one that the function for tasks raised, or a :class:`LostError`.
     """
 
     task: Task
@@ -52,49 +63,56 @@ class Done(NamedTuple, Generic[Task, Answer]):
         return self.answer  # type: ignore[return-value]  # not None without an error
 
 
-def share(
-    begin: "Begin[Task, Answer]",
+def run_in_processes(
+    make_task_function: "TaskFunctionMaker[Task, Answer]",
     tasks: Iterable[Task],
     jobs: int,
     seconds: Callable[[Task], float | None] = lambda _: None,
-) -> "Iterator[Done[Task, Answer]]":
-    """Do tasks in up to ``jobs`` child processes, and yield each with its answer as soon as it is done.
+) -> "Iterator[FinishedTask[Task, Answer]]":
+    """Run tasks in up to ``jobs`` child processes; yield each result as soon as it is there, in any order.
 
-    ``begin`` runs once in each process, and returns the function that does the tasks there. ``seconds``
-    returns the time limit of a task, ``None`` for no limit. A process that dies or exceeds this time is
-    replaced by another one. The time of the first task of a process starts once ``begin`` has returned.
+    Each process calls ``make_task_function`` once; the function that it returns does the tasks. ``seconds``
+    returns the time limit of a task, ``None`` for no limit. The time of the first task of a process begins
+    when ``make_task_function`` has returned.
+
+    If a process dies or exceeds the time, the result of its task is a :class:`LostError`, and another process
+    is started. All processes are ended when the iterator is closed.
     """
-    packed_begin, remaining, messages = packed(begin), iter(tasks), _Messages()
+    packed_maker, remaining_tasks, messages = pack_message(make_task_function), iter(tasks), _Messages()
     workers: dict[int, _Worker[Task]] = {}
-    started = 0
+    start_count = 0
     try:
-        for task in islice(remaining, jobs):
-            workers[started] = _Worker(packed_begin, task, started, messages)
-            started += 1
+        for task in islice(remaining_tasks, jobs):
+            workers[start_count] = _Worker(packed_maker, task, start_count, messages)
+            start_count += 1
         while workers:
             number, (kind, value) = _next_message(workers, messages)
             worker = workers.get(number)
             if worker is None:  # it was killed before its message was read
                 continue
-            current = worker.task
+            current_task = worker.task
             if kind == "ready":
-                worker.start_timer(seconds(current))
+                worker.start_timer(seconds(current_task))
                 continue
             if kind == "lost":
-                code = worker.end() if worker.is_late else worker.died()
-                value = LostError(None if worker.is_late else code)
-            for task in islice(remaining, 1):
+                exit_code = worker.end() if worker.is_late else worker.wait_for_exit()
+                value = LostError(None if worker.is_late else exit_code)
+            for task in islice(remaining_tasks, 1):
                 if kind == "lost":
                     del workers[number]
-                    workers[started] = _Worker(packed_begin, task, started, messages)
-                    started += 1
+                    workers[start_count] = _Worker(packed_maker, task, start_count, messages)
+                    start_count += 1
                 else:
                     worker.ask(task, seconds(task))
                 break
             else:
                 del workers[number]
                 worker.end()
-            yield Done(current, None, value) if kind != "done" else Done(current, value, None)
+            yield (
+                FinishedTask(current_task, None, value)
+                if kind != "done"
+                else FinishedTask(current_task, value, None)
+            )
     finally:
         for worker in workers.values():
             worker.end()
@@ -110,30 +128,33 @@ def _next_message(workers: "dict[int, _Worker[Any]]", messages: _Messages) -> tu
     For a worker that died or exceeded the time of its task, the message is ``lost``.
     """
     while True:
-        ends = {worker.end_by: number for number, worker in workers.items() if worker.end_by is not None}
-        end = min(ends, default=None)
+        worker_by_end = {
+            worker.end_by: number for number, worker in workers.items() if worker.end_by is not None
+        }
+        first_end = min(worker_by_end, default=None)
         with contextlib.suppress(Empty):
-            return messages.get(timeout=None if end is None else max(0.0, end - time.monotonic()))
-        if end is not None and time.monotonic() >= end:
-            workers[ends[end]].is_late = True
-            return ends[end], ("lost", None)
+            return messages.get(timeout=None if first_end is None else max(0.0, first_end - time.monotonic()))
+        if first_end is not None and time.monotonic() >= first_end:
+            workers[worker_by_end[first_end]].is_late = True
+            return worker_by_end[first_end], ("lost", None)
 
 
 class _Worker(PythonProcess, Generic[Task]):
-    """A process that does tasks, and its current ``task``, which it has to finish by ``end_by``.
+    """A process that does tasks, and its current ``task``, which has to be finished by ``end_by``.
 
-    ``end_by`` is a time of the monotonic clock, or ``None``.
+    ``end_by`` is a time of the monotonic clock; ``None`` is no limit. ``packed_maker`` is the message with
+    the function that makes the task function. ``number`` identifies the process in ``messages``.
     """
 
-    def __init__(self, packed_begin: bytes, task: Task, number: int, messages: _Messages) -> None:
+    def __init__(self, packed_maker: bytes, task: Task, number: int, messages: _Messages) -> None:
         super().__init__("foon_asp.processes.pool", "work is shared")
         self.task = task
         self.is_late = False
         self.end_by: float | None = None
         self.start_thread(
-            write_if_open, self._out, packed_begin + packed(task)
+            write_if_open, self._out, packed_maker + pack_message(task)
         )  # waits until the process has started
-        self.start_thread(_listen, self._in, number, messages)
+        self.start_thread(_queue_messages, self._in, number, messages)
 
     def start_timer(self, seconds: float | None) -> None:
         """Start the time of the current task; ``None`` is no limit."""
@@ -143,11 +164,11 @@ class _Worker(PythonProcess, Generic[Task]):
         """Send the process another task; if it has died, its message ``lost`` follows."""
         self.task = task
         self.start_timer(seconds)
-        write_if_open(self._out, packed(task))
+        write_if_open(self._out, pack_message(task))
 
 
-def _listen(pipe: RawIOBase, number: int, messages: _Messages) -> None:
-    """Put each message of a worker into the queue of all messages, until its output ends."""
+def _queue_messages(pipe: RawIOBase, number: int, messages: _Messages) -> None:
+    """Put each message of a worker and its number into the queue; at the end of its output, put ``lost``."""
     with contextlib.suppress(EOFError):
         while True:
             messages.put((number, receive(pipe)))
@@ -155,19 +176,25 @@ def _listen(pipe: RawIOBase, number: int, messages: _Messages) -> None:
 
 
 def serve() -> None:
-    """Work as a child process of a pool: receive ``begin`` and tasks, send answers, until the parent ends."""
-    received, answers = requests(receive_packed)
-    work = _task_function(received.get())
+    """Run in a child process of a pool: do the tasks on standard input, until the parent process ends.
+
+    The first message is ``make_task_function``. Each later one is a task, which is answered by a message.
+    """
+    received, answers = become_worker(receive_pickled)
+    work = _make_task_function(received.get())
     with contextlib.suppress(BrokenPipeError):  # the parent has ended
         send(answers, ("ready", None))
         while True:
-            write(answers, _answer(work, received.get()))
+            write(answers, _answer_message(work, received.get()))
 
 
-def _task_function(begin: bytes) -> Callable[[Any], Any]:
-    """Return the function that ``begin`` makes for tasks; if it raises, one that always raises the same."""
+def _make_task_function(pickled_maker: bytes) -> Callable[[Any], Any]:
+    """Unpickle ``make_task_function`` and call it; return the function that does tasks.
+
+    If it raises an exception, return a function that raises this exception for every task.
+    """
     try:
-        work: Callable[[Any], Any] = pickle.loads(begin)()
+        work: Callable[[Any], Any] = pickle.loads(pickled_maker)()
     except Exception as error:
         failure = error
 
@@ -177,16 +204,16 @@ def _task_function(begin: bytes) -> Callable[[Any], Any]:
     return work
 
 
-def _answer(work: Callable[[Any], Any], task: bytes) -> bytes:
-    """Do a task; return a message with its answer, or with the exception that it raised."""
+def _answer_message(work: Callable[[Any], Any], task: bytes) -> bytes:
+    """Do a pickled task; return a message with its answer, or with the exception that it raised."""
     try:
-        return packed(("done", work(pickle.loads(task))))
+        return pack_message(("done", work(pickle.loads(task))))
     except Exception as error:
-        return packed(("raised", _portable(error)))
+        return pack_message(("raised", _picklable_error(error)))
 
 
-def _portable(error: Exception) -> Exception:
-    """Return an error that can be sent to another process: one that cannot be pickled becomes a bug."""
+def _picklable_error(error: Exception) -> Exception:
+    """Return an error, or a :class:`BugError` with its text if the error cannot be pickled."""
     try:
         pickle.loads(pickle.dumps(error))
     except Exception:

@@ -29,9 +29,10 @@ _all: "weakref.WeakSet[PythonProcess]" = weakref.WeakSet()
 class PythonProcess:
     """A child process that runs ``serve`` of a module, which reads standard input and writes standard output.
 
-    It has the module search path of this process, and never outlives it. ``options`` are of Python.
+    It has the module search path of this process, and never outlives it. ``options`` are options of Python,
+    and ``stderr`` is passed to :class:`subprocess.Popen`.
 
-    Raises :class:`UserError` where the path of Python is not known; ``activity`` begins its message.
+    Raises :class:`UserError` if the path of Python is unknown; the message begins with ``activity``.
     """
 
     def __init__(self, module: str, activity: str, *options: str, stderr: int | None = None) -> None:
@@ -57,14 +58,14 @@ class PythonProcess:
         _all.add(self)
 
     @property
-    def alive(self) -> bool:
+    def is_alive(self) -> bool:
         """Whether the process runs."""
         with uninterrupted():  # Popen takes a lock, here and in what follows
             return self._process.poll() is None
 
     def start_thread(self, target: Callable[..., None], *arguments: object) -> None:
         """Start a thread that reads from or writes to the process, and ends with it."""
-        self._threads = [thread for thread in self._threads if not thread.ended(0)]
+        self._threads = [thread for thread in self._threads if not thread.wait_for_end(0)]
         self._threads.append(DaemonThread(target, *arguments))
 
     def end(self) -> int:
@@ -77,36 +78,40 @@ class PythonProcess:
             self._process.kill()
             code = self._process.wait()
         for thread in self._threads:
-            thread.ended(5.0)  # before another file gets the descriptor that it reads
-        self._close()
+            thread.wait_for_end(5.0)  # before another file gets the descriptor that it reads
+        self._close_pipes()
         return code
 
-    def died(self) -> int:
-        """Return the exit code of a process that has closed its output; one that does not end is killed."""
+    def wait_for_exit(self) -> int:
+        """Wait for a process that has closed its output, and return its exit code.
+
+        It is killed if it does not end within five seconds.
+        """
         with uninterrupted(), contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(5.0)
         return self.end()
 
     def abandon(self) -> None:
-        """Forget the process after a fork: it is no child of this process, only of the original one."""
+        """Close the pipes, but let the process run: after a fork, it is a child of the parent."""
         self._process.returncode = 0
         self._group_ended = True
         self._threads = []  # which a copy does not have
-        self._close()
+        self._close_pipes()
 
-    def _close(self) -> None:
+    def _close_pipes(self) -> None:
         for pipe in (self._out, self._in):
             with contextlib.suppress(OSError):
                 pipe.close()
 
 
 def _end_all() -> None:
+    """Kill all processes, when this one ends."""
     for process in list(_all):
         process.end()
 
 
 def _forget_all() -> None:
-    """Forget all processes after a fork: they are children of the parent."""
+    """Abandon all processes after a fork: they are children of the parent."""
     for process in list(_all):
         process.abandon()
 

@@ -27,7 +27,8 @@ class DiedError(Exception):
 class Worker(PythonProcess):
     """A process in which ``serve`` of a module answers the requests on its standard input.
 
-    ``read`` reads one message from its output; by default a pickled kind and value.
+    ``read`` reads a message from its output; by default, a message is a pickled kind and value.
+    ``has_spoken`` is true once a message has come.
     """
 
     def __init__(
@@ -42,12 +43,12 @@ class Worker(PythonProcess):
         self.has_spoken = False
         self._busy = False  # from a request until its answer, and after the end
         self._messages: queue.SimpleQueue[Message | None] = queue.SimpleQueue()
-        self.start_thread(_listen, self._in, read, self._messages)
+        self.start_thread(_queue_messages, self._in, read, self._messages)
 
     @property
-    def ready(self) -> bool:
-        """Whether the process can answer a request."""
-        return not self._busy and self.alive
+    def is_ready(self) -> bool:
+        """Whether the process runs and has no request to answer."""
+        return not self._busy and self.is_alive
 
     def ask(
         self, request: bytes, deadline: Deadline, handlers: Mapping[str, Callable[[Any], None]] | None = None
@@ -62,11 +63,11 @@ class Worker(PythonProcess):
         if self._busy:
             raise BugError("a process was asked that had been ended")
         self._busy = True
-        deadline.count(self._process.pid)
+        deadline.count_memory_of(self._process.pid)
         try:
             self.start_thread(write_if_open, self._out, request)
             while True:
-                kind, value = self._next(deadline)
+                kind, value = self._next_message(deadline)
                 if handlers is None or kind not in handlers:
                     break
                 handlers[kind](value)
@@ -77,7 +78,7 @@ class Worker(PythonProcess):
                 raise LimitError(deadline) from None
             raise
         finally:
-            deadline.uncount(self._process.pid)
+            deadline.uncount_memory_of(self._process.pid)
         self._busy = False
         return kind, value
 
@@ -85,13 +86,13 @@ class Worker(PythonProcess):
         """Send a request without an answer, short enough for the buffer of the pipe."""
         write_if_open(self._out, request)
 
-    def _next(self, deadline: Deadline) -> Message:
+    def _next_message(self, deadline: Deadline) -> Message:
         """Wait for a message; raises :class:`DiedError` or :class:`LimitError`."""
         while True:
             with contextlib.suppress(queue.Empty):
-                message = self._messages.get(timeout=max(0.001, deadline.slice()))
+                message = self._messages.get(timeout=max(0.001, deadline.seconds_to_next_check()))
                 if message is None:
-                    raise DiedError(self.died())
+                    raise DiedError(self.wait_for_exit())
                 self.has_spoken = True
                 return message
             deadline.check()
@@ -102,7 +103,7 @@ class Worker(PythonProcess):
         return super().end()
 
     def abandon(self) -> None:
-        """Forget the process after a fork: it is no child of this process, only of the original one."""
+        """Close the pipes, but let the process run: after a fork, it is a child of the parent."""
         self._busy = True
         super().abandon()
 
@@ -110,27 +111,27 @@ class Worker(PythonProcess):
 W = TypeVar("W", bound=Worker)
 
 # One worker for each key. Accesses are single atomic operations, and have no lock: the garbage collector may
-# call ``give_back`` at any time, also while the lock is held.
+# call ``give_back_worker`` at any time, also while the lock is held.
 _idle: dict[Hashable, Any] = {}
 
 
-def take(key: Hashable, start: Callable[[], W]) -> W:
-    """Return the idle worker of a key, or start one."""
+def take_worker(key: Hashable, start: Callable[[], W]) -> W:
+    """Return the idle worker of a key, which is then no longer idle; if there is none, start one."""
     worker: W | None = _idle.pop(key, None)
-    if worker is not None and worker.ready:
+    if worker is not None and worker.is_ready:
         return worker
     if worker is not None:
         worker.end()
     return start()
 
 
-def give_back(key: Hashable, worker: Worker) -> None:
-    """Make a worker the idle one of a key; it is ended if it is not ready, or the key has an idle worker."""
-    if not worker.ready or _idle.setdefault(key, worker) is not worker:
+def give_back_worker(key: Hashable, worker: Worker) -> None:
+    """Make a worker the idle one of a key; kill it if it is not ready, or if the key has an idle worker."""
+    if not worker.is_ready or _idle.setdefault(key, worker) is not worker:
         worker.end()
 
 
-def _listen(
+def _queue_messages(
     pipe: RawIOBase, read: Callable[[RawIOBase], Message], messages: "queue.SimpleQueue[Message | None]"
 ) -> None:
     """Put the messages of a process into a queue, and ``None`` at the end of its output."""

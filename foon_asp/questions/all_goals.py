@@ -7,7 +7,7 @@ from typing import Unpack
 
 from foon_asp.asp import Outcome, Settings, Status
 from foon_asp.asp import solve as find
-from foon_asp.dataset.nearby import NearbyProblem, shown
+from foon_asp.dataset.nearby import NearbyProblem, without_reading_more
 from foon_asp.dataset.nearby_optimum import near_goals
 from foon_asp.deadline import Deadline
 from foon_asp.hypergraph import SolvedGoals
@@ -164,7 +164,9 @@ def solve_all_goals(
             outcomes_of[number].append(outcome)
     outcomes = [outcome for number in range(len(outcomes_of)) for outcome in outcomes_of[number]]
     objectives_of_all = dict.fromkeys(objective for outcome in outcomes for objective in outcome.objectives)
-    return Optima(**head_of(shown(problem), objectives_of_all), answers=tuple(map(Answer.of, outcomes)))
+    return Optima(
+        **head_of(without_reading_more(problem), objectives_of_all), answers=tuple(map(Answer.of, outcomes))
+    )
 
 
 def _in_search_order(problems: Sequence[Problem], solved: SolvedGoals) -> Iterator[tuple[int, Problem]]:
@@ -187,5 +189,5 @@ def _problems_by_goal(problem: Problem, settings: Settings) -> list[Problem]:
     Of a large store, only what an answer needs is read if there are no rules, else all data.
     """
     if isinstance(problem, NearbyProblem) and not settings.constraints and settings.replaced is None:
-        return problem.each_goal()
+        return problem.single_goal_problems()
     return for_each_goal(problem_for_rules(problem, settings))

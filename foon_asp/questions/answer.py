@@ -568,7 +568,7 @@ def answer_from_store(nearby: "Nearby", objectives: Sequence[Objective], setting
     if outcome is not None:
         return _answer_of(outcome)
     with limited_reading():
-        problem = nearby.whole()
+        problem = nearby.full_problem()
     return answer_under_rules(problem, objectives, settings)
 
 

@@ -54,7 +54,7 @@ def solve_with_certificate(
         proved = answer.problem
     else:
         answer = answer_from_store(nearby, objectives, settings)
-        proved = nearby.relaxed
+        proved = nearby.relaxation
     certificate = None
     with contextlib.suppress(KeyboardInterrupt), deadline.watched("looking for a certificate"):
         outcome, certificate = certify_outcome(

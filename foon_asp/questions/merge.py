@@ -6,10 +6,10 @@ from pathlib import Path
 from types import MappingProxyType
 
 from foon_asp.argument_checks import typed
-from foon_asp.dataset.paths import File, Files, as_path, files
+from foon_asp.dataset.paths import File, Files, as_path, as_paths
 from foon_asp.errors import UserError
 from foon_asp.network import Amounts, Network, NetworkBuilder, counted
-from foon_asp.network.near_units import units_kept_apart
+from foon_asp.network.near_units import units_with_one_difference
 from foon_asp.questions.result import Result
 from foon_asp.results.document import Unserialized
 from foon_asp.results.table import Block
@@ -89,7 +89,7 @@ class Merged(Result, frozen=True, kw_only=True, tag=schema_name("merge")):
         """
         if self.network is None:
             return
-        pairs = units_kept_apart(self.network)
+        pairs = units_with_one_difference(self.network)
         yield f"nearly the same, and kept apart: {counted(len(pairs), 'pair', ',')}"
         for pair in pairs:
             yield ""
@@ -149,7 +149,7 @@ def merge(
         >>> merged.copies - merged.units
         0
     """
-    named = files(paths)
+    named = as_paths(paths)
     if not named:
         raise UserError("name the networks to merge")
     folder = named[0] if isinstance(paths, str | PathLike) and named[0].is_dir() else None

@@ -81,7 +81,7 @@ def pose_problem(
     """
     dataset = command.dataset
     with command.reading():
-        named = dataset.each_goal(goals_named) if all_goals else dataset.goals(goals_named)
+        named = dataset.goal_ids(goals_named) if all_goals else dataset.command_goal_ids(goals_named)
         if not named:
             raise UserError("there are no goals: name some with --goal, or a file of them with --goals")
         stated = "lasting" if items is None else items if command.given("items") else None

@@ -86,13 +86,13 @@ def listed_tree(
     ordered = not answer.numbers
     listed = answer.with_units(file, lambda: dataset.whole_network).units or ()
     if answer.goals and not goals_named:
-        goals = dataset.named_goals(answer.goals)
+        goals = dataset.python_goal_ids(answer.goals)
     elif goals_named:
-        goals = dataset.goals(goals_named)
+        goals = dataset.command_goal_ids(goals_named)
     elif len(dataset.listed) == 1:
-        goals = dataset.goals(())
+        goals = dataset.command_goal_ids(())
     elif listed and ordered:
-        goals = dataset.named_goals(_goals_of_last_unit(listed[-1][0]))
+        goals = dataset.python_goal_ids(_goals_of_last_unit(listed[-1][0]))
     else:
         fault = "use(U) names no goal, and has no last step" if listed else "there is no step"
         raise UserError(f"{file}: {fault}; name a goal with --goal")

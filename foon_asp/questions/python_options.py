@@ -6,7 +6,7 @@ from typing import Annotated, TypedDict
 
 from foon_asp.asp.settings import Settings
 from foon_asp.dataset.paths import File, Files
-from foon_asp.deadline import Cancel, Deadline, memory_size, seconds
+from foon_asp.deadline import Cancel, Deadline, parse_memory_size, parse_seconds
 from foon_asp.network import ObjectNode
 from foon_asp.problem.progress import OnProgress
 from foon_asp.questions.caller import caller
@@ -70,4 +70,6 @@ def start_deadline(options: Limits) -> Deadline:
 def limits_of(options: Limits) -> tuple[float | None, int | None]:
     """Return the time limit in seconds and the memory limit in bytes; ``None`` for no limit."""
     time, memory = options.get("time_limit"), options.get("memory_limit")
-    return None if time is None else seconds(time), None if memory is None else memory_size(memory)
+    return None if time is None else parse_seconds(time), None if memory is None else parse_memory_size(
+        memory
+    )

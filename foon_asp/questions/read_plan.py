@@ -83,7 +83,7 @@ def _pose_from_map(command: Command, names: Path | None) -> tuple[Problem]:
         used_up = name_map.items and items_of(
             dataset, ITEMS[1], name_map.items.stock, name_map.items.told, name_map.items.wanted
         )
-        return (dataset.problem(dataset.named_goals(name_map.goals), name_map.containers, items=used_up),)
+        return (dataset.problem(dataset.python_goal_ids(name_map.goals), name_map.containers, items=used_up),)
 
 
 @question(

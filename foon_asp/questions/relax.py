@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Self, Unpack
 from msgspec import structs
 
 from foon_asp.asp import Reporter, Settings, Status
-from foon_asp.dataset.paths import File, Files, files
+from foon_asp.dataset.paths import File, Files, as_paths
 from foon_asp.deadline import Deadline
 from foon_asp.network import counted
 from foon_asp.planning.strips_task import DERIVED, StripsTask
@@ -219,7 +219,7 @@ def relax(
         ('9', 'optimal')
     """
     deadline = start_deadline(limits)
-    relaxed = solve_relaxation(read_task(files(task), deadline), deadline)
+    relaxed = solve_relaxation(read_task(as_paths(task), deadline), deadline)
     if certificate_file is None:
         return relaxed
     certificate = _certificate(relaxed, deadline)
@@ -265,7 +265,7 @@ class _StopWhenProved(Reporter):
     def _compare(self) -> None:
         """End the search if the cost is proved; by units, no second objective would be searched for."""
         if self._objective is not Objective.UNITS and None is not self._cost == self._lower_bound:
-            self._deadline.enough()
+            self._deadline.stop_at_proof()
 
 
 def _certificate(relaxed: Relaxed, deadline: Deadline) -> "Certificate | None":

@@ -200,7 +200,9 @@ def search(
     """
     (chosen_search,) = searches_named([search])
     deadline = start_deadline(options)
-    settings = search_settings(ties, count, depth_limit, published, deadline.left, deadline.memory)
+    settings = search_settings(
+        ties, count, depth_limit, published, deadline.remaining_seconds, deadline.memory
+    )
     outcome = chosen_search.run(replace(problem, items=None), settings)
     stuck_at = None if outcome.stuck_at is None else node_of(problem.network, outcome.stuck_at)
     return Retrieved.of(problem, chosen_search, outcome.ending, outcome.units, stuck_at)

@@ -53,7 +53,7 @@ def _solve_apart(answer: Answer, settings: Settings, posed: Problem) -> list[Out
     """
     together, problem, objectives = answer.outcome, answer.problem, answer.objectives
     if isinstance(posed, NearbyProblem):
-        problems = posed.each_goal()
+        problems = posed.single_goal_problems()
         outcomes = [
             answer_under_rules(goal_problem, objectives, settings, Reporter()).outcome
             for goal_problem in problems

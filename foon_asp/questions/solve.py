@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Annotated, Unpack
 
 from foon_asp.asp import Reporter
-from foon_asp.dataset.nearby import shown
+from foon_asp.dataset.nearby import without_reading_more
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.hypergraph import Reduction, parse_reductions
@@ -205,7 +205,7 @@ def solve(
 
         problem, skipped = without_unreachable(problem_for_rules(problem, settings))
     # without reading more of a large store
-    has_several_goals = soft is None and len(shown(problem).goals) > 1
+    has_several_goals = soft is None and len(without_reading_more(problem).goals) > 1
     if soft is not None:
         from foon_asp.questions.solve_soft import solve_under_soft_constraints  # noqa: PLC0415
 

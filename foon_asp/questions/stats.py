@@ -8,7 +8,7 @@ from msgspec import UNSET, UnsetType
 
 from foon_asp.dataset import Dataset
 from foon_asp.dataset.item_options import Stays, items_of
-from foon_asp.dataset.level_counts import count_levels
+from foon_asp.dataset.level_counts import statistics_by_level
 from foon_asp.dataset.paths import File
 from foon_asp.escapes import escaped
 from foon_asp.foon import Foon, load
@@ -149,7 +149,7 @@ class Stats(Result, frozen=True, kw_only=True, tag=schema_name("stats")):
             videos=tuple(dict.fromkeys(video for source in sources for video in source.videos)),
             reached_from="starting kitchen" if data.starting else "kitchen",
             starting_kitchen=_starting_nodes(network) if data.starting else None,
-            levels=tuple(count_levels(data)),
+            levels=tuple(statistics_by_level(data)),
             most_connected_labels=tuple(LabelUnits(*pair) for pair in labels),
             most_connected_objects=tuple(
                 ObjectUnits(node_of(network, o), *numbers) for o, *numbers in objects
@@ -319,7 +319,7 @@ def _list_units(
     ``stays`` overrides this for labels and nodes. Unknown ids raise :class:`UserError`.
     """
     items = items_of(dataset, "used-up", None, stays) if explains else None
-    network = (dataset.part((), numbers)[0] if numbers else dataset.data).network
+    network = (dataset.data_part((), numbers)[0] if numbers else dataset.data).network
     unit_ids = [network.unit_of_number(number) for number in numbers]
     ids = [unit for unit in unit_ids if unit is not None] if numbers else range(len(network))
     listed = tuple(_explained_unit(network, unit, rule, dataset.utensils, items) for unit in ids)
@@ -349,6 +349,7 @@ def _starting_nodes(network: Network) -> StartingNodes:
     """Return the starting kitchen of a network, as nodes that no unit makes and nodes that units make."""
     kitchen = starting_kitchen(network)
     not_made, made_too = (
-        nodes_of(network, sorted(nodes)) for nodes in (kitchen.nodes - kitchen.made_too, kitchen.made_too)
+        nodes_of(network, sorted(nodes))
+        for nodes in (kitchen.nodes - kitchen.made_by_units, kitchen.made_by_units)
     )
     return StartingNodes(kitchen.file_count, not_made, made_too)

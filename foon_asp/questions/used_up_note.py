@@ -46,7 +46,7 @@ def _amount_text(problem: Problem, units: Sequence[FunctionalUnit]) -> str:
         for node in (node for unit in units for node in unit.inputs):
             if node in origin.stock and problem.at_hand(node):
                 return f"of {node} in the kitchen"
-    wanted = origin.wanted
+    wanted = origin.goal_amounts
     for goal in problem.goals if wanted else ():
         if wanted.get(problem.network.object_number(goal), 1) > 1:
             return f"of the goal {problem.network.objects[goal]}"

@@ -12,7 +12,7 @@ from msgspec import structs
 
 from foon_asp.asp import Settings
 from foon_asp.asp.postconditions import Postconditions
-from foon_asp.dataset.nearby import shown
+from foon_asp.dataset.nearby import without_reading_more
 from foon_asp.dataset.paths import File
 from foon_asp.errors import UserError
 from foon_asp.foon import Foon
@@ -410,10 +410,10 @@ def _units_drawing(about: Problem | Foon, unit_ids: Sequence[int]) -> Drawing:
     """Return the drawing of some units, by id in the whole network; the goals of a problem are marked."""
     goal_ids: Sequence[int] = ()
     if isinstance(about, Problem):
-        posed = shown(about)
+        posed = without_reading_more(about)
         goal_ids = [posed.network.object_number(goal) for goal in posed.goals]
         about = Foon.of(about)
-    data, goal_ids = about.dataset.part(goal_ids, unit_ids)
+    data, goal_ids = about.dataset.data_part(goal_ids, unit_ids)
     network = data.network
     units = [unit for unit in map(network.unit_of_number, unit_ids) if unit is not None]
     caption = f"Functional units {', '.join(map(str, unit_ids))}"
@@ -430,7 +430,7 @@ def _drawing_without_goals(
     if isinstance(tree, str | PathLike):
         tree = [unit for unit, _ in read_listed_units(Path(tree), lambda: foon.dataset.whole_network)[0]]
     task_tree = TaskTree(tuple(dict.fromkeys(unit_at_level(unit, foon.level) for unit in tree)))
-    data, _ = foon.dataset.part((), tree=task_tree)
+    data, _ = foon.dataset.data_part((), tree=task_tree)
     kitchen = {data.network.objects[o] for o in data.kitchen}
     return tree_drawing(task_tree, kitchen, (), rule, data.utensils, data.network)
 
@@ -468,7 +468,7 @@ def pages(
 
     def remaining_limits() -> Limits:
         """Return the time that remains, in seconds, and the memory limit."""
-        return {"time_limit": deadline.left, "memory_limit": deadline.memory}
+        return {"time_limit": deadline.remaining_seconds, "memory_limit": deadline.memory}
 
     if is_of_plan and not has_rules:
         # a plan need not take from the kitchen items that it makes

@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from foon_asp.dataset import Dataset
 from foon_asp.dataset.paths import File
 from foon_asp.network import STAND_IN, NodePattern, ObjectNode, StandInTable, counted, pattern_at_level
-from foon_asp.network.slip import nearest, slip_between
+from foon_asp.network.slip import nearest_nodes, slip_between
 from foon_asp.problem import Objective, Problem
 from foon_asp.problem.dead_ends import Cause, DeadEnds, RootCause, dead_ends
 from foon_asp.problem.for_sale import Shop
@@ -413,7 +413,7 @@ def _with_near_names(problem: Problem, analysis: DeadEnds, roots: Iterable[Root]
         nodes_near = {near_name.name for near_name in near_names if near_name.kitchen_entry is None}
         alike = tuple(
             node_as(AlikeNode, network, ids_available[other], in_kitchen=ids_available[other] in kitchen)
-            for other in nearest(node, ids_available, _MAX_SHOWN.alike)
+            for other in nearest_nodes(node, ids_available, _MAX_SHOWN.alike)
             if str(other) not in nodes_near
         )
         yield replace(value, near=near_names, alike=alike)

@@ -6,7 +6,7 @@ from collections.abc import Container, Iterable, Sequence
 from itertools import chain
 from typing import Protocol
 
-from foon_asp.garbage_collection import uncollected
+from foon_asp.garbage_collection import without_garbage_collection
 from foon_asp.problem import ContainerRule
 from foon_asp.store.tuning import STORE
 
@@ -54,7 +54,7 @@ class Cone:
         other.units, other.open, other._closed = set(self.units), set(self.open), set(self._closed)
         return other
 
-    @uncollected()
+    @without_garbage_collection()
     def grow(self, objects: Iterable[int], max_units: int | None = None) -> None:
         """Read the units that make the open nodes among ``objects``, then the units that make their inputs.
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from foon_asp.errors import UserError
 from foon_asp.file_permissions import copy_permissions, warn_of_replaced
-from foon_asp.garbage_collection import uncollected
+from foon_asp.garbage_collection import without_garbage_collection
 from foon_asp.network import STARTING, FunctionalUnit, Source
 from foon_asp.problem import unrated_remarks
 from foon_asp.store.builder import StoreBuilder
@@ -69,7 +69,7 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
     earlier_warnings = len(warnings)
     last_units: dict[int, Source] = {}
     try:
-        with _new_database(store) as database, uncollected():
+        with _new_database(store) as database, without_garbage_collection():
             builder = StoreBuilder(database, kitchen)
             for file in files.network:
                 if is_store(file):

@@ -8,7 +8,7 @@ from itertools import chain, groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
-from foon_asp.garbage_collection import uncollected
+from foon_asp.garbage_collection import without_garbage_collection
 from foon_asp.network import (
     DataAmounts,
     FunctionalUnit,
@@ -473,7 +473,7 @@ class Store:
     # Networks.
 
     @reporting_damage
-    @uncollected()
+    @without_garbage_collection()
     def read_part(self, units: Iterable[int], objects: Iterable[int] = ()) -> Network:
         """Read units with their nodes, and further nodes ``objects``, as a network of its own.
 
@@ -494,7 +494,7 @@ class Store:
         return replace(network, unit_numbers=tuple(unit_ids), object_numbers=tuple(object_ids))
 
     @reporting_damage
-    @uncollected()
+    @without_garbage_collection()
     def read_whole(self) -> tuple[Network, frozenset[int]]:
         """Check the digest of the file, and return the whole network and the ids of the kitchen nodes."""
         self.file.check_digest()

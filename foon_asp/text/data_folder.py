@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foon_asp.errors import UserError
-from foon_asp.garbage_collection import uncollected
+from foon_asp.garbage_collection import without_garbage_collection
 from foon_asp.network import (
     NO_AMOUNTS,
     STARTING,
@@ -196,7 +196,7 @@ def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
     agree with it in the remaining parts. Kitchen items, prices and amounts that match nothing in the network
     cause warnings.
     """
-    with uncollected():
+    with without_garbage_collection():
         reader = FoonReader(lenient)
         whole_network = reader.read_network(files.network)
     network = network_at_level(whole_network, level)

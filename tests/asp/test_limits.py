@@ -257,7 +257,7 @@ def test_what_is_left_out_at_a_limit_is_unknown(monkeypatch: pytest.MonkeyPatch)
 def test_what_was_enough_or_interrupted_comes_to_an_end_by_itself() -> None:
     """The search sees that it is over and says what it knows; it is interrupted only if it does not."""
     proved, pressed, full = Deadline(60), Deadline(), Deadline(memory=1)
-    proved.enough()
+    proved.stop_at_proof()
     pressed.interrupt()
     for deadline in (proved, pressed, full):
         assert deadline.passed

@@ -23,7 +23,7 @@ from foon_asp.cli.batch_data import BatchData
 from foon_asp.dataset import Dataset, nearby_optimum
 from foon_asp.dataset.nearby import Nearby, NearbyProblem
 from foon_asp.dataset.nearby_optimum import RefinementTuning, near_goals
-from foon_asp.dataset.reading_store import read_stored
+from foon_asp.dataset.reading_store import read_store
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.foon import Foon
 from foon_asp.problem import ContainerRule, Objective, Problem, levels, reach
@@ -49,7 +49,7 @@ LISTS = (
 
 def stored(problem: Problem, folder: Path) -> Dataset:
     """Import a problem, and give the data that its store has, with the rates and utensils of the problem."""
-    dataset = read_stored(DataFiles((import_problem(problem, folder),)), 3)
+    dataset = read_store(DataFiles((import_problem(problem, folder),)), 3)
     return replace(dataset, rates=problem.rates, utensils=problem.utensils)
 
 
@@ -85,23 +85,23 @@ def two_ways(folder: Path) -> Dataset:
     file.write_text(units, encoding="utf-8")
     kitchen.write_text("O\twater\nO\tbones\n", encoding="utf-8")
     import_files(DataFiles((file,), kitchen), folder / "stew.foon")
-    return read_stored(DataFiles((folder / "stew.foon",)), 3)
+    return read_store(DataFiles((folder / "stew.foon",)), 3)
 
 
 def test_what_is_taken_to_be_at_hand_is_in_no_answer(tmp_path: Path) -> None:
     dataset = two_ways(tmp_path)
-    near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
+    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=1))
     assert len(near.problem.network) == 2  # both ways, one unit each
-    free = solve(near.relaxed)
+    free = solve(near.relaxation)
     assert free.units is not None
     assert len(free.units) == 1
-    assert near.lacking(free.units) != []
+    assert near.open_nodes_used(free.units) != []
     assert solve(near.problem).status is Status.INFEASIBLE
     found = answer_from_store(near, [Objective.UNITS], Settings())
     assert found.status is Status.OPTIMAL
     assert found.tree is not None
     assert [unit.motion for unit in found.tree.units] == ["boil", "plate", "serve"]
-    assert found.problem.kitchen < near.relaxed.kitchen, "the other way was read to its end"
+    assert found.problem.kitchen < near.relaxation.kitchen, "the other way was read to its end"
     assert not any(map(found.problem.at_hand, found.problem.goal_nodes))
 
 
@@ -112,7 +112,7 @@ def test_a_limit_gives_no_tree_that_may_not_be_one(tmp_path: Path, monkeypatch: 
 
     monkeypatch.setattr(nearby_optimum, "solve", stopped)
     dataset = two_ways(tmp_path)
-    near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
+    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=1))
     found = answer_from_store(near, [Objective.UNITS], Settings(deadline=Deadline(1)))
     assert (found.status, found.units, found.costs) == (Status.UNKNOWN, None, None)
     assert found.outcome.bounds[Objective.UNITS] == 1
@@ -125,7 +125,7 @@ def test_a_limit_gives_a_tree_of_what_was_read_and_the_bound(
         raise LimitError(Deadline(0))
 
     dataset = two_ways(tmp_path)
-    near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=5))
+    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=5))
     monkeypatch.setattr(Nearby, "grow", stopped)
     monkeypatch.setattr(Deadline, "watched", lambda *given, **late: nullcontext())
     found = answer_from_store(near, [Objective.UNITS], Settings())
@@ -133,7 +133,7 @@ def test_a_limit_gives_a_tree_of_what_was_read_and_the_bound(
     assert (found.status, found.proof, found.costs.units) == (Status.FEASIBLE, None, 3)
     assert found.outcome.bounds[Objective.UNITS] == 2  # the last two units of the longer way
     assert found.stopped is not None
-    near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
+    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=1))
     found = answer_from_store(near, [Objective.UNITS], Settings())
     assert (found.status, found.proof, found.units) == (Status.UNKNOWN, None, None)
     assert found.outcome.bounds[Objective.UNITS] == 1
@@ -157,7 +157,7 @@ def test_at_a_limit_the_tree_of_the_fewest_units_is_one_that_keeps_to_the_rules(
 
     monkeypatch.setattr(nearby_optimum, "solve", stopped)
     dataset = two_ways(tmp_path)
-    near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
+    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=1))
     how = Settings((Path("before"),), constants=("earlier_motion=serve", "later_motion=plate"))
     found = answer_from_store(near, [Objective.INPUTS], how)
     assert (found.stopped, found.proof) == ("a limit", None)
@@ -191,7 +191,7 @@ def test_a_limit_keeps_the_bound_of_what_was_asked_before(
 
     monkeypatch.setattr(nearby_optimum, "solve", stopped)
     dataset = two_ways(tmp_path)
-    near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
+    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=1))
     found = answer_from_store(near, [Objective.UNITS], Settings(rules))
     assert looks >= 4
     assert found.stopped == "a limit"
@@ -207,7 +207,7 @@ def test_a_limit_while_all_is_read_gives_the_tree_in_hand(
     monkeypatch.setattr("foon_asp.questions.answer.problem_for_rules", stopped)
     dataset, order = two_ways(tmp_path), (Objective.UNITS,)
     how = Settings((RuleText(':- not 1 <= #count { U : use(U), motion(U,"cook 3") }.'),))
-    problem = dataset.problem(dataset.goals(["stew"]), "strict")
+    problem = dataset.problem(dataset.command_goal_ids(["stew"]), "strict")
     found = answer_under_rules(problem, order, how)
     assert found.costs is not None
     assert (found.status, found.proof, found.costs.units) == (Status.FEASIBLE, None, 7)
@@ -223,7 +223,7 @@ def test_where_rules_leave_no_tree_that_is_said_even_at_a_limit(
         raise LimitError(Deadline(0))
 
     dataset = two_ways(tmp_path)
-    near = asked(dataset.nearby(dataset.goals(["stew"]), "strict", first=1))
+    near = asked(dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=1))
     if limited:
         monkeypatch.setattr(Nearby, "grow", stopped)
     forbidden = Settings(
@@ -238,7 +238,7 @@ def test_where_rules_leave_no_tree_that_is_said_even_at_a_limit(
 def from_one_unit(monkeypatch: pytest.MonkeyPatch) -> None:
     """Have questions begin with one unit near the goals, and nobody read all that these need."""
     monkeypatch.setattr(Dataset.nearby, "__defaults__", (None, 1))
-    monkeypatch.setattr(Nearby, "whole", None)
+    monkeypatch.setattr(Nearby, "full_problem", None)
 
 
 @pytest.mark.usefixtures("from_one_unit")
@@ -349,7 +349,7 @@ def test_random_problems_under_rules(rule: ContainerRule, part: int, tmp_path: P
             continue
         objectives = rng.choice(LISTS)
         found = answer_from_store(near, objectives, how)
-        whole = near.whole()
+        whole = near.full_problem()
         expected, free = solve(whole, objectives, how), solve(whole, objectives)
         assert_same(found.outcome, expected, objectives, seed, drawn)
         compared += 1
@@ -399,7 +399,7 @@ def test_random_problems_under_rules_that_see_the_kitchen(part: int, tmp_path: P
         assert_same(found.outcome, expected, objectives, seed, how)
         compared += 1
         mattered += (free.status, free.costs) != (expected.status, expected.costs)
-        little += len(found.problem.network) < len(near.whole().network)
+        little += len(found.problem.network) < len(near.full_problem().network)
     assert compared > 22 // part
     assert mattered > compared // 4
     assert little > compared // 4
@@ -431,8 +431,8 @@ def test_rules_see_the_kitchen_as_it_is(
 ) -> None:
     """What units that were not read may make is no item of the kitchen, nor is it there too early."""
     dataset = two_ways(tmp_path)
-    problem = dataset.nearby(dataset.goals(["stew"]), "strict", first=1)
-    monkeypatch.setattr(Nearby, "whole", None)
+    problem = dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=1)
+    monkeypatch.setattr(Nearby, "full_problem", None)
     found = answer_under_rules(problem, [Objective.UNITS], Settings((rule,), constants=constants))
     assert found.status is Status.OPTIMAL
     assert found.units is not None
@@ -518,7 +518,7 @@ def test_the_optima_of_a_store_are_those_of_the_text(part: int, tmp_path: Path) 
 
 def test_a_problem_of_a_store_reads_no_more_than_is_looked_at(tmp_path: Path) -> None:
     dataset = two_ways(tmp_path)
-    goals = dataset.goals(["stew"])
+    goals = dataset.command_goal_ids(["stew"])
     problem = dataset.nearby(goals, "strict", None, 1)
     assert isinstance(problem, NearbyProblem)
     assert repr(problem) == "<Problem: stew (strict containers)>"

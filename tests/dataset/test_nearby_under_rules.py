@@ -15,7 +15,7 @@ from foon_asp.asp.outcome import Outcome
 from foon_asp.dataset import nearby_under_rules
 from foon_asp.dataset.nearby import NearbyProblem
 from foon_asp.dataset.nearby_under_rules import NEARBY, solve_nearby_under
-from foon_asp.dataset.reading_store import read_stored
+from foon_asp.dataset.reading_store import read_store
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, levels
 from foon_asp.questions.answer import Answer, answer_under_rules
@@ -62,12 +62,12 @@ def near_stew(
         (folder / "stew.txt",), folder / "kitchen.txt", folder / "motion.txt" if rates else None
     )
     import_files(files, folder / "stew.foon")
-    dataset = read_stored(DataFiles((folder / "stew.foon",)), 3)
-    return dataset.nearby(dataset.goals(["stew"]), "strict", first=first)
+    dataset = read_store(DataFiles((folder / "stew.foon",)), 3)
+    return dataset.nearby(dataset.command_goal_ids(["stew"]), "strict", first=first)
 
 
 def read_little(problem: Problem) -> bool:
-    return isinstance(problem, NearbyProblem) and "read" not in vars(problem)
+    return isinstance(problem, NearbyProblem) and "full_problem" not in vars(problem)
 
 
 def test_a_unit_more_near_the_goals_is_proved_with_the_rest_unread(tmp_path: Path) -> None:

@@ -74,7 +74,7 @@ EXCEPTIONS = {
         "keys of a baseline and of documents",
     ),
     "left": (
-        "asp/outcome.py deadline.py network/near_units.py problem proof/replay.py",
+        "asp/outcome.py network/near_units.py problem proof/replay.py",
         "as in left and right; time",
     ),
     "most": ("questions/assist.py", "a parameter that users write"),

@@ -16,7 +16,7 @@ import pytest
 import foon_asp
 from foon_asp.asp import Settings, Status
 from foon_asp.asp.soft import solve_soft
-from foon_asp.deadline import Deadline, LimitError, memory_size, seconds, size_text
+from foon_asp.deadline import Deadline, LimitError, parse_memory_size, parse_seconds, size_text
 from foon_asp.encoding.program_client import start_in_advance
 from foon_asp.errors import UserError
 from foon_asp.problem import Objective
@@ -320,7 +320,7 @@ def test_soft_constraints_tell_what_the_tree_known_by_then_breaks(tmp_path: Path
 @pytest.mark.parametrize("words", ["nan", "inf", "-1", "1e999", "", "soon"])
 def test_time_limits_that_are_none(words: str) -> None:
     with pytest.raises(UserError, match="time limit"):
-        seconds(words)
+        parse_seconds(words)
 
 
 @pytest.mark.parametrize(
@@ -328,14 +328,14 @@ def test_time_limits_that_are_none(words: str) -> None:
     [("500M", 500 * 2**20), ("2G", 2**31), ("2GiB", 2**31), ("1.5g", 3 * 2**29), ("1000", 1000), (7, 7)],
 )
 def test_sizes(words: str | int, size: int) -> None:
-    assert memory_size(words) == size
-    assert memory_size(size_text(size).removesuffix(" bytes")) == size
+    assert parse_memory_size(words) == size
+    assert parse_memory_size(size_text(size).removesuffix(" bytes")) == size
 
 
 @pytest.mark.parametrize("words", ["", "0", "-1M", "1X", "M", "nan", "1e9", 0, -5, True])
 def test_sizes_that_are_none(words: str | int) -> None:
     with pytest.raises(UserError, match="memory limit"):
-        memory_size(words)
+        parse_memory_size(words)
 
 
 def test_where_memory_is_not_told_its_limit_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:

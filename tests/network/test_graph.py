@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from foon_asp.network import Network, NetworkBuilder, ObjectNode
 from foon_asp.network.dead_cycles import dead_cycles
-from foon_asp.network.statistics import count, most_connected_labels, most_connected_objects
+from foon_asp.network.statistics import most_connected_labels, most_connected_objects, network_statistics
 from foon_asp.text.data_folder import DataFiles, read_data
 from tests.text.foon_strategies import steady
 
@@ -30,7 +30,7 @@ def network(*units: tuple[str, str]) -> Network:
 def test_what_is_counted(units: list[tuple[str, str]], start: set[int]) -> None:
     found = network(*units)
     at_hand = [node for node in start if node < len(found.objects)]
-    counted = count(found, at_hand)
+    counted = network_statistics(found, at_hand)
     sides = list(zip(map(set, found.inputs), map(set, found.outputs), strict=True))
 
     layer, step, unit_layers = dict.fromkeys(at_hand, 0), 0, dict[int, int]()

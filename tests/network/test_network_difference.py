@@ -11,8 +11,8 @@ from hypothesis import given, settings
 
 import foon_asp
 from foon_asp.network import FunctionalUnit, node_at_level, unit_at_level
-from foon_asp.network.near_units import nearest_units, unit_differences, units_kept_apart
-from foon_asp.network.slip import nearest
+from foon_asp.network.near_units import nearest_units, unit_differences, units_with_one_difference
+from foon_asp.network.slip import nearest_nodes
 from foon_asp.pictures.page import digest
 from foon_asp.text.line_parser import parse_node
 from foon_asp.text.writer import write_units
@@ -86,7 +86,10 @@ def test_the_nearest_nodes_have_the_same_label_and_most_else() -> None:
         "milk; hot; on [pot]; in [pot]",
     ]
     milk, *others = map(parse_node, ["milk; hot; in [pot]", *named])
-    assert [str(node) for node in nearest(milk, others, 2)] == ["milk; hot", "milk; hot; in [pot]; on [pot]"]
+    assert [str(node) for node in nearest_nodes(milk, others, 2)] == [
+        "milk; hot",
+        "milk; hot; in [pot]; on [pot]",
+    ]
 
 
 def test_units_kept_apart_differ_in_one_thing() -> None:
@@ -98,7 +101,8 @@ def test_units_kept_apart_differ_in_one_thing() -> None:
         unit("chop: onoin; whole + knife → onoin; chopped + knife"),  # a slip
     ]
     found = [
-        (listed.index(p.left), listed.index(p.right), *p.differences[0][:3]) for p in units_kept_apart(listed)
+        (listed.index(p.left), listed.index(p.right), *p.differences[0][:3])
+        for p in units_with_one_difference(listed)
     ]
     assert found == [
         (0, 1, "motion", "chop", "dice"),

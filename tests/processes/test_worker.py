@@ -5,7 +5,7 @@ import os
 import pytest
 
 from foon_asp.deadline import Deadline
-from foon_asp.processes.pipe import packed
+from foon_asp.processes.pipe import pack_message
 from foon_asp.processes.worker import Worker
 
 GROUNDER = "foon_asp.encoding.program_worker"
@@ -14,7 +14,7 @@ needs_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system doe
 
 def derived(worker: Worker) -> object:
     """Ask the process something small."""
-    return worker.ask(packed(("derive", "a(1).", "a", 1, None)), Deadline())
+    return worker.ask(pack_message(("derive", "a(1).", "a", 1, None)), Deadline())
 
 
 @needs_fork

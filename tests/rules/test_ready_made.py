@@ -150,7 +150,7 @@ def test_parts_of_stores_are_asked_about_without_clingo(tmp_path: Path) -> None:
     near = near_of(stored(problem, tmp_path).nearby((0,), "strict", first=1))
     assert near is not None
     prices = problem.unit_prices
-    part, relaxed = (replace(each, unit_prices=prices) for each in (near.problem, near.relaxed))
+    part, relaxed = (replace(each, unit_prices=prices) for each in (near.problem, near.relaxation))
     for text, rest in (
         ("forbid_motion:forbidden_motion=mix", False),
         ("at_most_units:max_units=3", True),

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from foon_asp.errors import UserError
-from foon_asp.garbage_collection import uncollected
+from foon_asp.garbage_collection import without_garbage_collection
 from foon_asp.store.import_files import import_files
 from foon_asp.store.store import Store
 from foon_asp.text.data_folder import DataFiles, read_data
@@ -15,9 +15,9 @@ from foon_asp.text.data_folder import DataFiles, read_data
 
 def test_collecting_is_off_inside_and_as_it_was_afterwards() -> None:
     assert gc.isenabled()
-    with uncollected():
+    with without_garbage_collection():
         assert not gc.isenabled()
-        with uncollected():
+        with without_garbage_collection():
             pass
         assert not gc.isenabled()
     assert gc.isenabled()
@@ -62,7 +62,7 @@ def test_lines_that_are_not_understood_leave_none(tmp_path: Path, lenient: bool)
     file.write_text(lines, encoding="utf-8")
     read_data(DataFiles((file,)), lenient=True)  # makes the parser
     gc.collect()
-    with uncollected(), nullcontext() if lenient else pytest.raises(UserError):
+    with without_garbage_collection(), nullcontext() if lenient else pytest.raises(UserError):
         read_data(DataFiles((file,)), lenient)
     assert gc.collect() < 100
 
@@ -77,6 +77,6 @@ def test_very_many_new_objects_are_collected_again_after_an_interrupt() -> None:
 
 
 def _interrupted(made: list[list[int]]) -> None:
-    with uncollected():
+    with without_garbage_collection():
         made.extend([each] for each in range(1_000_100))
         raise KeyboardInterrupt

@@ -21,7 +21,7 @@ import pytest
 import foon_asp
 from foon_asp.asp import Settings, solve
 from foon_asp.asp.bare_program import bare_program
-from foon_asp.dataset.reading_store import read_stored
+from foon_asp.dataset.reading_store import read_store
 from foon_asp.errors import UserError
 from foon_asp.network import Network, starting_nodes
 from foon_asp.problem import ContainerRule, Objective, Problem
@@ -271,7 +271,7 @@ def test_prices_have_the_digest_that_certificates_name(tmp_path: Path, listed: b
     import_files(files, tmp_path / "tasks.foon")
     data = read_data(files)
     assert_holds(tmp_path / "tasks.foon", data)
-    with contextlib.closing(read_stored(DataFiles((tmp_path / "tasks.foon",)), 3)) as stored:
+    with contextlib.closing(read_store(DataFiles((tmp_path / "tasks.foon",)), 3)) as stored:
         assert stored.unit_prices == data.unit_prices
 
 
@@ -858,7 +858,7 @@ def everything(store: Path) -> list[object]:
         opened.near("sop", 3),
         opened.beginning("s", 9),
     ]
-    answers += [opened.labelled("soup"), StoredStartingKitchen(opened).changes([goal])]
+    answers += [opened.labelled("soup"), StoredStartingKitchen(opened).changes_for_goals([goal])]
     answers += [opened.left_out, opened.has_kitchen, opened.digests, opened.motion_prices]
     answers += [opened.unit_prices(network, from_file=True), opened.unpriced((), (), from_file=True)]
     return answers

@@ -70,7 +70,7 @@ def test_a_printed_node_is_found_as_goal(nodes: list[ObjectNode]) -> None:
         assert names.node(find_goal(str(node), names, listed)) == node
         assert foon.problem(str(node)).goal_nodes == (node,)
         assert node in [names.node(o) for o in nodes_beginning(str(node), names, 9)]
-        assert [*foon.dataset.goals((str(node),))] == [names.object_id(node)]
+        assert [*foon.dataset.command_goal_ids((str(node),))] == [names.object_id(node)]
 
 
 @given(NODES)
