@@ -32,10 +32,11 @@ from foon_asp.proof.certificate_fields import (
 )
 from foon_asp.proof.certificate_header import CERTIFICATE_KEYS, Form, check_header
 from foon_asp.proof.certificate_subject import Subject
+from foon_asp.proof.exact_amounts import Amount, bit_length, negate
 from foon_asp.proof.refusal import refuse_deep_nesting, require
 from foon_asp.proof.rule_meaning import LIBRARY, Rule
 from foon_asp.proof.verified_claim import ItemClaims, Verified
-from foon_asp.proof.verifier import Amount, Check, bit_length, negate, verify
+from foon_asp.proof.verifier import Check, verify
 
 PLAN = Form("foon-asp certificate of a plan", 3, CERTIFICATE_KEYS | {"items", "unreached", "rounded"})
 
@@ -142,7 +143,7 @@ class PlanCheck(Check):
         input_amounts, output_amounts = self.amounts.get(unit, ({}, {}))
         asks = {o: input_amounts.get(o, 1) for o in self.needs(unit) if o is not None}
         gives = {o: output_amounts.get(o, 1) for o in self.gives(unit) if o is not None}
-        self._spend(len(inputs) * (1 + len(network.outputs[unit])))
+        self.budget.spend(len(inputs) * (1 + len(network.outputs[unit])))
         remaining = {
             o: self._remaining_copies(unit, o, amount, output_amounts.get(o, 1)) for o, amount in asks.items()
         }
@@ -217,7 +218,7 @@ class PlanCheck(Check):
         unreached = frozenset(read_numbers(stated, len(network.objects), ascending=stated != []))
         removed = self.ruled.removed
         for o in unreached:
-            self._spend(1 + len(network.producers[o]))
+            self.budget.spend(1 + len(network.producers[o]))
             require(not self._is_initial(o), "what is there at first is called unreached")
             for unit in network.producers[o]:
                 reaches = o in self.flow(unit).adds and unreached.isdisjoint(self.flow(unit).asks)
@@ -237,7 +238,7 @@ class PlanCheck(Check):
         are members, too. Otherwise, a cut with an endless node is refused.
         """
         network, own = self.network, self.ruled.makers
-        self._spend(sum(1 + len(own[o] if o in own else network.producers[o]) for o in cut))
+        self.budget.spend(sum(1 + len(own[o] if o in own else network.producers[o]) for o in cut))
         units: list[int] = []
         for o in cut:
             if o in own:
@@ -288,7 +289,7 @@ class PlanCheck(Check):
                     least += weight * wanted
                     for unit, n in row.items():
                         coefficients[unit] = coefficients.get(unit, Fraction(0)) + weight * n
-                        self._spend_on_fractions(bit_length(coefficients[unit]))
+                        self.budget.spend_on_fractions(bit_length(coefficients[unit]))
             rows.append(_round_row(coefficients, least))
         return rows
 
@@ -318,7 +319,7 @@ class PlanCheck(Check):
         for step, stated in enumerate(units):
             unit = read_number(stated, range(len(network)), "ids of units in a plan")
             asks, uses, adds = self.flow(unit)
-            self._spend(1 + len(asks) + len(adds))
+            self.budget.spend(1 + len(asks) + len(adds))
             require(
                 all(o in self.endless or copies[o] >= n for o, n in asks.items()),
                 f"unit {unit} of the plan lacks a copy of an input at step {step + 1}",
@@ -340,8 +341,8 @@ class PlanCheck(Check):
             *(first + o for o in sorted(items_taken)),
             *(first + o for o in sorted(least.elements())),
         ]
-        total = self.sum(map(self._cost, members))
-        return total, self._written_costs(units, total)
+        total = self.arithmetic.sum(map(self._cost, members))
+        return total, self.unit_costs.written_costs(units, total)
 
     def _require_kept_rules_by_counts(self, counts: Counter[int]) -> None:
         """Refuse a plan with these counts of units if it breaks a rule; limits count each execution."""
@@ -373,7 +374,7 @@ class PlanCheck(Check):
             waiting = [Node(proofs[level], {}, {})]
             while waiting:
                 node = waiting.pop()
-                self._spend(1 + len(node.min_counts) + len(node.max_counts))
+                self.budget.spend(1 + len(node.min_counts) + len(node.max_counts))
                 if "branch" in read_object(node.proof):
                     waiting += self._children(node)
                 else:
@@ -401,7 +402,7 @@ class PlanCheck(Check):
             cheapest = self._least_reduced_cost(member, level, node, conditions)
             if cheapest is None:
                 return  # there are no such counts
-            self._add_to(bound, cheapest)
+            self.arithmetic.add_to(bound, cheapest)
         self._require_enough(bound, level)
 
     def _least_reduced_cost(
@@ -413,28 +414,32 @@ class PlanCheck(Check):
         linear in the count, so it is enough to compare 0 and the ends of the range from 1 on. Refuse costs
         that fall without end.
         """
+        arithmetic = self.arithmetic
         low, high = node.min_counts.get(member, 0), self._max_count(member, level, node)
         if high is not None and high < low:
             return None
-        per_execution = self.sum(
+        per_execution = arithmetic.sum(
             [self.amount_by_objective(member, level), conditions.executed.get(member, {})]
         )
-        per_execution = self.sum(
+        per_execution = arithmetic.sum(
             [
                 per_execution,
-                *(self.times(w, self.cost_lower_bound(member, earlier)) for earlier, w in conditions.levels),
+                *(
+                    arithmetic.times(w, self.cost_lower_bound(member, earlier))
+                    for earlier, w in conditions.levels
+                ),
             ]
         )
         once = conditions.used.get(member, {})
         ends: list[Amount] = [{}] if low == 0 else []
         if high is None or high >= 1:
-            ends.append(self.sum([self.times(per_execution, Fraction(max(low, 1))), once]))
-            if self.sign(per_execution) < 0:
+            ends.append(arithmetic.sum([arithmetic.times(per_execution, Fraction(max(low, 1))), once]))
+            if arithmetic.sign(per_execution) < 0:
                 require(high is not None, f"member {member} brings more than it costs, without end")
-                ends.append(self.sum([self.times(per_execution, Fraction(high or 0)), once]))
+                ends.append(arithmetic.sum([arithmetic.times(per_execution, Fraction(high or 0)), once]))
         cheapest = ends[0]
         for cost in ends[1:]:
-            if self.sign(self.sum([cost, negate(cheapest)])) < 0:
+            if arithmetic.sign(arithmetic.sum([cost, negate(cheapest)])) < 0:
                 cheapest = cost
         return cheapest
 
@@ -492,8 +497,11 @@ class PlanCheck(Check):
             return self.amount_by_objective(member, level).get((level, None), Fraction(0))
         if member >= len(self.network):
             return Fraction(0)
-        require(self.rate(member) > 0, "a unit that never succeeds is not compared")
-        return Fraction(math.floor(LOGARITHM_SCALE * self.minus_log(self.rate(member))[0]), LOGARITHM_SCALE)
+        require(self.unit_costs.rate(member) > 0, "a unit that never succeeds is not compared")
+        return Fraction(
+            math.floor(LOGARITHM_SCALE * self.arithmetic.minus_log(self.unit_costs.rate(member))[0]),
+            LOGARITHM_SCALE,
+        )
 
     def claimed_cost(self, level: int) -> Fraction:
         """Return the claimed least cost of plans by an objective, as one number.
@@ -504,7 +512,9 @@ class PlanCheck(Check):
         stated = {rate: value for (index, rate), value in self.least.items() if index == level}
         if self.objectives[level] != "success":
             return stated.get(None, Fraction(0))
-        bounds = ([e * bound for bound in self.minus_log(rate)] for rate, e in stated.items() if rate)
+        bounds = (
+            [e * bound for bound in self.arithmetic.minus_log(rate)] for rate, e in stated.items() if rate
+        )
         return Fraction(math.ceil(LOGARITHM_SCALE * sum(map(max, bounds), Fraction(0))), LOGARITHM_SCALE)
 
     def cut_nodes(self, number: int) -> frozenset[int]:
@@ -526,7 +536,7 @@ class PlanCheck(Check):
         """
         parts = [*({} if objective == "success" else "0" for objective in self.objectives)] or ["0"]
         parts[level] = stated
-        return {key: value for key, value in self._read_amount(parts).items() if key[0] == level}
+        return {key: value for key, value in self.unit_costs.read_amount(parts).items() if key[0] == level}
 
     def _require_enough(self, bound: Amount, level: int) -> None:
         """Refuse a bound that is below the claimed cost by an objective.
@@ -534,25 +544,25 @@ class PlanCheck(Check):
         The bound is first rounded up to the next cost that a plan can have.
         """
         if self.least is None:
-            enough = self.sign(bound) > 0
+            enough = self.arithmetic.sign(bound) > 0
         else:
             denominator = self.cost_denominator(level)
             if denominator is not None:
                 (key,) = bound or [(level, None)]
                 bound = {key: Fraction(math.ceil(bound.get(key, Fraction(0)) * denominator), denominator)}
             claimed = {key: value for key, value in self.least.items() if key[0] == level}
-            enough = self.sign(self.sum([bound, negate(claimed)])) >= 0
+            enough = self.arithmetic.sign(self.arithmetic.sum([bound, negate(claimed)])) >= 0
         require(enough, "the weights do not add up to enough")
 
     def _cost_denominator(self, level: int) -> int | None:
         """Return the common denominator of unit costs by an objective; ``None`` by success or measures."""
         objective = self.objectives[level]
-        if objective == "success" or objective in self.measures:
+        if objective == "success" or objective in self.unit_costs.measures:
             return None
         if objective == "price":
-            unit_costs = self.prices
+            unit_costs = self.unit_costs.prices
         elif objective == "attempts":
-            unit_costs = [1 / self.rate(unit) for unit in range(len(self.network))]
+            unit_costs = [1 / self.unit_costs.rate(unit) for unit in range(len(self.network))]
         else:
             unit_costs = []
         return math.lcm(*(cost.denominator for cost in unit_costs))
@@ -674,7 +684,8 @@ class _FarkasCombination:
 
     def _plus_multiple(self, amount: Amount, weight: Amount, factor: int | Fraction) -> Amount:
         """Return an amount plus ``factor`` times a weight."""
-        return self.check.sum([amount, self.check.times(weight, Fraction(factor))])
+        arithmetic = self.check.arithmetic
+        return arithmetic.sum([amount, arithmetic.times(weight, Fraction(factor))])
 
 
 def _round_row(coefficients: Mapping[int, Fraction], least: Fraction) -> Row:

@@ -314,7 +314,7 @@ print(*sys.modules)
     own_parts = (
         *("canonical_json", "certificate_fields", "certificate_header", "certificate_limits"),
         *("certificate_rules", "certificate_subject", "compiled_rules", "refusal", "rule_meaning"),
-        *("stand_ins", "verified_claim"),
+        *("stand_ins", "verified_claim", "step_budget", "exact_amounts", "unit_costs", "unit_effects"),
     )
     names |= {"foon_asp.proof", *(f"foon_asp.proof.{part}" for part in own_parts)}
     assert ours == names | {name for name in ours if name.startswith("foon_asp.network")}

@@ -222,9 +222,13 @@ VERIFIER = {
         "certificate_rules",
         "certificate_subject",
         "compiled_rules",
+        "exact_amounts",
         "refusal",
         "rule_meaning",
         "stand_ins",
+        "step_budget",
+        "unit_costs",
+        "unit_effects",
         "verified_claim",
         "verifier",
     )

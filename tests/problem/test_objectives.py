@@ -25,7 +25,7 @@ from foon_asp.problem import (
     levels,
     multiplies,
 )
-from foon_asp.proof import verifier
+from foon_asp.proof import unit_costs
 from foon_asp.resources import encodings_folder
 from tests.encoding.test_rate_scale import two_ways
 from tests.oracle import task_trees
@@ -144,7 +144,7 @@ def test_rooms_that_measure_different_things_give_no_answer(
 
 
 def test_the_verifier_knows_all_objectives() -> None:
-    assert set(verifier.OBJECTIVES) == set(map(str, Objective))
+    assert set(unit_costs.OBJECTIVES) == set(map(str, Objective))
 
 
 def criteria(problem: Problem, tree: list[int], objectives: list[Objective]) -> list[int]:

@@ -21,8 +21,11 @@ from foon_asp.proof import (
     certificate_header,
     certificate_rules,
     compiled_rules,
+    exact_amounts,
     refusal,
     rule_meaning,
+    step_budget,
+    unit_costs,
     verifier,
 )
 from foon_asp.proof.refusal import RefusedError
@@ -60,7 +63,8 @@ from tests.support.handmade_certificate import Content, forbid, handmade
 # Each module imports only those before it.
 VERIFIER = (
     *(rule_meaning, compiled_rules, refusal, certificate_file),
-    *(certificate_fields, certificate_rules, certificate_header, verifier),
+    *(certificate_fields, certificate_rules, certificate_header),
+    *(step_budget, exact_amounts, unit_costs, verifier),
 )
 
 # Nobody can make the end.
@@ -262,13 +266,13 @@ FORGED: dict[str, Forged] = {
     # --- the tree
     "_execute: unit … of the tree lacks an input when it is its turn": plain(tree=[BAKE]),
     "_execute: the tree does not make every goal": plain(tree=[], costs=[0], **UNPROVED),
-    "_written_costs: a tree that never succeeds is no better than another": plain(
+    "written_costs: a tree that never succeeds is no better than another": plain(
         at=NEVER, objective=["success"], costs=["0"], proof=branch(HOPELESS, weigh(), unit=POUR)
     ),
-    "_written_costs: the success rate of the tree is too long a number to be written": plain(
+    "written_costs: the success rate of the tree is too long a number to be written": plain(
         at=CHAIN, **LIKELY | {"costs": [str(NINES**8)]}, **UNPROVED, tree=[*range(8)]
     ),
-    "_written_costs: what the tree costs is too long a number to be written": plain(
+    "written_costs: what the tree costs is too long a number to be written": plain(
         KIND, LONG, objective=["attempts"], tree=[0, 1], costs=["1"], **UNPROVED
     ),
     "_require_kept_rules: the tree …": plain(rules=at_most(0)),
@@ -321,8 +325,8 @@ FORGED: dict[str, Forged] = {
     "_read_branch_member: a branch on an item where items cost nothing": plain(
         proof=branch(LEAF, LEAF, item=START)
     ),
-    "_read_amount: expected one part of a weight for each objective": plain(proof=weigh(["1", "1"])),
-    "_read_amount: expected rates of motions in a weight, and none of 0 or 1": plain(
+    "read_amount: expected one part of a weight for each objective": plain(proof=weigh(["1", "1"])),
+    "read_amount: expected rates of motions in a weight, and none of 0 or 1": plain(
         **LIKELY, cuts=[BOTH], proof=weigh({"99/100": "1"})
     ),
     # --- measures
@@ -349,10 +353,10 @@ FORGED: dict[str, Forged] = {
         cuts=[[3]],
         proof=weigh({"1/2": "15000", "1/101": "15000", "1/202": "-14999"}),
     ),
-    "_spend_on_fractions: its fractions add up to numbers that are too long": plain(
+    "spend_on_fractions: its fractions add up to numbers that are too long": plain(
         **ANY, cuts=[[END]] * 9, proof=weigh(*map(odd, range(9)))
     ),
-    "_spend: to check it takes more than … steps": plain(
+    "spend: to check it takes more than … steps": plain(
         "it is the work that is refused; in the end, these cuts would be, as nothing uses them",
         MANY,
         cuts=[[END]] * 2700,
@@ -378,7 +382,7 @@ NO_CHECKS = {
     "refuse_deep_nesting: branches nested too deeply",
 }
 NEXT = "_cost_by_objective: an objective is unknown"
-SLOW = "_spend: to check it takes more than … steps"
+SLOW = "spend: to check it takes more than … steps"
 
 
 def test_a_right_certificate_passes(tmp_path: Path) -> None:
@@ -398,7 +402,7 @@ def test_an_objective_that_has_no_cost_yet_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """That check is for the day when an objective is added: no certificate comes to it now."""
-    monkeypatch.setattr(verifier, "OBJECTIVES", (*verifier.OBJECTIVES, "pans"))
+    monkeypatch.setattr(unit_costs, "OBJECTIVES", (*unit_costs.OBJECTIVES, "pans"))
     with pytest.raises(RefusedError, match="an objective is unknown"):
         held(VERIFIER, plain(objective=["pans"]), tmp_path)
 
@@ -484,7 +488,7 @@ PARTS = {
     # the end takes the start, and what is passed on the salt; the step takes nothing
     "a step costs nothing": Part(
         """        if member in self.ruled.steps:
-            return cost
+            return {}
 """,
         "",
         plain(
@@ -510,8 +514,8 @@ PARTS = {
         ),
     ),
     "where nothing is to be bounded, a bound is above nothing": Part(
-        "self.sign(self.sum(bound)) > 0",
-        "self.sign(self.sum(bound)) >= 0",
+        "self.arithmetic.sign(self.arithmetic.sum(bound)) > 0",
+        "self.arithmetic.sign(self.arithmetic.sum(bound)) >= 0",
         plain(**NO_TREE, **UNPROVED),
     ),
     "what a rule removes is no member": Part(

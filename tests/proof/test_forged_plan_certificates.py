@@ -455,7 +455,7 @@ PARTS = {
         ),
     ),
     "a unit may bring the most": Part(
-        "ends.append(self.sum([self.times(per_execution, Fraction(high or 0)), once]))",
+        "ends.append(arithmetic.sum([arithmetic.times(per_execution, Fraction(high or 0)), once]))",
         "pass",
         at_least("6", fed(5), **MEAL),
     ),
@@ -480,7 +480,9 @@ PARTS = {
         at_least("3", PROOF),
     ),
     "where there is nothing to be bounded, a bound is above nothing": Part(
-        "enough = self.sign(bound) > 0", "enough = self.sign(bound) >= 0", plain(**NO_TREE, proof=[{}])
+        "enough = self.arithmetic.sign(bound) > 0",
+        "enough = self.arithmetic.sign(bound) >= 0",
+        plain(**NO_TREE, proof=[{}]),
     ),
     "a cut before a unit says nothing where it is not executed": Part(
         "            self._add_to_constant(weight, -1)\n",

@@ -1,0 +1,273 @@
+"""The costs of units and kitchen items by the objectives of a certificate, computed from the data.
+
+Costs by the user's own measures are taken as the certificate states them.
+"""
+
+import hashlib
+import math
+import re
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+from foon_asp.network import STAND_IN, Network, UnitPrices
+from foon_asp.proof.certificate_fields import read_list, read_numbers, read_object, read_rational
+from foon_asp.proof.certificate_limits import ALLOWED
+from foon_asp.proof.certificate_subject import Subject
+from foon_asp.proof.exact_amounts import UNMEASURED, Amount, bit_length
+from foon_asp.proof.refusal import LimitError, require
+from foon_asp.proof.stand_ins import price_of
+from foon_asp.proof.step_budget import StepBudget
+from foon_asp.proof.verified_claim import Trusted
+
+OBJECTIVES = (
+    "units",
+    "inputs",
+    "inputs+ingredients",
+    "success",
+    "kitchen",
+    "attempts",
+    "price",
+    "dissimilarity",
+)
+
+_MEASURE_NAME = re.compile(r"[a-z][A-Za-z0-9_']*", re.ASCII)
+
+
+class UnitCosts:
+    """The costs of units and kitchen items by the objectives of a certificate.
+
+    A unit has its id as number, and kitchen item ``k`` the number of units plus ``k``.
+
+    ``objectives``: the objectives, most important first; empty if the claim is that there is no tree.
+    ``measures``: the statements of the certificate about measures, by name.
+    ``rates``: the success rate of each motion; empty unless an objective depends on rates.
+    ``fractional_rates``: these rates, without 0 and 1.
+    ``prices``: the price of each unit, by id; empty unless ``price`` is an objective.
+    """
+
+    def __init__(self, certificate: Mapping[str, Any], subject: Subject, budget: StepBudget) -> None:
+        """Read the objectives and measures of a certificate; refuse data that lack what a cost depends on."""
+        self.network, self.kitchen, self.stand_ins = subject.network, subject.kitchen, subject.stand_ins
+        self.budget = budget
+        self.are_multiples = cache(self._are_multiples)  # of a number, by an objective
+        self.trusted_costs: dict[str, dict[int, Fraction]] = {}  # costs by measures that the proof uses
+        self.objectives = tuple(read_list(certificate["objective"]))
+        measures = read_object(certificate.get("measures", {}))
+        self.measures = {name: self._read_measure(name, stated) for name, stated in measures.items()}
+        require(
+            all(objective in (*OBJECTIVES, *self.measures) for objective in self.objectives),
+            "an objective is unknown",
+        )
+        require(len(set(self.objectives)) == len(self.objectives), "an objective stands twice")
+        by_rates = {"success", "attempts"} & set(self.objectives)
+        self.rates = self._required_rates(subject.rates) if by_rates else {}
+        self.fractional_rates = frozenset(self.rates.values()) - {0, 1}
+        self.prices = self._required_prices(subject.prices) if "price" in self.objectives else []
+
+    def _read_measure(self, name: str, stated: Any) -> Trusted:
+        """Return the statement of a certificate about what units cost by a measure; check its digest."""
+        require(
+            bool(_MEASURE_NAME.fullmatch(name)) and name not in OBJECTIVES, "a measure has no name of its own"
+        )
+        measure = read_object(stated, ("rules", "sha256", "costs"))
+        rules = measure["rules"]
+        require(isinstance(rules, str), "expected the text of rules")
+        digest = hashlib.sha256(rules.encode(errors="backslashreplace")).hexdigest()
+        require(measure["sha256"] == digest, "the digest of a measure is not that of its rules")
+        costs: dict[int, Fraction] = {}
+        for text, units in read_object(measure["costs"]).items():
+            cost = read_rational(text)
+            require(cost >= 0, "a unit costs less than 0 by a measure")
+            for unit in read_numbers(units, len(self.network)):
+                require(unit not in costs, "a unit has two costs by a measure")
+                costs[unit] = cost
+        self.trusted_costs[name] = {}
+        return Trusted(name, rules, digest, costs)
+
+    def _stated_cost(self, name: str, unit: int) -> Fraction:
+        """Return the stated cost of a unit by a measure, and record that it is taken on trust.
+
+        Refuse a unit without stated cost.
+        """
+        costs = self.measures[name].costs
+        require(unit in costs, "the cost of a unit by a measure is not stated")
+        self.trusted_costs[name][unit] = costs[unit]
+        return costs[unit]
+
+    def _required_rates(self, given_rates: Mapping[str, Fraction] | None) -> dict[str, Fraction]:
+        """Return the success rate of each motion of the network; refuse missing rates and rates not in 0..1.
+
+        With the objective ``attempts``, a rate of 0 is refused, too.
+        """
+        motions = self.network.different_motions
+        rates = {
+            motion: given_rates[motion]
+            for motion in motions
+            if given_rates is not None and motion in given_rates
+        }
+        values = None if given_rates is None else [*rates.values()]
+        values_found = self._require_complete(values, len(motions), "success rates")
+        require(all(rate <= 1 for rate in values_found), "a rate is above 1")
+        require(
+            "attempts" not in self.objectives or 0 not in values_found,
+            "a unit that never succeeds is repeated forever",
+        )
+        return rates
+
+    def rate(self, unit: int) -> Fraction:
+        """Return the success rate of a unit."""
+        return self.rates[self.network.motions[unit]]
+
+    def _required_prices(self, unit_prices: UnitPrices | None) -> list[Fraction]:
+        """Return the price of each unit, by id; refuse missing prices, and prices below 0."""
+        prices = None if unit_prices is None else prices_by_id(self.network, unit_prices)
+        return self._require_complete(prices, len(self.network), "prices")
+
+    def _require_complete(
+        self, values: Sequence[Fraction | None] | None, count: int, what: str
+    ) -> list[Fraction]:
+        """Return values from which none is missing; ``what`` names them in errors.
+
+        Refuse ``None`` in place of values, fewer than ``count`` that are not ``None``, and values below 0.
+        """
+        require(values is not None, f"a claim needs {what}, but none are given")
+        present = [value for value in values or () if value is not None]
+        require(len(present) == count, f"a unit has none of the {what} that a claim needs")
+        require(all(value >= 0 for value in present), f"one of the {what} is below 0")
+        return present
+
+    def cost(self, member: int) -> Amount:
+        """Return the cost of a unit or an item, with a part for each objective that counts it."""
+        cost: Amount = {}
+        for level, objective in enumerate(self.objectives):
+            figure = self._cost_by_objective(level, member)
+            if figure is not None:
+                cost[level, self.rate(member) if objective == "success" else None] = figure
+        return cost
+
+    def _cost_by_objective(self, level: int, member: int) -> Fraction | None:
+        """Return the cost of a unit or an item by an objective; ``None`` if the objective does not count it.
+
+        ``level`` is the index of the objective. By ``success``, it is 1, the exponent of the unit's rate.
+        """
+        network, objective = self.network, self.objectives[level]
+        item = member >= len(network)
+        if item or objective == "kitchen":
+            return Fraction(1) if item and objective == "kitchen" else None
+        if objective in {"units", "success"}:
+            return Fraction(1)
+        if objective == "attempts":
+            return 1 / self.rate(member)
+        if objective in {"price", "dissimilarity"}:
+            return self.prices[member] if objective == "price" else self._dissimilarity(member)
+        if objective in self.measures:
+            return self._stated_cost(objective, member)
+        require(objective in {"inputs", "inputs+ingredients"}, "an objective is unknown")
+        inputs = network.inputs[member]
+        count = len(inputs)
+        if objective == "inputs+ingredients":
+            count += sum(len(network.objects[o].ingredients) for o in inputs)
+        return Fraction(count)
+
+    def _dissimilarity(self, unit: int) -> Fraction:
+        """Return the price of a stand-in by the table; 0 for other units."""
+        network = self.network
+        if self.stand_ins is None or network.motions[unit] != STAND_IN:
+            return Fraction(0)
+        (serving,), (served,) = network.inputs[unit], network.outputs[unit]
+        # each has a price, since they agree with the table
+        return price_of(self.stand_ins, network.objects[serving], network.objects[served]) or Fraction(0)
+
+    def written_costs(self, units: list[int], total: Amount) -> list[int | Fraction]:
+        """Return the cost of a tree by each objective, as written in a certificate.
+
+        ``units`` are the units of the tree, and ``total`` is its cost as an amount. By ``success``, the cost
+        is the product of the rates. Costs that are too long to be written are refused.
+        """
+        costs: list[int | Fraction] = []
+        for level, objective in enumerate(self.objectives):
+            if objective == "success":
+                rates = [self.rate(u) for u in units]
+                require(0 not in rates, "a tree that never succeeds is no better than another")
+                if sum(rate.denominator.bit_length() for rate in rates) > ALLOWED.written_bits:
+                    raise LimitError("the success rate of the tree is too long a number to be written")
+                costs.append(math.prod(rates, start=Fraction(1)))
+            else:
+                figure = total.get((level, None), Fraction(0))
+                if max(figure.numerator, figure.denominator).bit_length() > ALLOWED.written_bits:
+                    raise LimitError("what the tree costs is too long a number to be written")
+                sums = {"attempts", "price", "dissimilarity", *self.measures}
+                costs.append(figure if objective in sums else int(figure))
+        return costs
+
+    def _are_multiples(self, level: int, multiple: Fraction) -> bool:
+        """Return whether the costs of all units and items by an objective are multiples of a number.
+
+        ``level`` is the index of the objective. By ``success``, return ``False``.
+        """
+        if self.objectives[level] == "success":
+            return False
+        members = (*range(len(self.network)), *(len(self.network) + o for o in self.kitchen))
+        self.budget.spend(len(members))
+        costs = (self._cost_by_objective(level, member) or Fraction(0) for member in members)
+        for ratio in dict.fromkeys(cost.as_integer_ratio() for cost in costs):
+            cost = Fraction(*ratio)
+            self.budget.spend_on_fractions(bit_length(cost) + bit_length(multiple))
+            if cost % multiple:
+                return False
+        return True
+
+    def read_amount(self, stated: Any) -> Amount:
+        """Return a weight or bound as an amount, from a list with one entry for each objective.
+
+        An entry is a fraction or, for ``success``, an object from rate to exponent.
+        """
+        amount: Amount = {}
+        entries = read_list(stated)
+        objectives = self.objectives or (UNMEASURED,)
+        require(len(entries) == len(objectives), "expected one part of a weight for each objective")
+        for level, objective in enumerate(objectives):
+            if objective == "success":
+                for name, exponent in read_object(entries[level]).items():
+                    rate = read_rational(name)
+                    require(
+                        rate in self.fractional_rates,
+                        "expected rates of motions in a weight, and none of 0 or 1",
+                    )
+                    amount[level, rate] = read_rational(exponent)
+            else:
+                amount[level, None] = read_rational(entries[level])
+        return amount
+
+    def trusted_measures(self) -> tuple[Trusted, ...]:
+        """Return the measures among the objectives, with the stated costs that were used so far."""
+        return tuple(
+            measure._replace(costs=self.trusted_costs[name])
+            for name, measure in self.measures.items()
+            if name in self.objectives
+        )
+
+
+def prices_by_id(network: Network, unit_prices: UnitPrices | None) -> Sequence[Fraction | None]:
+    """Return the price of each unit, by id: its own, or else that of its motion; ``None`` if unknown.
+
+    Below level 3, it is the least price of the units of level 3 that the unit stands for. It is ``None``
+    if one of them has no price.
+    """
+    if unit_prices is None:
+        return [None] * len(network)
+    detailed = network.detailed or network
+    own = {detailed.unit_id(unit): price for unit, price in unit_prices.units.items()}
+    prices = [own.get(unit, unit_prices.motions.get(motion)) for unit, motion in enumerate(detailed.motions)]
+    if network.detailed is not None:
+        details_prices = [[prices[detail] for detail in details] for details in network.stands_for]
+        known_prices = [
+            [price for price in detail_prices if price is not None] for detail_prices in details_prices
+        ]
+        prices = [
+            min(stated) if len(stated) == len(detail_prices) else None
+            for stated, detail_prices in zip(known_prices, details_prices, strict=True)
+        ]
+    return prices
