@@ -82,8 +82,8 @@ class Check:
         self.arithmetic = AmountArithmetic(self.objectives, self.budget)
         self.goals = tuple(read_goal(goal, network) for goal in read_list(certificate["goals"]))
         require(len(set(self.goals)) == len(self.goals) > 0, "expected goals, each of them once")
-        effects = UnitEffects(network, self.containers, utensils)
-        self.needs, self.gives = effects.needs, effects.gives  # of a unit, without its rules
+        self.effects = UnitEffects(network, self.containers, utensils)
+        self.needs, self.gives = self.effects.needs, self.effects.gives  # of a unit, without its rules
         self.preconditions, self.cost = cache(self._preconditions), cache(self._cost)  # of a member
         self.stand_ins = subject.stand_ins
         self.rules, self.claim_size = rules, 0

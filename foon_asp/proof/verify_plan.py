@@ -15,26 +15,31 @@ The inputs that a unit uses up are computed here anew from the plain network, an
 
 import math
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cache, cached_property, partial
-from itertools import chain
 from typing import Any, NamedTuple, TypeAlias
 
-from foon_asp.network import ObjectNode
 from foon_asp.proof.certificate_fields import (
     read_list,
     read_number,
     read_numbers,
     read_object,
-    read_pair,
     read_rational,
 )
 from foon_asp.proof.certificate_header import CERTIFICATE_KEYS, Form, check_header
+from foon_asp.proof.certificate_items import (
+    MAX_COUNT,
+    read_amounts,
+    read_copies,
+    read_stays,
+    read_stock,
+)
 from foon_asp.proof.certificate_subject import Subject
 from foon_asp.proof.exact_amounts import Amount, bit_length, negate
 from foon_asp.proof.refusal import refuse_deep_nesting, require
 from foon_asp.proof.rule_meaning import LIBRARY, Rule
+from foon_asp.proof.unit_flows import Flow, UnitFlows
 from foon_asp.proof.verified_claim import ItemClaims, Verified
 from foon_asp.proof.verifier import Check, verify
 
@@ -47,16 +52,7 @@ WANTING = ("forbid_ingredient", "require_motion", "require_object", "require_ing
 PLAN_RULES = frozenset({*COUNTING, *WANTING, *(name for name, rule in LIBRARY.items() if rule.removes)})
 
 LOGARITHM_SCALE = 10**9  # of logarithms in conditions on earlier objectives
-_MAX_COUNT = 10**9  # of copies in stock, and of executions in a branch
 _LEAF = {"weights", "before", "supply", "balance", "limits", "levels", "rounded"}
-
-
-class Flow(NamedTuple):
-    """The copies of object nodes that a unit needs (``asks``), consumes (``uses``) and adds, by node id."""
-
-    asks: Mapping[int, int]
-    uses: Mapping[int, int]
-    adds: Mapping[int, int]
 
 
 Row: TypeAlias = tuple[Mapping[int, int | Fraction], int | Fraction]
@@ -116,17 +112,14 @@ class PlanCheck(Check):
     def __init__(self, certificate: dict[str, Any], rules: tuple[Rule, ...], subject: Subject) -> None:
         """Read the items of a certificate, then all that :class:`Check` reads, and then the rounded sums."""
         items = read_object(certificate["items"], ("stock", "stays", "wanted", "amounts"))
-        self.stock = _read_stock(items["stock"], subject.kitchen)
-        self.stays_stated = _read_stays(items["stays"], len(subject.network.objects))
-        self.wanted_stated = _read_copies(items["wanted"], "goals and how many of each are wanted")
+        self.stock = read_stock(items["stock"], subject.kitchen)
+        self.stays_stated = read_stays(items["stays"], len(subject.network.objects))
+        self.wanted_stated = read_copies(items["wanted"], "goals and how many of each are wanted")
         require(all(n > 1 for n in self.wanted_stated.values()), "an amount of a goal is not above 1")
-        self.amounts = _read_amounts(items["amounts"], subject)
+        self.amounts = read_amounts(items["amounts"], subject)
         self.endless = frozenset(subject.kitchen) - self.stock.keys()
-        self.flow, self.max_count_by_cost, self.cost_denominator = (
-            cache(self._flow),
-            cache(self._max_count_by_cost),
-            cache(self._cost_denominator),
-        )
+        self.max_count_by_cost = cache(self._max_count_by_cost)
+        self.cost_denominator = cache(self._cost_denominator)
         self.unmet_preconditions = cache(self._unmet_preconditions)
         super().__init__(certificate, rules, subject)
         require(set(self.goals).issuperset(self.wanted_stated), "an amount is wanted of what is no goal")
@@ -134,25 +127,16 @@ class PlanCheck(Check):
 
     # --- what units do
 
-    def _flow(self, unit: int) -> Flow:
-        """Return the copies that one execution of a unit needs, consumes and adds.
-
-        Of an output that is also an input, only the surplus over the input is added.
-        """
-        network, inputs = self.network, self.network.inputs[unit]
-        input_amounts, output_amounts = self.amounts.get(unit, ({}, {}))
-        asks = {o: input_amounts.get(o, 1) for o in self.needs(unit) if o is not None}
-        gives = {o: output_amounts.get(o, 1) for o in self.gives(unit) if o is not None}
-        self.budget.spend(len(inputs) * (1 + len(network.outputs[unit])))
-        remaining = {
-            o: self._remaining_copies(unit, o, amount, output_amounts.get(o, 1)) for o, amount in asks.items()
-        }
-        adds = {o: n - (input_amounts.get(o, 1) if o in inputs else 0) for o, n in gives.items()}
-        return Flow(
-            asks,
-            {o: amount - remaining[o] for o, amount in asks.items() if amount > remaining[o]},
-            {o: surplus for o, surplus in adds.items() if surplus > 0},
+    @cached_property
+    def _flows(self) -> UnitFlows:
+        """The flows of all units, each computed at its first use."""
+        return UnitFlows(
+            self.network, self.effects, self.utensils, self.amounts, self.stays_stated, self.budget
         )
+
+    def flow(self, unit: int) -> Flow:
+        """Return the copies that one execution of a unit needs, consumes and adds."""
+        return self._flows.flow(unit)
 
     def _unmet_preconditions(self, unit: int) -> frozenset[int]:
         """Return the preconditions of a unit that initial copies do not satisfy.
@@ -173,38 +157,6 @@ class PlanCheck(Check):
     def copies_wanted(self, goal: int) -> int:
         """Return how many copies of a goal have to exist in the end."""
         return self.wanted_stated.get(goal, 1)
-
-    def _remaining_copies(self, unit: int, o: int, amount: int, made: int) -> int:
-        """Return how many of the ``amount`` copies of an input remain after a unit has run.
-
-        The certificate may state that all or none remain. Otherwise, an output with the label of the input
-        decides: the ``made`` copies of the same node remain, at most ``amount``. Without such an output, the
-        rule for utensils and places decides (:meth:`_stays_by_rule`).
-        """
-        objects, network = self.network.objects, self.network
-        node = objects[o]
-        for name in (o, node.label):
-            if name in self.stays_stated:
-                return amount if self.stays_stated[name] else 0
-        outputs = [objects[output] for output in network.outputs[unit]]
-        if any(output.label == node.label for output in outputs):
-            return min(amount, made) if o in network.outputs[unit] else 0
-        return amount if self._stays_by_rule(unit, node, outputs) else 0
-
-    def _stays_by_rule(self, unit: int, node: ObjectNode, outputs: Sequence[ObjectNode]) -> bool:
-        """Return whether an input stays although no output has its label.
-
-        A utensil stays if it is empty, or if an output is in, on or at it. An input that is in another input
-        stays if an output with that one's label still contains it.
-        """
-        objects, network = self.network.objects, self.network
-        if node.label in self.utensils:
-            holds = any(contents.ingredients for contents in node.contents)
-            if not holds or any(output.is_in(node.label) for output in outputs):
-                return True
-        inputs = {objects[taken_input].label for taken_input in network.inputs[unit]}
-        around = {relation.object for relation in node.relations} & inputs
-        return any(output.label in around and node.label in output.ingredients for output in outputs)
 
     @cached_property
     def idle(self) -> frozenset[int]:
@@ -384,7 +336,7 @@ class PlanCheck(Check):
         """Yield the two children of a node: counts of a member up to a number, and counts above it."""
         proof = read_object(node.proof, ("branch", "most", "up_to", "above"))
         member = self._read_branch_member(proof["branch"])
-        max_count = read_number(proof["most"], range(_MAX_COUNT), "the most executions of a branch")
+        max_count = read_number(proof["most"], range(MAX_COUNT), "the most executions of a branch")
         up_to = min(max_count, node.max_counts.get(member, max_count))
         yield Node(proof["up_to"], node.min_counts, {**node.max_counts, member: up_to})
         above = max(max_count + 1, node.min_counts.get(member, 0))
@@ -703,60 +655,3 @@ def _round_row(coefficients: Mapping[int, Fraction], least: Fraction) -> Row:
         return below + min(Fraction(1), (coefficient - below) / fraction)
 
     return {unit: rounded(n) for unit, n in coefficients.items()}, math.ceil(least)
-
-
-def _read_copies(value: Any, what: str) -> dict[int, int]:
-    """Return numbers of copies by id, from a list of pairs in order; ``what`` names them in errors."""
-    pairs = [read_pair(pair, what) for pair in read_list(value)]
-    for number in chain.from_iterable(pairs):
-        read_number(number, range(_MAX_COUNT), what)
-    ids = [o for o, _ in pairs]
-    require(ids == sorted(set(ids)), f"expected {what} in order, each of them once")
-    return dict(pairs)
-
-
-def _read_stock(value: Any, kitchen: Collection[int]) -> dict[int, int]:
-    """Return the copies in stock by id; refuse nodes that are no kitchen items."""
-    stock = _read_copies(value, "items and their copies in stock")
-    require(all(o in kitchen for o in stock), "expected kitchen items in stock")
-    return stock
-
-
-def _read_amounts(value: Any, subject: Subject) -> dict[int, tuple[dict[int, int], dict[int, int]]]:
-    """Return the stated amounts of inputs and of outputs by unit id.
-
-    Refuse amounts that differ from the data.
-    """
-    what = "units and the amounts of their inputs and outputs"
-    stated: dict[int, tuple[dict[int, int], dict[int, int]]] = {}
-    for row in read_list(value):
-        columns = read_list(row)
-        require(len(columns) == 3 and type(columns[0]) is int, f"expected {what}")
-        stated[columns[0]] = _read_copies(columns[1], what), _read_copies(columns[2], what)
-    network = subject.network
-    of_data: dict[int, tuple[dict[int, int], dict[int, int]]] = {}
-    for unit, sides in subject.amounts.items():
-        number = network.unit_id(unit)
-        if number is not None and any(sides):
-            inputs, outputs = (
-                {o: n for node, n in side.items() if (o := network.object_id(node)) is not None}
-                for side in sides
-            )
-            of_data[number] = inputs, outputs
-    require(stated == of_data, "the amounts of units are not those of the data")
-    return stated
-
-
-def _read_stays(value: Any, nodes: int) -> dict[str | int, bool]:
-    """Return for labels, and for nodes by id, whether they stay when used, as the certificate states it."""
-    what = "labels and nodes, and whether they stay"
-    pairs = [read_pair(pair, what) for pair in read_list(value)]
-    well_formed = all(type(name) in (int, str) and type(stays) is bool for name, stays in pairs)
-    require(well_formed, f"expected {what}")
-    labels = [name for name, _ in pairs if type(name) is str]
-    ids = [name for name, _ in pairs if type(name) is int]
-    require([*labels, *ids] == [name for name, _ in pairs], "expected labels, and then nodes")
-    require(labels == sorted(set(labels)) and ids == sorted(set(ids)), "expected each of them once, in order")
-    require(all(0 <= o < nodes for o in ids), "expected ids of nodes that stay or go")
-    require(all(label.isprintable() for label in labels), "a label has letters that cannot be printed")
-    return dict(pairs)

@@ -14,14 +14,15 @@ import pytest
 from foon_asp.network import UnitAmounts, UnitPrices
 from foon_asp.network.level import network_at_level
 from foon_asp.problem import ContainerRule, Problem
-from foon_asp.proof import verify_plan
+from foon_asp.proof import certificate_items, unit_flows, verify_plan
 from foon_asp.proof.certificate_header import seal
 from foon_asp.proof.refusal import RefusedError
 from tests.proof.by_hand import NO_TREE, bound, goals, recipe
 from tests.proof.forging import KIND, Forged, Part, checks, held, require_its_check_alone, require_right
 from tests.support.handmade_certificate import Content, forbid, handmade
 
-VERIFIER = (verify_plan,)
+# Each module imports only those before it.
+VERIFIER = (certificate_items, unit_flows, verify_plan)
 
 # Bread is baked of dough, which is mixed of flour without end and of salt, of which there is one; more can be
 # bought. Bread could be melted of gold, too, but nobody has what gold is dug of.
@@ -234,22 +235,22 @@ FORGED: dict[str, Forged] = {
     # --- items
     "__init__: an amount of a goal is not above 1": plain(items=items([[SALT, 1]], (), [[BREAD, 1]])),
     "__init__: an amount is wanted of what is no goal": plain(items=items([[SALT, 1]], (), [[DOUGH, 2]])),
-    "_read_amounts: expected …": plain(at=DUG, items=items([[SALT, 1]], (), (), [[2.0, [], [[GOLD, 2]]]])),
-    "_read_amounts: the amounts of units are not those of the data": plain(
+    "read_amounts: expected …": plain(at=DUG, items=items([[SALT, 1]], (), (), [[2.0, [], [[GOLD, 2]]]])),
+    "read_amounts: the amounts of units are not those of the data": plain(
         items=items([[SALT, 1]], (), (), [[2, [], [[GOLD, 2]]]])
     ),
     "_add_supply: what never runs out needs no supply": plain(proof=[proving(supply=[[FLOUR, 0, "1"]])]),
-    "_read_copies: expected … in order, each of them once": plain(items=items([[SALT, 0], [SALT, 1]])),
-    "_read_stock: expected kitchen items in stock": plain(items=items([[SALT, 1], [DOUGH, 0]])),
-    "_read_stays: expected …": plain(items=items([[SALT, 1]], [["salt", 0]])),
-    "_read_stays: expected labels, and then nodes": plain(
+    "read_copies: expected … in order, each of them once": plain(items=items([[SALT, 0], [SALT, 1]])),
+    "read_stock: expected kitchen items in stock": plain(items=items([[SALT, 1], [DOUGH, 0]])),
+    "read_stays: expected …": plain(items=items([[SALT, 1]], [["salt", 0]])),
+    "read_stays: expected labels, and then nodes": plain(
         items=items([[SALT, 1]], [[SALT, False], ["salt", False]])
     ),
-    "_read_stays: expected each of them once, in order": plain(
+    "read_stays: expected each of them once, in order": plain(
         items=items([[SALT, 1]], [["salt", True], ["salt", False]])
     ),
-    "_read_stays: expected ids of nodes that stay or go": plain(items=items([[SALT, 1]], [[99, False]])),
-    "_read_stays: a label has letters that cannot be printed": plain(
+    "read_stays: expected ids of nodes that stay or go": plain(items=items([[SALT, 1]], [[99, False]])),
+    "read_stays: a label has letters that cannot be printed": plain(
         items=items([[SALT, 1]], [["salt\nverified: all of it", False]])
     ),
 }
@@ -433,6 +434,7 @@ PARTS = {
         "asks = {o: input_amounts.get(o, 1) for o in self.needs(unit) if o is not None}",
         "asks = {o: 1 for o in self.needs(unit) if o is not None}",
         plain(**TWO_SALTS),
+        unit_flows,
     ),
     "a unit is supplied with what it asks for": Part(
         "check.flow(supplied).asks.get(o, 0)", "check.flow(supplied).asks.get(o, 0) + 1", supplied("4")
