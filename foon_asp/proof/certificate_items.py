@@ -8,14 +8,14 @@ from foon_asp.proof.certificate_fields import read_list, read_number, read_pair
 from foon_asp.proof.certificate_subject import Subject
 from foon_asp.proof.refusal import require
 
-MAX_COUNT = 10**9  # of copies in stock, and of executions in a branch
+COUNTS = range(10**9)  # of copies of an item, and of executions of a unit
 
 
 def read_copies(value: Any, what: str) -> dict[int, int]:
     """Return numbers of copies by id, from a list of pairs in order; ``what`` names them in errors."""
     pairs = [read_pair(pair, what) for pair in read_list(value)]
     for number in chain.from_iterable(pairs):
-        read_number(number, range(MAX_COUNT), what)
+        read_number(number, COUNTS, what)
     ids = [o for o, _ in pairs]
     require(ids == sorted(set(ids)), f"expected {what} in order, each of them once")
     return dict(pairs)

@@ -8,11 +8,10 @@ cut without members shows that there is no tree.
 Now give each cut a positive weight. For every unit, the weights of the cuts that it is a member of may add up
 to at most its cost. Then the sum of all weights is a lower bound on every tree's cost.
 
-Weights and costs have one part for each objective, and are compared lexicographically. The part for
-``success`` is a sum of ``e * -log(rate)`` with rational ``e``. Bounds of the logarithms decide its sign. If
-they are too close, the product of ``rate ** e`` is compared with 1 in whole numbers.
+Weights and costs have one part for each objective, and are compared lexicographically (``exact_amounts.py``).
 
-This module imports the standard library and the plain network, and nothing of the rest of the package.
+This module and those that it imports need the standard library and the plain network, and nothing of the rest
+of the package.
 """
 
 import json

@@ -10,7 +10,8 @@ A Farkas combination of the conditions, with weights from 0, bounds the cost of 
 sum of the right-hand sides and of one number for each unit. This number is the least reduced cost over all
 counts that the unit may have.
 
-The inputs that a unit uses up are computed here anew from the plain network, and so is whether the plan runs.
+The inputs that a unit uses up are computed anew from the plain network (``unit_flows.py``), and so is whether
+the plan runs.
 """
 
 import math
@@ -29,7 +30,7 @@ from foon_asp.proof.certificate_fields import (
 )
 from foon_asp.proof.certificate_header import CERTIFICATE_KEYS, Form, check_header
 from foon_asp.proof.certificate_items import (
-    MAX_COUNT,
+    COUNTS,
     read_amounts,
     read_copies,
     read_stays,
@@ -336,7 +337,7 @@ class PlanCheck(Check):
         """Yield the two children of a node: counts of a member up to a number, and counts above it."""
         proof = read_object(node.proof, ("branch", "most", "up_to", "above"))
         member = self._read_branch_member(proof["branch"])
-        max_count = read_number(proof["most"], range(MAX_COUNT), "the most executions of a branch")
+        max_count = read_number(proof["most"], COUNTS, "the most executions of a branch")
         up_to = min(max_count, node.max_counts.get(member, max_count))
         yield Node(proof["up_to"], node.min_counts, {**node.max_counts, member: up_to})
         above = max(max_count + 1, node.min_counts.get(member, 0))
