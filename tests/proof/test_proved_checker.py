@@ -74,10 +74,10 @@ UNREAD = (
     "read_certificate: it has more than … letters or … brackets",
     "read_rules: it has more than … rules",
     "read_rational: a fraction has more than … digits",
-    "_written_costs: the success rate of the tree is too long a number to be written",
-    "_spend_on_fractions: its fractions add up to numbers that are too long",
+    "written_costs: the success rate of the tree is too long a number to be written",
+    "spend_on_fractions: its fractions add up to numbers that are too long",
     "_check_user_rules: a file of rules has no printable name",
-    "_read_goal: a goal is not the node of its id",
+    "read_goal: a goal is not the node of its id",
     "__init__: a constraint has no printable name",
 )
 
