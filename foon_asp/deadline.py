@@ -301,9 +301,9 @@ class Deadline:
 
     @property
     def stopped(self) -> str | None:
-        """The limit that stopped the question and the work at that time, in words.
+        """The limit that stopped the question, and the work that it stopped, in words.
 
-        An example is ``the time limit of 5 s while reading``; ``None`` if the question was not stopped.
+        An example is ``the time limit of 5 s while reading``. ``None`` if the question was not stopped.
         """
         return None if self._stopped_by is None else f"{self._stopped_by} while {self._doing}"
 

@@ -106,8 +106,8 @@ class DataSource:
     ) -> "Cone | None":
         """Return the cone of goals: all units that the goals can need; ``None`` for a network in memory.
 
-        Unless ``max_units`` is ``None``, the cone has only about so many of these units, those near the
-        goals. The goals and the ``available`` nodes are ids.
+        ``max_units`` limits the cone to about this number of units, those near the goals; ``None`` sets no
+        limit. The goals and the ``available`` nodes are ids.
         """
         return None
 

@@ -270,10 +270,10 @@ class Dataset:
         return [self.names.node(o) for o in dict.fromkeys(self.goal_ids(()))]
 
     def goal_ids(self, names: Sequence[str | ObjectNode]) -> list[int]:
-        """Return the id of the goal for each name, in order.
+        """Return the id of the goal for each name, in order; an id may be repeated.
 
-        Without names, return the ids of all goals of the goals file, or else of those that were assumed. An
-        id may be repeated.
+        Without names, return the ids of all goals of the goals file; if there is no file, of the goals that
+        were assumed.
         """
         if names:
             return [
@@ -444,9 +444,9 @@ class Dataset:
     def subject(self, everything: bool = True, goals: Iterable[int] = ()) -> "Subject":
         """Return what a certificate is about: network, kitchen and prices, with the digests of the store.
 
-        A starting kitchen is the one for ``goals``, by id. A store is read on access, and its digests are
-        trusted, unless all data have to be read. This is so if ``everything`` is true, for a starting
-        kitchen, for prices that are not those of the store, and for a store without digests.
+        All data are read if ``everything`` is true, for a starting kitchen, for prices that are not those of
+        the store, and for a store without digests. Otherwise, the store is read on access and its digests are
+        trusted. ``goals`` are the ids for which a starting kitchen is computed.
 
         Raises :class:`UserError` if all data are read and do not have a digest that the store states.
         """
@@ -482,11 +482,11 @@ class Dataset:
     def subject_with_stand_ins(
         self, goals: Sequence[int], containers: str, everything: bool, steps: Sequence[int] = ()
     ) -> "Subject":
-        """Return the network and kitchen of a certificate about a network with stand-ins.
+        """Return what a certificate is about that has stand-ins: the network with stand-ins, and the kitchen.
 
-        Without ``steps``, these are the stand-ins for the goals; ``everything`` adds those that no goal
-        needs. With ``steps``, the ids of the units of a tree, they are the stand-ins for the repair of this
-        tree.
+        Without ``steps``, the network has the stand-ins for the goals; with ``everything``, also those that
+        no goal needs. With ``steps``, the ids of the units of a tree, it has the stand-ins for the repair of
+        this tree.
         """
         from foon_asp.proof.certificate_subject import Subject  # noqa: PLC0415 (few answers need it)
 

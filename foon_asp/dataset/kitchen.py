@@ -19,7 +19,9 @@ class Kitchen(Collection[int]):
         return Kitchen(self, added, removed) if added or removed else self
 
     def is_exactly(self, base: Collection[int] | None) -> bool:
-        """Whether the base of the kitchen is this object, without added or removed nodes."""
+        """Whether ``base`` is the very object that is the base of this kitchen, and no nodes are added or
+        removed.
+        """
         return self._base is base and not self._added and not self._removed
 
     def __contains__(self, o: object) -> bool:

@@ -161,7 +161,9 @@ class _Worker(PythonProcess, Generic[Task]):
         self.end_by = None if seconds is None else time.monotonic() + seconds
 
     def ask(self, task: Task, seconds: float | None) -> None:
-        """Send the process another task; if it has died, its message ``lost`` follows."""
+        """Send another task to the process. If the process has died, ``lost`` is put into the queue of
+        messages.
+        """
         self.task = task
         self.start_timer(seconds)
         write_if_open(self._out, pack_message(task))
