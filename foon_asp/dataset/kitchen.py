@@ -19,9 +19,7 @@ class Kitchen(Collection[int]):
         return Kitchen(self, added, removed) if added or removed else self
 
     def is_exactly(self, base: Collection[int] | None) -> bool:
-        """Whether ``base`` is the very object that is the base of this kitchen, and no nodes are added or
-        removed.
-        """
+        """Whether the kitchen has the very object ``base`` as its base, without added or removed nodes."""
         return self._base is base and not self._added and not self._removed
 
     def __contains__(self, o: object) -> bool:

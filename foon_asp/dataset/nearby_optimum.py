@@ -66,12 +66,13 @@ def solve_nearby(
     them, this tree is optimal in the whole network, too. Otherwise more units that lead to these nodes are
     read. This repeats until a tree is optimal or all units are read.
 
-    User rules have to be antimonotone: if a tree keeps them, so does every part of the tree. For some rules,
-    the units of the optimal tree without rules are read first, then those of the smallest tree that keeps the
-    rules.
+    User rules have to be antimonotone: if a tree keeps them, so does every part of the tree. For rules that
+    only clingo can check, the units of the optimal tree without rules are read first, then those of the
+    smallest tree that keeps the rules.
 
     At a limit, return the best tree among the units read, with the bound of the relaxation. Return ``None``
-    if no tree exists even without rules: the caller then reads all units, to explain why.
+    if no tree exists even without rules: the caller then reads all units, to explain why. Of the trees, only
+    the last one is reported.
     """
     reporter = reporter or Reporter()
     if settings.constraints:
@@ -99,7 +100,7 @@ def solve_nearby(
         )
         if outcome.status is Status.INFEASIBLE:
             excluded_by_rules = unconstrained is not None or (
-                bool(settings.constraints) and _has_tree(nearby, deadline)
+                bool(settings.constraints) and _may_have_tree(nearby, deadline)
             )
             return outcome._replace(problem=nearby.problem) if excluded_by_rules else None
         bounds_found += [bound for objective, bound in outcome.bounds.items() if objective == first_objective]
@@ -124,9 +125,11 @@ def solve_nearby(
         )
         outcome = outcome._replace(problem=problem, bounds=bounds)
         if open_nodes:  # at a limit: the bound holds, and the units read may have a tree
-            tree = solve(problem, objectives, with_rules, _WarningsAndBounds(Reporter()))
-            status = Status.UNKNOWN if tree.units is None else Status.FEASIBLE
-            outcome = outcome._replace(status=status, units=tree.units, costs=tree.costs)
+            outcome_of_read = solve(problem, objectives, with_rules, _WarningsAndBounds(Reporter()))
+            status = Status.UNKNOWN if outcome_of_read.units is None else Status.FEASIBLE
+            outcome = outcome._replace(
+                status=status, units=outcome_of_read.units, costs=outcome_of_read.costs
+            )
         if outcome.status is Status.UNKNOWN and smallest_tree:
             units = [
                 unit
@@ -144,7 +147,7 @@ def solve_nearby(
         return outcome
 
 
-def _has_tree(nearby: "Nearby", deadline: Deadline) -> bool:
+def _may_have_tree(nearby: "Nearby", deadline: Deadline) -> bool:
     """Whether the goals have a tree without rules; units are read until that is known.
 
     Returns true at a limit, too.

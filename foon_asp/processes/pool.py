@@ -161,8 +161,9 @@ class _Worker(PythonProcess, Generic[Task]):
         self.end_by = None if seconds is None else time.monotonic() + seconds
 
     def ask(self, task: Task, seconds: float | None) -> None:
-        """Send another task to the process. If the process has died, ``lost`` is put into the queue of
-        messages.
+        """Send the process another task.
+
+        If the process has died, ``lost`` is put into the queue of messages.
         """
         self.task = task
         self.start_timer(seconds)
