@@ -19,7 +19,8 @@ def find_other_brackets(context: Context) -> Iterator[Diagnostic]:
     """An ingredient is in `{ }`, a place is in `[ ]`.
 
     Elsewhere in the files or in the vocabulary, the word before the bracket nearly always has the other kind.
-    Or the whole text, such as `in [bowl]`, is more frequent with the other kind.
+    Or the whole text, such as `in [bowl]`, is more frequent with the other kind. Or the only thing in `{ }`
+    is an object that others are in or on.
     """
     mentions = [
         mention for name_mentions in context.names.mentions[Kind.WORD].values() for mention in name_mentions
@@ -47,7 +48,8 @@ def _reason_to_swap_brackets(
 ) -> str:
     """Return in words why an attribute probably needs the other kind of bracket; empty if nothing says so.
 
-    ``counts`` are the numbers of lines by attribute.
+    ``counts``: by attribute, the number of lines that have it. The reasons are the three that
+    :func:`find_other_brackets` names. Only the first one is looked for if there are several ingredients.
     """
     other: Bracket = Contents if isinstance(attribute, Relation) else Relation
     usual = vocabulary.usual_bracket(attribute.word)
@@ -70,7 +72,7 @@ def _reason_to_swap_brackets(
 
 
 def _bracketed_objects(attribute: Relation | Contents) -> tuple[str, ...]:
-    """Return the ingredients in ``{ }``, or the single object in ``[ ]``."""
+    """Return the names in the brackets: the ingredients in ``{ }``, or the single object in ``[ ]``."""
     return attribute.ingredients if isinstance(attribute, Contents) else (attribute.object,)
 
 
@@ -86,7 +88,8 @@ def find_misread_lines(context: Context) -> Iterator[Diagnostic]:
 
     It begins with a word that has brackets elsewhere and continues with the name of an object. Also reported
     is a state that is known as an object, or an object that is known as a state: probably the first letter of
-    the line is wrong.
+    the line is wrong. A name is known as the other kind if it is more frequent there, or is a utensil. A
+    state that the vocabulary has as a state is not reported, nor is such an object.
     """
     names, vocabulary = context.names, context.vocabulary
     states, objects = names.counts[Kind.STATE], names.object_counts
@@ -110,7 +113,7 @@ def find_misread_lines(context: Context) -> Iterator[Diagnostic]:
 
 
 def _suggested_attribute(state: str, context: Context) -> str:
-    """Return the relation or contents that a state probably stands for; empty for a likely state.
+    """Return the text of the relation or contents that a state probably stands for; empty for a likely state.
 
     For example, ``in [bowl]`` for the state ``in bowl``.
     """

@@ -45,7 +45,8 @@ def find_left_out_objects(context: Context) -> Iterator[Diagnostic]:
 
     A later unit takes both, and no unit makes the missing one. Also reported is an input that is in or on
     something which is an output of the unit and no input. For example, food is scraped from a board, and the
-    board is only among the outputs.
+    board is only among the outputs. What is a `broken-chain`, `unheld` or `other-place` is not reported
+    again.
     """
     for chain in context.chains:
         for node, consumer in chain.unmade_nodes():
@@ -78,8 +79,10 @@ def find_left_out_objects(context: Context) -> Iterator[Diagnostic]:
 def _producer_of_companion(chain: Chain, node: int, consumer: int) -> tuple[int, int] | None:
     """Find a unit that makes a companion of a node without the node; return its position and the companion.
 
-    A companion of the node is the container that it is in, or an object in it. The unit at ``consumer`` takes
-    both. Nodes are ids. ``None`` if no earlier unit near enough makes one.
+    A companion of the node is the container that it is in, or an object in it. The unit at the position
+    ``consumer`` takes both. Nodes are ids. Only the last unit before ``consumer`` that makes the companion is
+    considered, up to 25 units back. It must have no output with the label of the node. If the companion is
+    the container, an input must have this label. Return ``None`` if there is no such unit.
     """
     unmade_node = chain.objects[node]
     for companion in chain.network.inputs[chain.units[consumer]]:

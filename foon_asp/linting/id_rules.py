@@ -28,7 +28,8 @@ class _Use(NamedTuple):
 def _uses_by_key(sheet: Sheet, by_id: bool) -> Iterator[tuple[str, str, list[_Use]]]:
     """Yield the letter of the lines (O, S or M), a key, and its uses, the most frequent first.
 
-    With ``by_id``, keys are ids and uses are their names. Else keys are names and uses are their ids.
+    With ``by_id``, keys are ids and uses are their names. Otherwise keys are names and uses are their ids.
+    Lines without an id are left out.
     """
     uses: dict[tuple[str, str], dict[str, _Use]] = {}
     for line, first, occurrences in sheet.distinct_lines:

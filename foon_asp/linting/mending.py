@@ -12,9 +12,9 @@ _LINE = re.compile(rb"([^\r\n]*)(\r\n|\r|\n|\Z)")
 
 
 def is_mendable(finding: Diagnostic, unsafe: bool = False) -> bool:
-    """Whether a finding has a safe fix, which does not change what is read; with ``unsafe``, any fix.
+    """Whether a finding has a safe fix, which does not change what is read. With ``unsafe``, any fix counts.
 
-    Renames are never safe.
+    A rename is an unsafe fix.
     """
     if finding.rename is not None:
         return unsafe
@@ -27,8 +27,8 @@ def mend(content: bytes, findings: Iterable[Diagnostic], unsafe: bool = False) -
     With ``unsafe``, fixes that change what is read and renames in the whole file are applied, too.
 
     All other bytes stay: line ends, a byte order mark, and lines without a fix. A line that is not as it was
-    when it was linted stays, too. A ``//`` that is added after the last unit gets the line end of the line
-    before it or, if that has none, of the first line.
+    when it was linted stays, too. If a ``//`` is added below the last unit, it gets the line end of the line
+    above it. If that line has none, it gets the one of the first line.
     """
     fixes: dict[int, tuple[bytes, bytes]] = {}
     separated: set[int] = set()

@@ -30,7 +30,11 @@ def find_near_names(context: Context) -> Iterator[Diagnostic]:
 
 
 def _near_name_findings(context: Context, kind: Kind, name: str, meant: str) -> Iterator[Diagnostic]:
-    """Yield a finding for each sheet with ``name``, which is probably ``meant`` misspelt."""
+    """Yield a finding for each sheet with ``name``, which is probably ``meant`` misspelt.
+
+    The finding has a rename to ``meant`` if ``meant`` is more frequent, or if only ``name`` has a word that
+    the vocabulary does not know.
+    """
     names, words = context.names, context.vocabulary.words
     counts = names.counts[kind]
     is_slip = words.issuperset(words_of(meant)) and not words.issuperset(words_of(name))
@@ -53,7 +57,8 @@ def _near_name_findings(context: Context, kind: Kind, name: str, meant: str) -> 
 def find_misspelt_words(context: Context) -> Iterator[Diagnostic]:
     """A word that is not in the vocabulary differs by one letter from a word of the vocabulary.
 
-    If the right name stands in the files, too, the finding is a `near-name`.
+    It is reported once in each file. If the right name stands in the files, too, the finding is a
+    `near-name`.
     """
     for kind, counts in context.names.counts.items():
         for name in counts:
@@ -75,8 +80,8 @@ def find_misspelt_words(context: Context) -> Iterator[Diagnostic]:
 def find_unknown_containers(context: Context) -> Iterator[Diagnostic]:
     """No unit takes or makes the container as an object; it may have another name as an object.
 
-    If no object has a similar name, the container is reported only if the vocabulary does not have its words.
-    It is reported once for all files, where it first occurs.
+    If no object has a similar name, the container is reported only if the vocabulary lacks a word of it. It
+    is reported once for all files, where it first occurs.
     """
     return _unlisted_name_findings(context, Relation, "stands in [ ]", "no unit takes or makes it")
 
@@ -85,8 +90,8 @@ def find_unknown_containers(context: Context) -> Iterator[Diagnostic]:
 def find_unknown_ingredients(context: Context) -> Iterator[Diagnostic]:
     """No unit takes or makes the ingredient as an object; it may have another name as an object.
 
-    If no object has a similar name, the ingredient is reported only if the vocabulary does not have its
-    words. It is reported once for all files, where it first occurs.
+    If no object has a similar name, the ingredient is reported only if the vocabulary lacks a word of it. It
+    is reported once for all files, where it first occurs.
     """
     return _unlisted_name_findings(context, Contents, "is an ingredient", "no unit adds it")
 
@@ -96,8 +101,9 @@ def _unlisted_name_findings(
 ) -> Iterator[Diagnostic]:
     """Yield a finding for each name in a kind of bracket that is never an object of a unit.
 
-    ``role`` and ``advice`` are parts of the messages. Names that are reported as `near-name` or `misspelt`
-    are skipped.
+    ``bracket`` is ``Relation`` for ``[ ]`` or ``Contents`` for ``{ }``. ``role`` and ``advice`` are parts of
+    the messages. Names that are reported as `near-name` or `misspelt` are skipped. So are names that resemble
+    no object and have only words of the vocabulary.
     """
     names, vocabulary = context.names, context.vocabulary
     for name, mentions in names.mentions[Kind.OBJECT].items():

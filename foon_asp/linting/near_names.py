@@ -98,9 +98,10 @@ def near_names(
 
 
 def _spelling_variants(counts: dict[str, int], known_words: Collection[str]) -> Iterator[tuple[str, str]]:
-    """Yield pairs of names that differ only in doubled letters, capitals and blanks.
+    """Yield pairs of names that differ only in doubled letters, capitals, blanks and hyphens.
 
-    The second name is the usual one: it has only known words, or else it is the most frequent.
+    The second name is the usual one: it has only known words, or else it is the most frequent. Names of less
+    than five letters, doubled ones counted once, may not differ in doubled letters.
     """
     spellings: dict[str, list[str]] = {}
     for name in counts:
@@ -125,15 +126,17 @@ def _deletion_neighbourhood(name: str) -> Iterable[str]:
 
 
 def near_word(word: str, deletions: Mapping[str, Iterable[str]], verbs: bool) -> str | None:
-    """Return the known word that is probably meant by an unknown word, else ``None``.
+    """Return the known word that is probably meant by an unknown word.
 
-    ``deletions`` is the :func:`deletion_index` of the known words. With ``verbs``, endings of verbs are no
-    slips.
+    ``deletions`` is the :func:`deletion_index` of the known words. If the word with ``ed`` behind it is
+    known, that word is meant. With ``verbs``, other endings of verbs are no slips. Return ``None`` if no
+    known word is similar, or if the word has less than 4 or more than 60 letters.
     """
     if not _SLIPS.medium <= len(word) <= _SLIPS.name_letters:
         return None
-    if word + "ed" in deletions:
-        return word + "ed"
+    past_form = f"{word}ed"
+    if past_form in deletions.get(past_form, ()):
+        return past_form
     candidates = {
         other for shortened in _deletion_neighbourhood(word) for other in deletions.get(shortened, ())
     }
@@ -145,10 +148,10 @@ def near_word(word: str, deletions: Mapping[str, Iterable[str]], verbs: bool) ->
 
 
 def deletion_index(words: Iterable[str]) -> dict[str, list[str]]:
-    """Return the words by each text in their deletion neighbourhoods.
+    """Return, by text, the words that have this text in their deletion neighbourhoods.
 
-    The neighbourhood of a word is the word and all texts that lack one of its letters. Short words are left
-    out.
+    The neighbourhood of a word is the word and all texts that lack one of its letters. Words of less than
+    four letters are left out.
     """
     deletions: dict[str, list[str]] = {}
     for word in words:
@@ -204,9 +207,9 @@ def _is_slip(
 def _is_rare_enough(word: str, other: str, rare: int, frequent: int) -> bool:
     """Whether a word is so much rarer than a similar word that it is probably a slip.
 
-    ``rare`` and ``frequent`` are the numbers of mentions of the names with these words. The ratio that is
-    needed depends on the length of the words and on their difference: swapped letters, a changed letter, or a
-    missing one.
+    ``rare`` and ``frequent`` are the numbers of mentions of the names with these words. How many times more
+    frequent the other name must be depends on the length of the words and on their difference: swapped
+    letters, a changed letter, or a missing one.
     """
     # Short words, and words with another letter, are mostly words of their own: dip, drip; batter, butter.
     shortest, ratio = min(len(word), len(other)), frequent / rare

@@ -28,7 +28,7 @@ class _Clock(NamedTuple):
 
     @classmethod
     def of(cls, match: re.Match[str], group: int = 0) -> "_Clock":
-        """Return the time that a group of a match has, ``m:ss`` or ``h:mm:ss``."""
+        """Return the time in a group of a match, which is written ``m:ss`` or ``h:mm:ss``."""
         seconds = 0
         for number in match[group].split(":"):
             seconds = 60 * seconds + int(number)
@@ -38,7 +38,9 @@ class _Clock(NamedTuple):
 class _Step(NamedTuple):
     """A unit with times in one sheet.
 
-    ``unit`` is its id, ``motion`` the index of its motion line. ``spans`` are pairs of a start and an end.
+    ``unit``: the id of the unit.
+    ``motion``: the index of its motion line.
+    ``spans``: pairs of a start and an end.
     """
 
     unit: int
@@ -57,7 +59,7 @@ class _Step(NamedTuple):
 
 
 def _timed_sheets(context: Context) -> Iterator[tuple[Sheet, list[_Step], dict[int, tuple[str, int]]]]:
-    """Yield each sheet with times, its steps with times, and the result of :func:`_odd_times` about them."""
+    """Yield each sheet with times, its steps with times, and its unlikely times (see :func:`_odd_times`)."""
     for sheet, copies in zip(context.sheets, context.files.copies_by_sheet, strict=True):
         steps = list(_timed_steps(sheet, copies))
         if steps:

@@ -111,7 +111,7 @@ def _clashes(
 ) -> Iterator[tuple[str, _Attribute, _Attribute, list[int]]]:
     """Yield the label of an object, two clashing attributes, and the indices of lines with the second one.
 
-    Each label with its two attributes is yielded once. ``is_clash`` compares an earlier with a later
+    Each label with its two attributes is yielded once. ``is_clash`` is asked with an earlier and a later
     attribute of one object.
     """
     lines_by_clash: dict[tuple[str, _Attribute, _Attribute], list[int]] = {}
