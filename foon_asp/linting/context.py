@@ -118,6 +118,6 @@ class Context:
         return next((index for index, listed_node in blocks if listed_node == node), copy.first_index)
 
     def node_lines(self, copy: Copy) -> tuple[list[tuple[int, ObjectNode]], list[tuple[int, ObjectNode]]]:
-        """Return the inputs and the outputs of a copy of a unit, each node with the index of its object line."""
+        """Return the inputs and outputs of a copy of a unit, each node with the index of its object line."""
         blocks = list(self.sheets[copy.sheet].object_nodes(copy.first_index))
         return blocks[: copy.inputs], blocks[copy.inputs :]

@@ -56,9 +56,11 @@ class UnitDistances:
     ) -> tuple[list[int], list[int]]:
         """Return the nearest units of each kind with the units that lead to them, and the least distances.
 
-        ``kinds`` are masks of units. ``executed`` are the ids of units that cost nothing. Of each kind, at
-        most ``max_units`` units are chosen. Their distances are at most ``max_steps`` steps above the
-        greatest of the kinds' least distances. A step is the cost of a unit, or a fixed part of a logarithm.
+        ``kinds``: masks of units.
+        ``executed``: the ids of units that cost nothing.
+        ``max_units``: how many units of each kind are chosen at most.
+        ``max_steps``: how many steps a chosen unit may be farther than the greatest of the kinds' least
+        distances. A step is 1, or for ``success`` an eighth of the scale of logarithms.
 
         The first list has the ids of all chosen units and of units that lead to them. The second list has the
         least distance of each kind, or :data:`FAR` if none of its units can be reached.
@@ -84,11 +86,14 @@ class UnitDistances:
     def relevant_units(
         self, kinds: Sequence[Mask] | None, executed: Collection[int], max_cost: int
     ) -> list[int]:
-        """Return the ids of the units that may be in a cheap enough tree with a unit of some kind.
+        """Return the ids of units that may be in a tree of cost at most ``max_cost`` with a unit of some
+        kind.
 
         These are the units of the ``kinds`` with a distance of at most ``max_cost``, and units with such a
-        distance that lead to them. ``kinds`` are masks of units; ``None`` means that all units count.
-        ``executed`` are the ids of units that cost nothing; they are not returned.
+        distance that lead to them.
+
+        ``kinds``: masks of units; ``None`` if the tree may have any units.
+        ``executed``: the ids of units that cost nothing; they are not returned.
         """
         if max_cost < int(self._costs.min(initial=FAR)):
             return []
@@ -114,18 +119,24 @@ class UnitDistances:
 
 
 def least_cost(rate: Fraction) -> int:
-    """Return a lower bound on the cost of a rate above 0: its scaled negative logarithm, rounded down."""
+    """Return a lower bound on the cost of a rate above 0: its negative natural logarithm times 2**40.
+
+    The bound is rounded down to an integer.
+    """
     exact, error = _logarithm(rate)
     return max(0, math.floor(exact) - error)
 
 
 def greatest_cost(rate: Fraction) -> int:
-    """Return an upper bound on the cost of a rate above 0: its scaled negative logarithm, rounded up."""
+    """Return an upper bound on the cost of a rate above 0: its negative natural logarithm times 2**40.
+
+    The bound is rounded up to an integer.
+    """
     exact, error = _logarithm(rate)
     return math.ceil(exact) + error
 
 
 def _logarithm(rate: Fraction) -> tuple[float, int]:
-    """Return the negative logarithm of a rate, scaled by ``_SCALE``, and a bound on its error."""
+    """Return the negative natural logarithm of a rate, scaled by ``_SCALE``, and a bound on its error."""
     logarithms = math.log(rate.denominator), math.log(rate.numerator)
     return (logarithms[0] - logarithms[1]) * _SCALE, 2 + math.ceil(sum(logarithms) * _SCALE * 2**-50)
