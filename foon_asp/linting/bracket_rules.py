@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 from foon_asp.linting.context import Context
-from foon_asp.linting.names import Kind, times
+from foon_asp.linting.names import Kind, times_text
 from foon_asp.linting.rule import WARNING, rule
 from foon_asp.linting.vocabulary import Bracket, Vocabulary
 from foon_asp.network import Contents, Relation
@@ -61,7 +61,9 @@ def _reason_to_swap_brackets(
     swapped = Contents(attribute.word, objects) if other is Contents else Relation(attribute.word, objects[0])
     count, swapped_count = counts[attribute], counts[swapped]
     if swapped_count > count:
-        return f"'{_with_other_bracket(attribute)}' stands {times(swapped_count)}, this {times(count)}"
+        return (
+            f"'{_with_other_bracket(attribute)}' stands {times_text(swapped_count)}, this {times_text(count)}"
+        )
     if (
         other is Relation
         and objects[0] in vocabulary.utensils
@@ -95,7 +97,7 @@ def find_misread_lines(context: Context) -> Iterator[Diagnostic]:
     states, objects = names.counts[Kind.STATE], names.object_counts
     for state in states:
         if meant := _suggested_attribute(state, context):
-            for sheet, index, _ in names.by_sheet(Kind.STATE, state):
+            for sheet, index, _ in names.mentions_by_sheet(Kind.STATE, state):
                 message = f"{state!r} is read as a state; is {meant!r} meant, with brackets behind a tab?"
                 yield sheet.finding(message, index, state)
     for kind, other, counts, other_counts in (
@@ -105,7 +107,7 @@ def find_misread_lines(context: Context) -> Iterator[Diagnostic]:
         for name, count in counts.items():
             is_known_other = other_counts.get(name, 0) > count or name in vocabulary.utensils
             is_misread = is_known_other and name not in vocabulary.names[kind]
-            for sheet, index, _ in names.by_sheet(kind, name) if is_misread else ():
+            for sheet, index, _ in names.mentions_by_sheet(kind, name) if is_misread else ():
                 # JSON has no letters; the name may be that of a container or an ingredient first
                 if sheet.places is None and sheet.lines[index][0] == _LETTERS[kind]:
                     message = f"{name!r} is known as {other}; is it {other} here, and the letter wrong?"

@@ -7,7 +7,7 @@ from types import MappingProxyType
 from foon_asp.linting.catalog import CATALOG
 from foon_asp.linting.context import Context
 from foon_asp.linting.linted_files import LintedFiles
-from foon_asp.linting.noqa import unsilenced
+from foon_asp.linting.noqa import unsilenced_findings
 from foon_asp.text.diagnostics import Diagnostic
 
 _ABOUT_FINDINGS = "noqa"
@@ -39,7 +39,7 @@ def lint_context(context: Context) -> list[Diagnostic]:
     for rule in CATALOG.values():
         if rule.code != _ABOUT_FINDINGS:
             context.findings += rule.findings(context)
-    findings = [*unsilenced(context), *CATALOG[_ABOUT_FINDINGS].findings(context)]
+    findings = [*unsilenced_findings(context), *CATALOG[_ABOUT_FINDINGS].findings(context)]
     order = {sheet.file: number for number, sheet in enumerate([*context.sheets, *context.files.tables])}
 
     def sort_key(finding: Diagnostic) -> tuple[int, int, int, str]:

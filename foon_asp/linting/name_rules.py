@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 
 from foon_asp.linting.context import Context
-from foon_asp.linting.names import Kind, times
+from foon_asp.linting.names import Kind, times_text
 from foon_asp.linting.rule import NOTE, WARNING, rule
 from foon_asp.linting.vocabulary import Bracket, words_of
 from foon_asp.network import Contents, Relation
@@ -44,11 +44,12 @@ def _near_name_findings(context: Context, kind: Kind, name: str, meant: str) -> 
     if kind is Kind.OBJECT and (name in names.object_counts) != (meant in names.object_counts):
         unlisted = name if meant in names.object_counts else meant
         roles = f", and {unlisted!r} is never an object of its own"
-    for sheet, index, count in names.by_sheet(kind, name):
-        others = "" if count == counts[name] else f" ({times(count)} in this file)"
+    for sheet, index, count in names.mentions_by_sheet(kind, name):
+        others = "" if count == counts[name] else f" ({times_text(count)} in this file)"
         message = (
-            f"the {kind} {name!r} stands {times(counts[name])}{others}, {meant!r} {times(counts[meant])}"
-            f"{roles}: if they mean the same, write one of them everywhere"
+            f"the {kind} {name!r} stands {times_text(counts[name])}{others}, "
+            f"{meant!r} {times_text(counts[meant])}{roles}: "
+            f"if they mean the same, write one of them everywhere"
         )
         yield sheet.finding(message, index, name)._replace(rename=rename)
 
@@ -72,7 +73,7 @@ def find_misspelt_words(context: Context) -> Iterator[Diagnostic]:
                 rename = (
                     Rename(kind, name, corrected) if corrected != name else None
                 )  # it has capitals or accents
-                for sheet, index, _ in context.names.by_sheet(kind, name):
+                for sheet, index, _ in context.names.mentions_by_sheet(kind, name):
                     yield sheet.finding(message, index, name)._replace(rename=rename)
 
 
@@ -123,7 +124,7 @@ def _unlisted_name_findings(
             continue
         first = min(bracketed, key=lambda mention: (mention.sheet, mention.first_index))
         sheets = len({mention.sheet for mention in bracketed})
-        how_often = times(sum(mention.occurrences for mention in bracketed)) + (
+        how_often = times_text(sum(mention.occurrences for mention in bracketed)) + (
             f" in {sheets} files" if sheets > 1 else ""
         )
         message = (

@@ -100,7 +100,7 @@ class Names:
                 endings.setdefault(" ".join(words[start:]), []).append(label)
         return endings
 
-    def by_sheet(self, kind: Kind, name: str) -> Iterator[tuple[Sheet, int, int]]:
+    def mentions_by_sheet(self, kind: Kind, name: str) -> Iterator[tuple[Sheet, int, int]]:
         """Yield each sheet with a name, the index of its first line with it, and the number of such lines."""
         by_sheet: dict[int, tuple[int, int]] = {}
         for sheet, _, index, occurrences in self.mentions[kind][name]:
@@ -120,7 +120,7 @@ def _names_in(node: ObjectNode) -> Iterator[tuple[Kind, str]]:
         yield from ((Kind.WORD, word), *((Kind.OBJECT, item) for item in items))
 
 
-def times(count: int) -> str:
+def times_text(count: int) -> str:
     """Return a count in words: ``once``, ``twice``, ``3 times``."""
     return "once" if count == 1 else "twice" if count == 2 else f"{count} times"
 

@@ -39,12 +39,12 @@ class _Step(NamedTuple):
     """A unit with times in one sheet.
 
     ``unit``: the id of the unit.
-    ``motion``: the index of its motion line.
+    ``motion_index``: the index of its motion line.
     ``spans``: pairs of a start and an end.
     """
 
     unit: int
-    motion: int
+    motion_index: int
     spans: list[tuple[_Clock, _Clock]]
 
     @property
@@ -99,8 +99,8 @@ def find_unlikely_times(context: Context) -> Iterator[Diagnostic]:
     are `m:ss`. There the last number is usually a fraction of a second, and the time is read as hours.
     """
     for sheet, _, odd in _timed_sheets(context):
-        for motion, (message, column) in odd.items():
-            yield sheet.finding(message, motion, column=column)
+        for motion_index, (message, column) in odd.items():
+            yield sheet.finding(message, motion_index, column=column)
 
 
 def _odd_times(steps: list[_Step]) -> dict[int, tuple[str, int]]:
@@ -143,7 +143,7 @@ def _odd_times(steps: list[_Step]) -> dict[int, tuple[str, int]]:
             faults = ((clock_fault(start), start), (clock_fault(end), end), (span_fault(start, end), end))
             for message, clock in faults:
                 if message:
-                    odd_times.setdefault(step.motion, (message, clock.column))
+                    odd_times.setdefault(step.motion_index, (message, clock.column))
     return odd_times
 
 
@@ -156,7 +156,7 @@ def find_steps_out_of_order(context: Context) -> Iterator[Diagnostic]:
     network = context.network
     for sheet, steps, odd in _timed_sheets(context):
         makers: dict[int, _Step] = {}
-        for step in (step for step in steps if step.motion not in odd):
+        for step in (step for step in steps if step.motion_index not in odd):
             inputs = network.inputs[step.unit]
             seconds, node = max(
                 ((makers[node].earliest_start.seconds, node) for node in inputs if node in makers),
@@ -164,12 +164,12 @@ def find_steps_out_of_order(context: Context) -> Iterator[Diagnostic]:
             )
             if seconds > step.latest_end.seconds:
                 maker = makers[node]
-                line = sheet.line_name(maker.motion, sheet)
+                line = sheet.line_name(maker.motion_index, sheet)
                 message = (
                     f"the step ends at {step.latest_end.text}, and uses {str(network.objects[node])!r}, "
                     f"which {network.motions[maker.unit]!r} ({line}) begins to make at "
                     f"{maker.earliest_start.text}; is one of the times wrong?"
                 )
-                yield sheet.finding(message, step.motion, column=step.earliest_start.column)
+                yield sheet.finding(message, step.motion_index, column=step.earliest_start.column)
             for node in set(network.outputs[step.unit]).difference(inputs):
                 makers[node] = min(makers.get(node, step), step, key=lambda maker: maker.earliest_start)

@@ -6,7 +6,7 @@ from operator import eq
 
 from foon_asp.linting.context import Context
 from foon_asp.linting.linted_files import Copy
-from foon_asp.linting.names import times
+from foon_asp.linting.names import times_text
 from foon_asp.linting.rule import NOTE, WARNING, rule
 from foon_asp.linting.sheet import Sheet
 from foon_asp.network import Contents, Relation
@@ -127,7 +127,7 @@ def _clashes(
 
 def _first_line_finding(sheet: Sheet, message: str, indices: list[int]) -> Diagnostic:
     """Return a finding about the first of the lines at ``indices``; the message says how many there are."""
-    count = f" ({times(len(indices))} in this file)" if len(indices) > 1 else ""
+    count = f" ({times_text(len(indices))} in this file)" if len(indices) > 1 else ""
     return sheet.finding(message + count, indices[0])
 
 

@@ -37,7 +37,7 @@ def write_comparison_chart(comparisons: Sequence[Comparison], conditions: str, f
 def _draw_boxes(comparisons: Sequence[Comparison], figure: "Figure", axes: "Axes") -> None:
     """Draw the box and the points of each search; below it stand its name and statistics.
 
-    The figure gets wider for many searches.
+    A search without points gets no box. The figure gets wider for many searches.
     """
     trees: dict[str, list[tuple[float, Verdict]]] = {}
     for comparison in comparisons:

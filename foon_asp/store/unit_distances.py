@@ -86,14 +86,14 @@ class UnitDistances:
     def relevant_units(
         self, kinds: Sequence[Mask] | None, executed: Collection[int], max_cost: int
     ) -> list[int]:
-        """Return the ids of units that may be in a tree of cost at most ``max_cost`` with a unit of some
-        kind.
+        """Return the ids of units that may be in a cheap enough tree that has a unit of one of the kinds.
 
         These are the units of the ``kinds`` with a distance of at most ``max_cost``, and units with such a
         distance that lead to them.
 
         ``kinds``: masks of units; ``None`` if the tree may have any units.
         ``executed``: the ids of units that cost nothing; they are not returned.
+        ``max_cost``: the greatest cost of a tree.
         """
         if max_cost < int(self._costs.min(initial=FAR)):
             return []
