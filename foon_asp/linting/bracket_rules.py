@@ -89,9 +89,9 @@ def find_misread_lines(context: Context) -> Iterator[Diagnostic]:
     """A state looks like a relation or contents without brackets, such as `in bowl` for `in [bowl]`.
 
     It begins with a word that has brackets elsewhere and continues with the name of an object. Also reported
-    is a state that is known as an object, or an object that is known as a state: probably the first letter of
-    the line is wrong. A name is known as the other kind if it is more frequent there, or is a utensil. A
-    state that the vocabulary has as a state is not reported, nor is such an object.
+    is a state whose name is more often that of an object, or is a utensil. So is an object whose name is more
+    often that of a state. Probably the first letter of the line is wrong. A state that the vocabulary has as
+    a state is not reported, nor is such an object.
     """
     names, vocabulary = context.names, context.vocabulary
     states, objects = names.counts[Kind.STATE], names.object_counts

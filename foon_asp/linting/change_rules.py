@@ -10,7 +10,7 @@ from foon_asp.text.diagnostics import Diagnostic
 
 
 def _is_seldom(count: int, total: int) -> bool:
-    """Whether ``count`` of the ``total`` units with a motion are at most an eighth of them.
+    """Whether ``count`` is at most an eighth of ``total``, the number of units with a motion.
 
     False for fewer than three units, which tell nothing about a motion.
     """

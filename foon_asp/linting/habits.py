@@ -12,9 +12,10 @@ _NO_NAMES: frozenset[str] = frozenset()
 
 
 class Changes(NamedTuple):
-    """The changes of a unit that may be slips. Keys and entries are node ids.
+    """The changes of a unit that may be slips. Nodes are given as ids.
 
-    ``lost``: by output, a container that keeps some contents, the names of the contents that it loses.
+    ``lost``: by output, the names of the contents that it loses. The output is a container that keeps other
+    contents.
     ``gained``: by such an output, the names of the contents that it gains.
     ``new``: outputs that come from no input.
     ``gone``: inputs that are in no output.

@@ -102,8 +102,9 @@ def near_names(
 def _spelling_variants(counts: dict[str, int], known_words: Collection[str]) -> Iterator[tuple[str, str]]:
     """Yield pairs of names that differ only in doubled letters, capitals, blanks and hyphens.
 
-    The second name is the usual one: it has only known words, or else it is the most frequent. Names of less
-    than five letters, doubled ones counted once, may not differ in doubled letters.
+    The second name is the usual one: it has only known words, or else it is the most frequent. Short names
+    must also agree in their doubled letters. A name is short if it has less than five letters when a doubled
+    letter counts once.
     """
     spellings: dict[str, list[str]] = {}
     for name in counts:

@@ -132,8 +132,9 @@ def _places_are_usual(context: Context) -> bool:
 def _unplaced_foods(side: Side, places: Collection[str], habits: Habits) -> FaultyNodes:
     """Yield each food without a stated place that exactly one node of this side contains, with the message.
 
-    ``places`` are the labels that may be places. A food is skipped if it is the only content, and the other
-    side of the unit has it in that place: then the unit puts it there.
+    ``places`` are the labels that may be places; the containing node must have one of them. If the food is
+    the only content, and the other side of the unit states that it is in the container, the unit puts it
+    there, and the food is skipped.
     """
     for node in side.nodes:
         if node.relations or node.contents or node.label not in habits.foods:

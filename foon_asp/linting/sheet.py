@@ -25,7 +25,7 @@ _QUOTED = re.compile(r'"((?:[^"\\]|\\(?:["\\/bfnrt]|u[0-9a-fA-F]{4}))*+)("?)')
 class Entry(NamedTuple):
     """An entry of a kitchen or of a list of goals.
 
-    ``object_index`` is the index of its object line, ``amount`` its stated amount or ``None``.
+    ``object_index`` is the index of its object line. ``amount`` is the stated amount; ``None`` without one.
     """
 
     pattern: NodePattern

@@ -73,7 +73,7 @@ def find_repeated_objects(context: Context) -> Iterator[Diagnostic]:
 
 
 def _repeated_nodes(context: Context, copy: Copy) -> Iterator[Diagnostic]:
-    """Yield a finding for each node that one side of a copy of a unit has already listed."""
+    """Yield a finding for each node that a side of a copy of a unit lists again."""
     sheet = context.sheets[copy.sheet]
     for side, blocks in zip(("inputs", "outputs"), context.node_lines(copy), strict=True):
         firsts: dict[object, int] = {}

@@ -61,7 +61,7 @@ class Store:
 
     Methods read only what they need, so their time does not grow with the network; :meth:`read_whole` and
     :attr:`outline` read it all. Opening and each method raise :class:`UserError` for a file that is no store,
-    is newer than this program or is damaged.
+    has another version of the format or is damaged.
     """
 
     level = 3

@@ -11,7 +11,7 @@ from foon_asp.store.stored_ids import StoredIds
 
 
 class StoredStartingKitchen(StartingKitchen[int]):
-    """The starting kitchen of a store; files are the numbers of files in the store."""
+    """The starting kitchen of a store. Files are given by their numbers in the store."""
 
     def __init__(self, store: Store) -> None:
         self.file, self._nodes = store.file, StoredIds(store, "starting")

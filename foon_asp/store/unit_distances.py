@@ -10,19 +10,20 @@ from numpy.typing import NDArray
 from foon_asp.problem import Objective, Trait
 from foon_asp.store.outline import FAR, Distances, Mask, Outline
 
-_SCALE = 2**40  # of logarithms of success rates, which are whole numbers
+_SCALE = 2**40  # of natural logarithms of success rates, which become integers
 
 
 class UnitDistances:
     """The distances of all units of a network: lower bounds on the cost of a tree that has the unit.
 
     The distance of a unit is its cost plus the largest distance of its inputs. The distance of a node is the
-    least one of its producers (``h_max`` of Bonet and Geffner, Artificial Intelligence 129, 2001). It is 0
-    for nodes in the mask ``kitchen``, which are available, and in the mask ``skipped``, which units do not
-    need.
+    least one of its producers (``h_max`` of Bonet and Geffner, Artificial Intelligence 129, 2001). Two masks
+    have the nodes whose distance is 0: ``kitchen`` those that are available, ``skipped`` those that units do
+    not need.
 
     The cost of a unit is 1. If ``objective`` is ``success`` and there are ``rates``, it is the negative
-    logarithm of the unit's rate, scaled to an integer and rounded down.
+    logarithm of the rate of its motion, scaled to an integer and rounded down. A motion without a rate then
+    costs 0.
     """
 
     def __init__(
@@ -60,7 +61,7 @@ class UnitDistances:
         ``executed``: the ids of units that cost nothing.
         ``max_units``: how many units of each kind are chosen at most.
         ``max_steps``: how many steps a chosen unit may be farther than the greatest of the kinds' least
-        distances. A step is 1, or for ``success`` an eighth of the scale of logarithms.
+        distances. A step is the cost of one unit, or for ``success`` 1/8 of a natural logarithm.
 
         The first list has the ids of all chosen units and of units that lead to them. The second list has the
         least distance of each kind, or :data:`FAR` if none of its units can be reached.
