@@ -118,12 +118,13 @@ def draw_plan(
     """Return the drawing of a plan in which items are used up; units are numbered from 1.
 
     A node may have several copies. A copy is identified by its node and the position of the step that made
-    it, from 0; the position is ``None`` for the kitchen.
+    it, from 0. The position is ``None`` for the kitchen, and -1 if nothing makes the node.
 
     ``sources``: for each unit, these positions by input.
     ``goal_sources``: these positions by goal.
 
-    A copy that a step makes and a later step or a goal takes is one box. All other copies are separate boxes.
+    A copy that a step makes and a later step or a goal takes is one box, and so is a node that nothing makes.
+    All other copies are separate boxes.
     """
     canvas = _Canvas(kitchen, goal_sources.keys())
     consumed = {copy for step in (*sources, goal_sources) for copy in step.items()}

@@ -145,8 +145,8 @@ class Desk:
     def answer_form(self, form: Form, token: Cancel, send_event: SendEvent) -> None:
         """Answer the question of a form with pages, once the question before it has ended.
 
-        ``token`` cancels the question. ``send_event`` receives an event for each page, for progress, and for
-        an error. A form without goals or objectives is an error.
+        ``token`` cancels the question. ``send_event`` receives an event for each page, for progress, for
+        warnings and for an error. A form without goals or objectives is an error.
         """
 
         def answer(deadline: Deadline, _: _EventReporter) -> None:
