@@ -69,7 +69,7 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
     counted_motions = {row.name[0] for row in amount_rows}
     counted_units: dict[FunctionalUnit, None] = {}  # those with a motion of the table
     prices = read_unit_prices(files.unit_prices) if files.unit_prices else None
-    earlier_warnings = len(warnings)
+    earlier_warning_count = len(warnings)
     last_units: dict[int, Source] = {}
     try:
         with _new_database(store) as database, without_garbage_collection():
@@ -85,7 +85,7 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
                         counted_units[FunctionalUnit.of(motion, inputs, outputs)] = None
                 if last_unit:
                     last_units.setdefault(*last_unit)
-            reader.raise_errors(earlier_warnings)
+            reader.raise_errors(earlier_warning_count)
             goals_from = ""
             if files.goals is None:
                 goals, goals_from = _assumed_goals(reader, builder, last_units)
