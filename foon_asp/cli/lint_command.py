@@ -16,7 +16,7 @@ from foon_asp.errors import UserError
 from foon_asp.linting.baseline import Baseline, check_replaceable
 from foon_asp.linting.catalog import CATALOG, unknown_code_message
 from foon_asp.linting.context import Context
-from foon_asp.linting.example import example
+from foon_asp.linting.example import read_example
 from foon_asp.linting.linted_files import LintedFiles
 from foon_asp.linting.mending import is_mendable, mend
 from foon_asp.linting.vocabulary import Vocabulary
@@ -43,7 +43,7 @@ def _explain(context: click.Context, _: click.Parameter, code: str | None) -> No
         return
     if code not in CATALOG:
         raise UserError(unknown_code_message(code))
-    write_parts(rule_page(CATALOG[code], example(code)))
+    write_parts(rule_page(CATALOG[code], read_example(code)))
     context.exit()
 
 

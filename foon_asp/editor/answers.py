@@ -37,7 +37,10 @@ _LINE_HEADS = {
 
 
 def diagnostics(checked: CheckedText) -> list[Json]:
-    """Return all findings of lint as diagnostics of the protocol; each covers the field at its column."""
+    """Return all findings of lint as diagnostics of the protocol.
+
+    The range of each goes from the column of the finding to the end of the field there.
+    """
     reported = []
     for line, finding in checked.findings:
         start = max(0, finding.source.column - 1)
@@ -55,10 +58,11 @@ def diagnostics(checked: CheckedText) -> list[Json]:
 
 
 def completion(text: EditedText, names: Names, parameters: object) -> Json:
-    """Return the completions at the position in the parameters of a request.
+    """Return the completions at the position in the parameters of a request, at most 100.
 
-    These are the names of the kinds that may stand there, the most frequent first. At the beginning of a
-    line, they are those of :func:`_line_head_items`.
+    These are the names of the kinds that may stand there and that contain the text before the position. Names
+    that begin with this text come first, and then the most frequent. At the beginning of a line, the
+    completions are those of :func:`_line_head_items`.
     """
     line, letter = text.requested_position(parameters)
     content = text.lines[line]
@@ -85,8 +89,9 @@ def _completion_item(
 ) -> Json:
     """Return the completion item of a name in a field of a line.
 
-    If the head of the line lacks an id, the item adds the most frequent id of the name. After a word of
-    relations at the end of the line, it adds a tab and the more frequent bracket.
+    If the head of the line has no id, the item adds the most frequent id of the name. After a word of
+    relations at the end of the line, it adds a tab and the opening bracket that is more frequent after the
+    word.
     """
     count, mentions = names.counts[kind][name], names.mentions[kind][name]
     ids = _id_counts(names, kind, name)
@@ -112,7 +117,7 @@ def _is_contents(line: Line) -> bool:
 
 
 def _id_counts(names: Names, kind: NameKind, name: str) -> Counter[str]:
-    """Return how many lines have a name with each of its ids."""
+    """Return, by id, how many lines have a name with this id at their head."""
     ids: Counter[str] = Counter()
     for mention in names.mentions[kind].get(name, ()):
         if mention.line.id and next(line_names(mention.line))[:2] == (kind, name):
@@ -123,8 +128,8 @@ def _id_counts(names: Names, kind: NameKind, name: str) -> Counter[str]:
 def _line_head_items(text: EditedText, line: int, letter: int, names: Names) -> list[Json]:
     """Return completions of the beginning of a line: ``O``, ``S``, ``M`` and their tabs, or ``//``.
 
-    After a letter and digits, they are the names whose id begins with these digits. JSON has no completions,
-    and neither has a line with text after the position.
+    After a letter and digits, they are the names whose id begins with these digits, at most 100. JSON has no
+    completions, and neither has a line with text after the position.
     """
     content = text.lines[line]
     if text.is_json or content[letter:].strip():
@@ -163,8 +168,9 @@ def _line_head_items(text: EditedText, line: int, letter: int, names: Names) -> 
 def _hover(checked: CheckedText, parameters: object) -> Json | None:
     """Return a hover text on the node of a line: its achievers, its consumers, and whether it is available.
 
-    ``None`` outside of nodes. The kitchen in the folder of the file is read. Without one, a node that no unit
-    makes counts as available.
+    If a name is at the position, the text also says how often it occurs. Return ``None`` if the line belongs
+    to no node. The kitchen in the folder of the file is read. Without one, a node that no unit makes counts
+    as available.
     """
     text = checked.text
     line, letter = text.requested_position(parameters)
@@ -188,7 +194,7 @@ def _hover(checked: CheckedText, parameters: object) -> Json | None:
 
 
 def _node_at(checked: CheckedText, line: int) -> ObjectNode | None:
-    """Return the object node to which a line belongs, or ``None``."""
+    """Return the object node to which a line belongs; ``None`` if it belongs to no node."""
     lines = checked.text.lines
     while line > 0 and lines[line][:1] in {"S", "#", ""}:
         line -= 1
@@ -230,7 +236,10 @@ def _escape_markdown(text: str) -> str:
 
 
 def _definitions(checked: CheckedText, parameters: object) -> list[Json]:
-    """Return the locations where the achievers of the node of a line list it as an output."""
+    """Return the locations where the achievers of the node of a line list it as an output.
+
+    Return no locations if the line belongs to no node.
+    """
     text = checked.text
     node = _node_at(checked, text.requested_position(parameters)[0])
     if node is None:
@@ -282,7 +291,7 @@ def _folding_ranges(checked: CheckedText, _: object) -> list[Json]:
 
 
 def _rename_range(checked: CheckedText, parameters: object) -> Json | None:
-    """Return the range of the name at a position, which can be renamed, or ``None`` if no name is there."""
+    """Return the range of the name at a position, which can be renamed; ``None`` if no name is there."""
     line, letter = checked.text.requested_position(parameters)
     field = field_at(checked.text.lines[line], letter)
     return checked.text.range(line, field.start, field.end) if field and field.name else None
@@ -303,7 +312,7 @@ def _rename_everywhere(checked: CheckedText, parameters: object) -> Json:
 def _rename_edits(checked: CheckedText, rename: Rename) -> list[Json]:
     """Return the edits that apply a renaming to the whole text.
 
-    Lines with the new name also get the id that this name has elsewhere.
+    Renamed lines also get the id that the new name has elsewhere.
     """
     renaming = Renaming(rename)
     renaming.learn_ids(_id_counts(checked.names, NameKind(rename.kind), rename.new))
@@ -311,7 +320,10 @@ def _rename_edits(checked: CheckedText, rename: Rename) -> list[Json]:
 
 
 def format_edits(text: EditedText) -> list[Json]:
-    """Return the edits that bring the text into canonical form; none for a text with errors."""
+    """Return the edits that bring the text into canonical form.
+
+    A text with errors gets no edits.
+    """
     try:
         return text.edits_to(split_lines(format_of(text.text).canonical_text(text.text, "", lenient=True)))
     except InputError:
@@ -321,7 +333,7 @@ def format_edits(text: EditedText) -> list[Json]:
 def _quick_fixes(checked: CheckedText, parameters: object) -> list[Json]:
     """Return the actions for the findings on a range of lines: those that fix, then those that silence.
 
-    The number of findings is limited.
+    Only the first 100 findings in the range get actions.
     """
     text = checked.text
     first, last = (parameter(parameters, f"range.{end}.line", int) for end in ("start", "end"))
@@ -345,7 +357,10 @@ def _quick_fixes(checked: CheckedText, parameters: object) -> list[Json]:
 
 
 def _quick_fix(title: str, text: EditedText, edits: list[Json], preferred: bool) -> Json:
-    """Return a quick fix of the protocol, which makes these edits of the text."""
+    """Return a quick fix of the protocol, which makes these edits of the text.
+
+    ``preferred`` says whether an editor may make it without a choice.
+    """
     edit = {"changes": {text.uri: edits}}
     return {"title": title, "kind": "quickfix", "isPreferred": preferred, "edit": edit}
 

@@ -15,9 +15,9 @@ from foon_asp.text.diagnostics import Diagnostic
 class CheckedText(NamedTuple):
     """A text of the editor after a check.
 
-    ``names`` are the names in it, with its units. ``findings`` are those of lint, each after the index of its
-    line. ``settings_error`` says what is wrong in the settings of lint, which are then ignored; else it is
-    empty.
+    ``names``: the names in the text, with its units.
+    ``findings``: the findings of lint, each after the index of its line.
+    ``settings_error``: what is wrong in the settings of lint, which are then ignored; empty if nothing is.
     """
 
     text: EditedText
@@ -26,7 +26,7 @@ class CheckedText(NamedTuple):
     settings_error: str
 
 
-def check(text: EditedText) -> CheckedText:
+def check_text(text: EditedText) -> CheckedText:
     """Lint a text by itself, under the settings of the folder of its file.
 
     Settings with errors are replaced by the defaults, and reported as ``settings_error``.

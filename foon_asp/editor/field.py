@@ -21,7 +21,8 @@ class Field(NamedTuple):
     ``kinds``: the kinds that the name may have.
     ``start``, ``end``: the index of the first letter of the name, and the index after the last.
     ``letter``: the letter of the line, O, S or M.
-    ``id``: the id at the head of the line; ``None`` if that is the id of another name than this one.
+    ``id``: the id of the name at the head of the line, empty without one; ``None`` if the head has the id of
+    another name.
     """
 
     kinds: tuple[NameKind, ...]
@@ -35,7 +36,7 @@ class Field(NamedTuple):
 def field_at(line: str, position: int) -> Field | None:
     """Return the field of a line that contains the letter at ``position`` or ends before it.
 
-    ``None`` if no name can be there.
+    Return ``None`` if no name can be there.
     """
     head = _LINE_HEAD.match(line)
     if head is None or position < head.end():

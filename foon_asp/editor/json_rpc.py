@@ -29,9 +29,9 @@ class RequestError(Exception):
 
 
 def read_message(stream: BinaryIO) -> Json | None:
-    """Read the next message from a stream.
+    """Read the next message from a stream, and wait for it.
 
-    Returns ``{}`` for a message that is no JSON object, and ``None`` at the end of the stream.
+    Return ``{}`` for a message that is no JSON object. Return ``None`` at the end of the stream.
     """
     length = 0
     while (line := stream.readline()).strip():

@@ -8,7 +8,7 @@ from typing import BinaryIO
 
 from foon_asp import __version__
 from foon_asp.editor import answers
-from foon_asp.editor.checked_text import CheckedText, check
+from foon_asp.editor.checked_text import CheckedText, check_text
 from foon_asp.editor.edited_text import EditedText
 from foon_asp.editor.json_rpc import (
     ErrorCode,
@@ -58,9 +58,9 @@ class LanguageServer:
         }
 
     async def run(self) -> bool:
-        """Answer requests until the editor sends exit or closes the stream.
+        """Answer requests until the editor sends ``exit`` or closes the stream.
 
-        Returns false if exit came without shutdown before it, and else true.
+        Return false if ``exit`` came and ``shutdown`` did not come before it. Otherwise return true.
         """
         async with asyncio.TaskGroup() as responses:
             while "exit" not in self._ending:
@@ -72,7 +72,10 @@ class LanguageServer:
         return self._ending != {"exit"}
 
     async def _respond(self, message: Json) -> None:
-        """Process a message, and write a response unless the message is a notification."""
+        """Process a message, and write a response unless the message is a notification.
+
+        Any error becomes an error response; an error about a notification is dropped.
+        """
         id_ = message["id"] if type(message.get("id")) in {str, int} else None
         is_request = "id" in message or "method" not in message
         try:
@@ -92,8 +95,8 @@ class LanguageServer:
     async def _result(self, method: str, parameters: object) -> object:
         """Return the result of a request, after the check of the text that it is about.
 
-        For completions, an earlier check is enough. Raises :class:`RequestError` for a request that is
-        refused.
+        Completions do not wait if an earlier version of the text was checked. Raises :class:`RequestError`
+        for a request that is refused.
         """
         if method in self._methods:
             return self._methods[method](parameters)
@@ -119,7 +122,7 @@ class LanguageServer:
         self._schedule_check(EditedText(uri, parameter(parameters, "textDocument.text", str)), 0)
 
     def _change_text(self, parameters: object) -> None:
-        """Replace a text by its new version, and check this one after a while."""
+        """Replace a text by its new version, and check this one unless it changes within a quarter second."""
         text = self._text_of(parameters)
         for change in parameter(parameters, "contentChanges", list):
             # sooner, texts would be checked while somebody types
@@ -141,7 +144,7 @@ class LanguageServer:
         return self._texts[uri]
 
     def _schedule_check(self, text: EditedText, seconds: float) -> None:
-        """Keep a text, begin its check after ``seconds``, and cancel the check of an earlier version."""
+        """Keep a text, begin its check after ``seconds``, and cancel the check of its version before."""
         if earlier_check := self._checks.get(text.uri):
             earlier_check.cancel()
         self._texts[text.uri] = text
@@ -150,10 +153,10 @@ class LanguageServer:
     async def _check(self, text: EditedText, seconds: float) -> CheckedText:
         """Check a text after ``seconds``, publish its findings, and return the checked text.
 
-        A new error in the settings of lint is shown to the user.
+        An error in the settings of lint is shown to the user, unless the last check met the same error.
         """
         await asyncio.sleep(seconds)
-        checked = await asyncio.get_running_loop().run_in_executor(self._worker, check, text)
+        checked = await asyncio.get_running_loop().run_in_executor(self._worker, check_text, text)
         self._checked[text.uri] = checked
         if checked.settings_error not in {"", self._settings_error}:
             self._notify("window/showMessage", {"type": 1, "message": checked.settings_error})  # an error
@@ -175,7 +178,7 @@ def _error_response(code: ErrorCode, message: str) -> Json:
 def serve_editor() -> bool:
     """Serve an editor over standard input and output; return the result of :meth:`LanguageServer.run`.
 
-    Threads of this process switch more often from then on.
+    From then on, threads of this process switch more often, so that a check delays answers less.
     """
     sys.setswitchinterval(0.0005)  # until checking yields to an answer: less makes it slower
     return asyncio.run(LanguageServer(sys.stdin.buffer, sys.stdout.buffer).run())

@@ -43,8 +43,8 @@ class Baseline(Struct, frozen=True, tag_field="schema", tag=schema_name("lint-ba
     def compare_with(self, file: Path, findings: Iterable[Diagnostic]) -> tuple[list[Diagnostic], int]:
         """Return the findings that are not in the baseline, and how many in the baseline no longer occur.
 
-        ``file`` is the file of the baseline. A line may have more findings of one code than the baseline
-        lists; then the last of them are returned as new.
+        ``file`` is the file of the baseline. If a text has more findings of one code than the baseline lists,
+        the last of them are returned as new.
         """
         remaining = Counter[tuple[str, str, str]]()
         for known_finding in self.known:

@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 from foon_asp.linting.context import Context
-from foon_asp.linting.names import Kind, times
+from foon_asp.linting.names import Kind, times_text
 from foon_asp.linting.rule import WARNING, rule
 from foon_asp.linting.vocabulary import Bracket, Vocabulary
 from foon_asp.network import Contents, Relation
@@ -19,7 +19,8 @@ def find_other_brackets(context: Context) -> Iterator[Diagnostic]:
     """An ingredient is in `{ }`, a place is in `[ ]`.
 
     Elsewhere in the files or in the vocabulary, the word before the bracket nearly always has the other kind.
-    Or the whole text, such as `in [bowl]`, is more frequent with the other kind.
+    Or the whole text, such as `in [bowl]`, is more frequent with the other kind. Or the only thing in `{ }`
+    is an object that others are in or on.
     """
     mentions = [
         mention for name_mentions in context.names.mentions[Kind.WORD].values() for mention in name_mentions
@@ -47,7 +48,8 @@ def _reason_to_swap_brackets(
 ) -> str:
     """Return in words why an attribute probably needs the other kind of bracket; empty if nothing says so.
 
-    ``counts`` are the numbers of lines by attribute.
+    ``counts``: by attribute, the number of lines that have it. The reasons are the three that
+    :func:`find_other_brackets` names. Only the first one is looked for if there are several ingredients.
     """
     other: Bracket = Contents if isinstance(attribute, Relation) else Relation
     usual = vocabulary.usual_bracket(attribute.word)
@@ -59,7 +61,9 @@ def _reason_to_swap_brackets(
     swapped = Contents(attribute.word, objects) if other is Contents else Relation(attribute.word, objects[0])
     count, swapped_count = counts[attribute], counts[swapped]
     if swapped_count > count:
-        return f"'{_with_other_bracket(attribute)}' stands {times(swapped_count)}, this {times(count)}"
+        return (
+            f"'{_with_other_bracket(attribute)}' stands {times_text(swapped_count)}, this {times_text(count)}"
+        )
     if (
         other is Relation
         and objects[0] in vocabulary.utensils
@@ -70,7 +74,7 @@ def _reason_to_swap_brackets(
 
 
 def _bracketed_objects(attribute: Relation | Contents) -> tuple[str, ...]:
-    """Return the ingredients in ``{ }``, or the single object in ``[ ]``."""
+    """Return the names in the brackets: the ingredients in ``{ }``, or the single object in ``[ ]``."""
     return attribute.ingredients if isinstance(attribute, Contents) else (attribute.object,)
 
 
@@ -85,14 +89,15 @@ def find_misread_lines(context: Context) -> Iterator[Diagnostic]:
     """A state looks like a relation or contents without brackets, such as `in bowl` for `in [bowl]`.
 
     It begins with a word that has brackets elsewhere and continues with the name of an object. Also reported
-    is a state that is known as an object, or an object that is known as a state: probably the first letter of
-    the line is wrong.
+    is a state whose name is more often that of an object, or is a utensil. So is an object whose name is more
+    often that of a state. Probably the first letter of the line is wrong. A state that the vocabulary has as
+    a state is not reported, nor is such an object.
     """
     names, vocabulary = context.names, context.vocabulary
     states, objects = names.counts[Kind.STATE], names.object_counts
     for state in states:
         if meant := _suggested_attribute(state, context):
-            for sheet, index, _ in names.by_sheet(Kind.STATE, state):
+            for sheet, index, _ in names.mentions_by_sheet(Kind.STATE, state):
                 message = f"{state!r} is read as a state; is {meant!r} meant, with brackets behind a tab?"
                 yield sheet.finding(message, index, state)
     for kind, other, counts, other_counts in (
@@ -102,7 +107,7 @@ def find_misread_lines(context: Context) -> Iterator[Diagnostic]:
         for name, count in counts.items():
             is_known_other = other_counts.get(name, 0) > count or name in vocabulary.utensils
             is_misread = is_known_other and name not in vocabulary.names[kind]
-            for sheet, index, _ in names.by_sheet(kind, name) if is_misread else ():
+            for sheet, index, _ in names.mentions_by_sheet(kind, name) if is_misread else ():
                 # JSON has no letters; the name may be that of a container or an ingredient first
                 if sheet.places is None and sheet.lines[index][0] == _LETTERS[kind]:
                     message = f"{name!r} is known as {other}; is it {other} here, and the letter wrong?"
@@ -110,7 +115,7 @@ def find_misread_lines(context: Context) -> Iterator[Diagnostic]:
 
 
 def _suggested_attribute(state: str, context: Context) -> str:
-    """Return the relation or contents that a state probably stands for; empty for a likely state.
+    """Return the text of the relation or contents that a state probably stands for; empty for a likely state.
 
     For example, ``in [bowl]`` for the state ``in bowl``.
     """

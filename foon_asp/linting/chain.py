@@ -13,10 +13,13 @@ _SHORT_DISTANCE, _MIDDLE_DISTANCE, MAX_DISTANCE = 2, 8, 25  # units from making 
 class Chain:
     """The units of one sheet, ordered by their first copies in it.
 
-    A position is the index of a unit in this order, from 0. ``units`` and ``copies`` have by position the id
-    of the unit in the network and its first copy. ``producers`` and ``consumers`` have by node id the
-    ascending positions of the units that make it and that need it. ``made`` has by position the ids of the
-    nodes that the unit makes: its outputs that are not inputs.
+    A position is the index of a unit in this order, from 0.
+
+    ``units``: by position, the id of the unit in the network.
+    ``copies``: by position, the first copy of the unit.
+    ``made``: by position, the ids of the nodes that the unit makes: its outputs that are not inputs.
+    ``producers``: by node id, the positions of the units that make the node, ascending.
+    ``consumers``: by node id, the positions of the units that need the node, ascending.
     """
 
     def __init__(self, network: Network, copies: list[tuple[Copy, int]]) -> None:
@@ -52,10 +55,11 @@ class Chain:
         return {self.objects[node].label for node in nodes_by_side[side][self.units[position]]}
 
     def nearest_similar(self, node: int, consumer: int) -> tuple[int, int] | None:
-        """Return the nearest unit before ``consumer`` that makes a node similar to ``node``, and this node.
+        """Return the position of the nearest unit that makes a node similar to ``node``, and that node's id.
 
-        Units are positions, nodes are ids; ``consumer`` needs ``node``. ``None`` if no unit near enough makes
-        a similar node that may be meant.
+        ``node`` is the id of a node that the unit at the position ``consumer`` needs. A node is similar if it
+        differs little and no unit needs it, or if it has one state more. Only the 25 units before
+        ``consumer`` are searched. Return ``None`` if they make no similar node.
         """
         wanted = self.objects[node]
         for distance in range(1, min(consumer, MAX_DISTANCE) + 1):
@@ -73,8 +77,9 @@ class Chain:
     def _may_be_same(self, node: int, consumer: int, other: int, producer: int) -> bool:
         """Whether the needed ``node`` and the made node ``other`` are probably meant to be one node.
 
-        ``consumer`` and ``producer`` are the positions of the units. False if the nodes differ in more than a
-        little. Also false if they are in different places and both units list these places.
+        ``consumer`` and ``producer`` are the positions of the units. The nodes have to differ little. If they
+        are in different places, and each unit lists the places of its node, they are probably two nodes. A
+        place that differs by a slip of spelling does not count as different.
         """
         needed, made = self.objects[node], self.objects[other]
         return _differ_little(needed, made, consumer - producer) and (
@@ -86,7 +91,7 @@ class Chain:
         )
 
     def _lists_locations_of(self, node: ObjectNode, position: int, side: int) -> bool:
-        """Whether a side of a unit also lists all objects that a node is in or on.
+        """Whether a side of a unit also lists all objects to which a node has a relation.
 
         The unit is the one at a position; ``side`` is 0 for inputs and 1 for outputs.
         """
@@ -94,10 +99,12 @@ class Chain:
 
 
 def _differ_little(needed: ObjectNode, made: ObjectNode, distance: int) -> bool:
-    """Whether two nodes differ so little that they may be meant to be one, as by one state.
+    """Whether two nodes differ so little that they may be meant to be one, for example in one state.
 
-    ``distance`` is the number of units from the one that makes ``made`` to the one that needs ``needed``; the
-    closer these are, the more differences are accepted.
+    They may differ in a slip of spelling, in one state, in one relation, or in one of several ingredients.
+    Nodes near each other may also differ in their labels alone, or have one state or relation in place of
+    another. ``distance`` is the number of units from the one that makes ``made`` to the one that needs
+    ``needed``.
     """
     if needed.label != made.label:
         return distance <= _SHORT_DISTANCE and _count_attributes(needed) > 1 and needed[1:] == made[1:]
@@ -124,7 +131,7 @@ def _differ_little(needed: ObjectNode, made: ObjectNode, distance: int) -> bool:
 
 
 def _lacks_a_state(needed: ObjectNode, made: ObjectNode) -> bool:
-    """Whether the needed node is like the made node, but lacks one of its states.
+    """Whether the needed node is the made node without one of its states.
 
     False for nodes that have neither relations nor contents.
     """

@@ -23,16 +23,16 @@ def find_broken_chains(context: Context) -> Iterator[Diagnostic]:
             if not (similar := chain.nearest_similar(node, consumer)):
                 continue
             producer, other = similar
-            ends = chain.copies[consumer], 0, chain.objects[node]
-            starts = chain.copies[producer], 1, chain.objects[other]
-            taken_node, made_node = str(ends[2]), str(starts[2])
-            line = context.line_name(*starts)
+            taken_at = chain.copies[consumer], 0, chain.objects[node]
+            made_at = chain.copies[producer], 1, chain.objects[other]
+            taken_node, made_node = str(taken_at[2]), str(made_at[2])
+            line = context.line_name(*made_at)
             message = f"no unit makes {taken_node!r}; is it {made_node!r}, which {line} makes?"
-            yield context.finding_at_node(*ends, message)
+            yield context.finding_at_node(*taken_at, message)
             if other not in chain.consumers:
-                line = context.line_name(*ends)
+                line = context.line_name(*taken_at)
                 message = f"no unit takes {made_node!r}; is it {taken_node!r}, which {line} takes?"
-                yield context.finding_at_node(*starts, message)
+                yield context.finding_at_node(*made_at, message)
 
 
 @rule(
@@ -45,7 +45,8 @@ def find_left_out_objects(context: Context) -> Iterator[Diagnostic]:
 
     A later unit takes both, and no unit makes the missing one. Also reported is an input that is in or on
     something which is an output of the unit and no input. For example, food is scraped from a board, and the
-    board is only among the outputs.
+    board is only among the outputs. What is a `broken-chain`, `unheld` or `other-place` is not reported
+    again.
     """
     for chain in context.chains:
         for node, consumer in chain.unmade_nodes():
@@ -64,13 +65,13 @@ def find_left_out_objects(context: Context) -> Iterator[Diagnostic]:
                 yield context.finding_at_node(chain.copies[producer], 1, made, message)
     labels = {node.label for node in context.network.objects}
     for side in context.sides:
-        containers = [] if side.number else list(inputs_placed_in_outputs(side))
-        if containers:
+        placed_inputs = [] if side.number else list(inputs_placed_in_outputs(side))
+        if placed_inputs:
             reported = [*unheld_nodes(side, context.habits), *misplaced_nodes(side, labels, context.habits)]
-            others = {input_ for input_, _ in reported}
+            reported_inputs = {input_ for input_, _ in reported}
             copy, motion = context.files.copies[side.unit][0], context.network.motions[side.unit]
-            for input_, message in containers:
-                if input_ not in others:
+            for input_, message in placed_inputs:
+                if input_ not in reported_inputs:
                     text = f"{message} of {motion!r} have, and the inputs have not"
                     yield context.finding_at_node(copy, 0, input_, text)
 
@@ -78,8 +79,10 @@ def find_left_out_objects(context: Context) -> Iterator[Diagnostic]:
 def _producer_of_companion(chain: Chain, node: int, consumer: int) -> tuple[int, int] | None:
     """Find a unit that makes a companion of a node without the node; return its position and the companion.
 
-    A companion of the node is the container that it is in, or an object in it. The unit at ``consumer`` takes
-    both. Nodes are ids. ``None`` if no earlier unit near enough makes one.
+    A companion of the node is the container that it is in, or an object in it. The unit at the position
+    ``consumer`` takes both. Nodes are ids. Only the last unit before ``consumer`` that makes the companion is
+    considered, up to 25 units back. It must have no output with the label of the node. If the companion is
+    the container, an input must have this label. Return ``None`` if there is no such unit.
     """
     unmade_node = chain.objects[node]
     for companion in chain.network.inputs[chain.units[consumer]]:

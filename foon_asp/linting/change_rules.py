@@ -10,7 +10,7 @@ from foon_asp.text.diagnostics import Diagnostic
 
 
 def _is_seldom(count: int, total: int) -> bool:
-    """Whether ``count`` of the ``total`` units with a motion are at most an eighth of them.
+    """Whether ``count`` is at most an eighth of ``total``, the number of units with a motion.
 
     False for fewer than three units, which tell nothing about a motion.
     """
@@ -18,13 +18,19 @@ def _is_seldom(count: int, total: int) -> bool:
 
 
 def _units_with_habits(context: Context) -> Iterator[tuple[int, str, Changes, Habit]]:
-    """Yield the id of each unit, its motion, its changes, and the habit of all units with this motion."""
+    """Yield the id of each unit, its motion, its changes, and the habit of its motion.
+
+    The habit counts the units of the files and those of the vocabulary.
+    """
     for unit, motion in enumerate(context.network.motions):
         yield unit, motion, context.habits.changes_by_unit[unit], context.all_names.habit(motion)
 
 
 def _finding_at(context: Context, unit: int, side: int, node: int, message: str) -> Diagnostic:
-    """Return a finding about an input (``side`` 0) or output (1) in the first copy of a unit."""
+    """Return a finding about an input (``side`` 0) or output (1) in the first copy of a unit.
+
+    ``node`` is its id. Its label is put before the message.
+    """
     object_node = context.network.objects[node]
     copy = context.files.copies[unit][0]
     return context.finding_at_node(copy, side, object_node, f"{object_node.label!r} {message}")
@@ -76,10 +82,10 @@ def find_outputs_from_nothing(context: Context) -> Iterator[Diagnostic]:
 
 
 def _units_by_made_node(context: Context) -> dict[ObjectNode, int]:
-    """Return, by node, the id of the first unit that makes it out of an input with its name.
+    """Return, by node, the id of the first unit that makes it and mentions its label among the inputs.
 
-    The name may be the label of the input, or stand among its contents or relations. Nodes without such a
-    unit are left out.
+    An input mentions its own label, its contents, and the objects of its relations. Nodes without such a unit
+    are left out.
     """
     units: dict[ObjectNode, int] = {}
     for side in context.sides:

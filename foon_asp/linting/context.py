@@ -31,8 +31,8 @@ class Side(NamedTuple):
 class Context:
     """What rules look at: the linted files with their network and names, and a vocabulary of known names.
 
-    ``vocabulary`` is a vocabulary file; ``None`` stands for the bundled one. ``findings`` are empty at first.
-    The linter adds those of all rules but ``noqa``, which looks at them.
+    ``vocabulary`` is the vocabulary file; for ``None``, the bundled one is read. ``findings`` is empty at
+    first. The linter adds the findings of all rules but ``noqa``, because ``noqa`` looks at them.
     """
 
     def __init__(self, files: LintedFiles, vocabulary: Path | None = None) -> None:
@@ -53,7 +53,7 @@ class Context:
 
     @cached_property
     def remarks(self) -> dict[str, list[Diagnostic]]:
-        """The remarks of the reader on the files, by code, with the fixes that are certain."""
+        """The remarks of the reader on the files, by code. They keep only fixes that are certain."""
         return remarks_by_code(self.files, self.all_names)
 
     @cached_property
@@ -94,7 +94,10 @@ class Context:
         return self.sheets[copy.sheet].finding(message, copy.first_index)
 
     def finding_at_node(self, copy: Copy, side: int, node: ObjectNode, message: str) -> Diagnostic:
-        """Return a finding at the object line of an input (``side`` 0) or output (1) of a copy of a unit."""
+        """Return a finding at the object line of an input (``side`` 0) or output (1) of a copy of a unit.
+
+        The line is that of :meth:`node_line`, the column that of the label.
+        """
         sheet = self.sheets[copy.sheet]
         return sheet.finding(message, self.node_line(copy, side, node), node.label)
 
@@ -115,6 +118,6 @@ class Context:
         return next((index for index, listed_node in blocks if listed_node == node), copy.first_index)
 
     def node_lines(self, copy: Copy) -> tuple[list[tuple[int, ObjectNode]], list[tuple[int, ObjectNode]]]:
-        """Return the inputs and the outputs of a copy of a unit, each with the index of its object line."""
+        """Return the inputs and outputs of a copy of a unit, each node with the index of its object line."""
         blocks = list(self.sheets[copy.sheet].object_nodes(copy.first_index))
         return blocks[: copy.inputs], blocks[copy.inputs :]

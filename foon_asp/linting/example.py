@@ -16,7 +16,7 @@ class Example(NamedTuple):
     findings: list[Finding]
 
 
-def example(code: str) -> Example:
+def read_example(code: str) -> Example:
     """Read the example files of the rule with a code, and lint them."""
     files = {Path(file.name): file.read_bytes() for file in sorted((_EXAMPLES / code).iterdir())}
     return Example(files, [Finding.of(finding) for finding in lint(files, files) if finding.code == code])

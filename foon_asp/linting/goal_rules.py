@@ -17,6 +17,7 @@ def find_unmade_goals(context: Context) -> Iterator[Diagnostic]:
 
     A goal is an object line with a recipe category or `!`, or an entry of a list of goals. A list of goals is
     a file with `goal` in its name. Lists are compared with the networks that are linted together with them.
+    If most entries of a list are unknown, a single finding reports them all.
     """
     for sheet in context.sheets:
         if sheet.entries is None:
@@ -59,7 +60,7 @@ def find_wrong_amounts(context: Context) -> Iterator[Diagnostic]:
 def _object_lists(context: Context, of_goals: bool) -> Iterator[Sheet]:
     """Yield the sheets that are lists of goals (``of_goals``), or those that are kitchens.
 
-    Yields nothing if the files have no units to compare them with.
+    Yields nothing if the linted files have no units, as nothing can be compared then.
     """
     for sheet in context.sheets if len(context.network) else ():
         if sheet.entries is not None and sheet.lists_goals is of_goals:
@@ -90,7 +91,7 @@ def _unmade_marked_goals(sheet: Sheet, context: Context) -> Iterator[Diagnostic]
 def _unknown_entries(sheet: Sheet, network: Network) -> Iterator[Diagnostic]:
     """Yield a finding for each entry of a list that matches no object node of the network.
 
-    If most entries match none, yield one finding about all of them.
+    If most entries match none, and more than ten, yield one finding about all of them.
     """
     entries = sheet.entries or ()
     unknown = [entry for entry in entries if not network.find(entry.pattern)]
@@ -110,7 +111,10 @@ def _unknown_entries(sheet: Sheet, network: Network) -> Iterator[Diagnostic]:
 
 
 def _same_label_hint(label: str, network: Network) -> str:
-    """Return the end of a message: which nodes of the network have a label, or that none has it."""
+    """Return the end of a message: a node of the network with this label, and how many more there are.
+
+    If no node has the label, the text says so.
+    """
     nodes = network.by_label.get(label, ())
     if not nodes:
         return f"none there is called {label!r}"

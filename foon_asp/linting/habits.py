@@ -12,10 +12,11 @@ _NO_NAMES: frozenset[str] = frozenset()
 
 
 class Changes(NamedTuple):
-    """The changes of a unit that may be slips. Keys and entries are node ids.
+    """The changes of a unit that may be slips. Nodes are given as ids.
 
-    ``lost`` and ``gained``: by output, the names of contents that a container loses or gains while it keeps
-    others.
+    ``lost``: by output, the names of the contents that it loses. The output is a container that keeps other
+    contents.
+    ``gained``: by such an output, the names of the contents that it gains.
     ``new``: outputs that come from no input.
     ``gone``: inputs that are in no output.
     ``keeps``: whether a container keeps some of its contents.
@@ -59,10 +60,10 @@ class Habit(NamedTuple):
 
 
 class Habits:
-    """The changes of the units of a network.
+    """The changes of the units of a network, and which names are ingredients.
 
-    ``ingredients`` are all names that stand among contents. ``foods`` are the ingredients that never have
-    contents and to which no object has a relation.
+    ``ingredients``: all names that stand among contents.
+    ``foods``: the ingredients that never have contents and to which no object has a relation.
     """
 
     def __init__(self, network: Network) -> None:
@@ -85,8 +86,9 @@ class Habits:
     def changes(self, unit: int) -> Changes:
         """Return the changes that a unit makes to objects and contents, as far as they may be slips.
 
-        Names that share a word, such as egg and beaten egg, count as one object. New outputs excuse missing
-        inputs, and the other way round.
+        Names that share a word, such as egg and beaten egg, count as one object. Of the inputs, only foods
+        can be gone. If inputs are gone and other outputs are new, neither are listed: the inputs became the
+        outputs. A container that both loses and gains contents is not listed either.
         """
         objects = self.network.objects
         inputs = {node: objects[node] for node in self.network.inputs[unit]}
@@ -154,7 +156,10 @@ def _comes_from_any(node: ObjectNode, places: AbstractSet[str]) -> bool:
 
 
 def _is_named_by_state(name: str, nodes: Collection[ObjectNode]) -> bool:
-    """Whether a word in a state of a node begins like a word of ``name``: salted for the name salt."""
+    """Whether a word in a state of a node begins like a word of ``name``: salted for the name salt.
+
+    The first four letters are compared.
+    """
     words = [word for node in nodes for state in node.states for word in state.split(" ")]
     return any(word.startswith(name_word[:_STEM]) for name_word in words_in([name]) for word in words)
 
@@ -164,7 +169,8 @@ def _kept_containers(
 ) -> Iterator[tuple[int, AbstractSet[str], AbstractSet[str]]]:
     """Yield the id of each output that keeps some contents, with the names of its old and new contents.
 
-    Outputs whose label is not unique among inputs, or among outputs, are skipped.
+    The old contents are those of the input with the same label. Outputs whose label is not unique among
+    inputs, or among outputs, are skipped.
     """
     for node, output in outputs.items():
         same_label = [other for other in inputs.values() if other.label == output.label]
@@ -181,5 +187,5 @@ def _names_sharing_no_word(names: Collection[str], others: Collection[str]) -> l
 
 
 def words_in(names: Collection[str]) -> set[str]:
-    """Return all words of names, without a final s."""
+    """Return all words of names, each without a final s; blanks and hyphens separate words."""
     return {word.removesuffix("s") for name in names for word in name.replace("-", " ").split(" ")}

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from foon_asp.linting.context import Context
-from foon_asp.linting.names import times
+from foon_asp.linting.names import times_text
 from foon_asp.linting.rule import NOTE, WARNING, rule
 from foon_asp.linting.sheet import Sheet
 from foon_asp.text.diagnostics import Diagnostic
@@ -28,7 +28,8 @@ class _Use(NamedTuple):
 def _uses_by_key(sheet: Sheet, by_id: bool) -> Iterator[tuple[str, str, list[_Use]]]:
     """Yield the letter of the lines (O, S or M), a key, and its uses, the most frequent first.
 
-    With ``by_id``, keys are ids and uses are their names. Else keys are names and uses are their ids.
+    With ``by_id``, keys are ids and uses are their names. Otherwise keys are names and uses are their ids.
+    Lines without an id are left out.
     """
     uses: dict[tuple[str, str], dict[str, _Use]] = {}
     for line, first, occurrences in sheet.distinct_lines:
@@ -63,8 +64,8 @@ def find_ids_of_two_names(context: Context) -> Iterator[Diagnostic]:
                 line = sheet.line_name(usual.first_index, sheet)
                 message = (
                     f"the {_KINDS[letter]} id {letter}{id_} is that of {use.text!r} "
-                    f"({times(use.occurrences)}) and of {usual.text!r} "
-                    f"({times(usual.occurrences)}, first on {line}); one needs another id"
+                    f"({times_text(use.occurrences)}) and of {usual.text!r} "
+                    f"({times_text(usual.occurrences)}, first on {line}); one needs another id"
                 )
                 yield sheet.finding(message, use.first_index)
 
@@ -78,8 +79,8 @@ def find_names_of_two_ids(context: Context) -> Iterator[Diagnostic]:
                 line = sheet.line_name(usual.first_index, sheet)
                 message = (
                     f"the {_KINDS[letter]} {name!r} has the id {letter}{use.text} "
-                    f"({times(use.occurrences)}) and {letter}{usual.text} "
-                    f"({times(usual.occurrences)}, first on {line}); it should have one"
+                    f"({times_text(use.occurrences)}) and {letter}{usual.text} "
+                    f"({times_text(usual.occurrences)}, first on {line}); it should have one"
                 )
                 yield sheet.finding(message, use.first_index)
 

@@ -64,7 +64,8 @@ def _path_matches(path: PurePosixPath, pattern: str) -> bool:
 def find_settings(files: Sequence[Path]) -> LintSettings:
     """Read the nearest settings: those in the common folder of all files, or in the nearest folder above.
 
-    Returns the defaults where no folder has settings. Raises :class:`InputError`, with the place, for
+    In a folder, ``foon-asp.toml`` comes before ``pyproject.toml``. Return the defaults if no folder has
+    settings, or if the files have no common folder. Raises :class:`InputError`, with line and column, for
     settings that are not understood.
     """
     folders = [os.path.dirname(os.path.abspath(file)) for file in files]
@@ -139,7 +140,7 @@ def _table_faults(table: object) -> Iterator[_Fault]:
 
 
 def _code_list_faults(path: tuple[str, ...], value: object) -> Iterator[_Fault]:
-    """Yield what is wrong in a list of codes, which stands at the keys ``path``."""
+    """Yield what is wrong in a list of codes; ``path`` are the keys that lead to the list."""
     if not isinstance(value, list) or not all(isinstance(code, str) for code in value):
         yield path, f'expected a list of codes such as {path[-1]} = ["near-name"]'
         return
@@ -149,9 +150,9 @@ def _code_list_faults(path: tuple[str, ...], value: object) -> Iterator[_Fault]:
 
 
 def _key_position(text: str, path: tuple[str, ...]) -> tuple[int, int]:
-    """Return line and column, from 1, of the last key of a path of keys in the text of a TOML file.
+    """Return line and column, from 1, of the last key of ``path`` in the text of a TOML file.
 
-    The path begins below the table of settings.
+    ``path`` are keys from the table of settings on. Keys that are not found are passed over.
     """
     matches = [match for match in _WORD.finditer(text) if match[0][0] != "#"]
     words = [match[0].strip("\"'") for match in matches]

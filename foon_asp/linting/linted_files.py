@@ -36,8 +36,9 @@ def with_tables(paths: Iterable[Path], files: Iterable[Path]) -> list[Path]:
 class Copy(NamedTuple):
     """A copy of a unit in a file.
 
-    ``sheet`` is the number of its sheet, ``first_index`` the index of its first line. ``inputs`` and
-    ``outputs`` are the numbers of nodes that it lists.
+    ``sheet``: the index of its sheet.
+    ``first_index``: the index of its first line in the sheet.
+    ``inputs``, ``outputs``: how many nodes it lists as inputs and as outputs.
     """
 
     sheet: int
@@ -49,13 +50,19 @@ class Copy(NamedTuple):
 class LintedFiles:
     """The files that are linted together: their sheets, their tables, and the network of all their units.
 
-    ``copies[u]`` are the copies of unit ``u`` of the network, in the order read. ``remarks`` are those of the
-    reader. An error does not end the reading of a file: lines that cannot be understood are left out.
-    ``contents`` are the bytes of files that are not to be read from disk.
+    ``sheets``: the networks, kitchens and lists of goals, in the order read.
+    ``tables``: the files with the name of a table.
+    ``copies[u]``: the copies of unit ``u`` of the network, in the order read.
+    ``remarks``: those of the reader.
+
+    An error does not end the reading of a file: lines that cannot be understood are left out.
     """
 
     def __init__(self, files: Iterable[Path], contents: Mapping[Path, bytes] = MappingProxyType({})) -> None:
-        """Read all files, and merge their units into one network."""
+        """Read all files, and merge their units into one network.
+
+        ``contents`` are the bytes of files that are not to be read from disk.
+        """
         self._contents = contents
         self.reader = FoonReader()
         self.sheets: list[Sheet] = []
@@ -145,7 +152,7 @@ class LintedFiles:
     def _add_unit(self, motion: str, sides: tuple[list[ObjectNode], list[ObjectNode]], index: int) -> None:
         """Add a unit of the last sheet to the network, and record this copy of it.
 
-        ``sides`` are its inputs and outputs, ``index`` is that of its first line.
+        ``sides`` are its inputs and outputs, ``index`` is the index of its first line.
         """
         unit = self._builder.add(motion, *sides)
         if unit == len(self.copies):

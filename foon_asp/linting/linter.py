@@ -7,7 +7,7 @@ from types import MappingProxyType
 from foon_asp.linting.catalog import CATALOG
 from foon_asp.linting.context import Context
 from foon_asp.linting.linted_files import LintedFiles
-from foon_asp.linting.noqa import unsilenced
+from foon_asp.linting.noqa import unsilenced_findings
 from foon_asp.text.diagnostics import Diagnostic
 
 _ABOUT_FINDINGS = "noqa"
@@ -20,13 +20,13 @@ def lint(
 ) -> list[Diagnostic]:
     """Lint networks, kitchens and lists of goals together; return findings by file, line and column.
 
-    ``contents`` are the bytes of files that are not to be read from disk. Findings that a ``# noqa`` comment
-    silences are left out.
+    ``contents`` are the bytes of files that are not to be read from disk. ``vocabulary`` is the vocabulary
+    file; for ``None``, the bundled one is read.
 
-    The units of all files form one network. Names are compared over all files, and with those of a file
-    ``vocabulary``, or of the bundled one for ``None``. The severity of a finding is that of its rule. ``fix``
-    is the mended line where mending does not change what is read. Raises :class:`foon_asp.errors.UserError`
-    for a file that cannot be opened.
+    The units of all files form one network. Names are compared over all files, and with those of the
+    vocabulary. Findings that a ``# noqa`` comment silences are left out. The severity of a finding is that of
+    its rule. ``fix`` is the mended line where mending does not change what is read. Raises
+    :class:`foon_asp.errors.UserError` for a file that cannot be opened.
     """
     return lint_context(Context(LintedFiles(files, contents), vocabulary))
 
@@ -34,12 +34,12 @@ def lint(
 def lint_context(context: Context) -> list[Diagnostic]:
     """Return the findings about files that were read; they are sorted and silenced as in :func:`lint`.
 
-    Adds the findings of all rules but ``noqa`` to those of the context.
+    Also adds the findings of all rules but ``noqa``, silenced or not, to ``context.findings``.
     """
     for rule in CATALOG.values():
         if rule.code != _ABOUT_FINDINGS:
             context.findings += rule.findings(context)
-    findings = [*unsilenced(context), *CATALOG[_ABOUT_FINDINGS].findings(context)]
+    findings = [*unsilenced_findings(context), *CATALOG[_ABOUT_FINDINGS].findings(context)]
     order = {sheet.file: number for number, sheet in enumerate([*context.sheets, *context.files.tables])}
 
     def sort_key(finding: Diagnostic) -> tuple[int, int, int, str]:

@@ -12,9 +12,9 @@ _LINE = re.compile(rb"([^\r\n]*)(\r\n|\r|\n|\Z)")
 
 
 def is_mendable(finding: Diagnostic, unsafe: bool = False) -> bool:
-    """Whether a finding has a safe fix, which does not change what is read; with ``unsafe``, any fix.
+    """Whether a finding has a safe fix, which does not change what is read. With ``unsafe``, any fix counts.
 
-    Renames are never safe.
+    A rename is an unsafe fix.
     """
     if finding.rename is not None:
         return unsafe
@@ -27,11 +27,11 @@ def mend(content: bytes, findings: Iterable[Diagnostic], unsafe: bool = False) -
     With ``unsafe``, fixes that change what is read and renames in the whole file are applied, too.
 
     All other bytes stay: line ends, a byte order mark, and lines without a fix. A line that is not as it was
-    when it was linted stays, too. A ``//`` that is added after the last unit gets the line end of the line
-    before it or, if that has none, of the first line.
+    when it was linted stays, too. If a ``//`` is added below the last unit, it gets the line end of the line
+    above it. If that line has none, it gets the one of the first line.
     """
     fixes: dict[int, tuple[bytes, bytes]] = {}
-    separated: set[int] = set()
+    unclosed_lines: set[int] = set()
     renames: list[Rename] = []
     for finding in findings:
         if not is_mendable(finding, unsafe):
@@ -39,7 +39,7 @@ def mend(content: bytes, findings: Iterable[Diagnostic], unsafe: bool = False) -
         if finding.rename is not None:
             renames.append(finding.rename)
         elif finding.code == "missing-separator":
-            separated.add(finding.source.line)
+            unclosed_lines.add(finding.source.line)
         else:
             fixes[finding.source.line] = finding.excerpt.encode(), (finding.fix or "").encode()
     parts: list[bytes] = []
@@ -48,7 +48,7 @@ def mend(content: bytes, findings: Iterable[Diagnostic], unsafe: bool = False) -
         mark = BOM_UTF8 if number == 1 and text.startswith(BOM_UTF8) else b""
         excerpt, fix = fixes.get(number, (b"", b""))
         parts += (mark + fix if number in fixes and text == mark + excerpt else text, line_break)
-        if number in separated:
+        if number in unclosed_lines:
             line_end = line_break or parts[1] or b"\n"
             parts += (b"" if line_break else line_end, b"//", line_end)
     content = b"".join(parts)

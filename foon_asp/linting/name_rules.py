@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 
 from foon_asp.linting.context import Context
-from foon_asp.linting.names import Kind, times
+from foon_asp.linting.names import Kind, times_text
 from foon_asp.linting.rule import NOTE, WARNING, rule
 from foon_asp.linting.vocabulary import Bracket, words_of
 from foon_asp.network import Contents, Relation
@@ -30,7 +30,11 @@ def find_near_names(context: Context) -> Iterator[Diagnostic]:
 
 
 def _near_name_findings(context: Context, kind: Kind, name: str, meant: str) -> Iterator[Diagnostic]:
-    """Yield a finding for each sheet with ``name``, which is probably ``meant`` misspelt."""
+    """Yield a finding for each sheet with ``name``, which is probably ``meant`` misspelt.
+
+    The finding has a rename to ``meant`` if ``meant`` is more frequent, or if only ``name`` has a word that
+    the vocabulary does not know.
+    """
     names, words = context.names, context.vocabulary.words
     counts = names.counts[kind]
     is_slip = words.issuperset(words_of(meant)) and not words.issuperset(words_of(name))
@@ -40,11 +44,12 @@ def _near_name_findings(context: Context, kind: Kind, name: str, meant: str) -> 
     if kind is Kind.OBJECT and (name in names.object_counts) != (meant in names.object_counts):
         unlisted = name if meant in names.object_counts else meant
         roles = f", and {unlisted!r} is never an object of its own"
-    for sheet, index, count in names.by_sheet(kind, name):
-        others = "" if count == counts[name] else f" ({times(count)} in this file)"
+    for sheet, index, count in names.mentions_by_sheet(kind, name):
+        others = "" if count == counts[name] else f" ({times_text(count)} in this file)"
         message = (
-            f"the {kind} {name!r} stands {times(counts[name])}{others}, {meant!r} {times(counts[meant])}"
-            f"{roles}: if they mean the same, write one of them everywhere"
+            f"the {kind} {name!r} stands {times_text(counts[name])}{others}, "
+            f"{meant!r} {times_text(counts[meant])}{roles}: "
+            f"if they mean the same, write one of them everywhere"
         )
         yield sheet.finding(message, index, name)._replace(rename=rename)
 
@@ -53,7 +58,8 @@ def _near_name_findings(context: Context, kind: Kind, name: str, meant: str) -> 
 def find_misspelt_words(context: Context) -> Iterator[Diagnostic]:
     """A word that is not in the vocabulary differs by one letter from a word of the vocabulary.
 
-    If the right name stands in the files, too, the finding is a `near-name`.
+    It is reported once in each file. If the right name stands in the files, too, the finding is a
+    `near-name`.
     """
     for kind, counts in context.names.counts.items():
         for name in counts:
@@ -67,7 +73,7 @@ def find_misspelt_words(context: Context) -> Iterator[Diagnostic]:
                 rename = (
                     Rename(kind, name, corrected) if corrected != name else None
                 )  # it has capitals or accents
-                for sheet, index, _ in context.names.by_sheet(kind, name):
+                for sheet, index, _ in context.names.mentions_by_sheet(kind, name):
                     yield sheet.finding(message, index, name)._replace(rename=rename)
 
 
@@ -75,8 +81,8 @@ def find_misspelt_words(context: Context) -> Iterator[Diagnostic]:
 def find_unknown_containers(context: Context) -> Iterator[Diagnostic]:
     """No unit takes or makes the container as an object; it may have another name as an object.
 
-    If no object has a similar name, the container is reported only if the vocabulary does not have its words.
-    It is reported once for all files, where it first occurs.
+    If no object has a similar name, the container is reported only if the vocabulary lacks a word of it. It
+    is reported once for all files, where it first occurs.
     """
     return _unlisted_name_findings(context, Relation, "stands in [ ]", "no unit takes or makes it")
 
@@ -85,8 +91,8 @@ def find_unknown_containers(context: Context) -> Iterator[Diagnostic]:
 def find_unknown_ingredients(context: Context) -> Iterator[Diagnostic]:
     """No unit takes or makes the ingredient as an object; it may have another name as an object.
 
-    If no object has a similar name, the ingredient is reported only if the vocabulary does not have its
-    words. It is reported once for all files, where it first occurs.
+    If no object has a similar name, the ingredient is reported only if the vocabulary lacks a word of it. It
+    is reported once for all files, where it first occurs.
     """
     return _unlisted_name_findings(context, Contents, "is an ingredient", "no unit adds it")
 
@@ -96,8 +102,9 @@ def _unlisted_name_findings(
 ) -> Iterator[Diagnostic]:
     """Yield a finding for each name in a kind of bracket that is never an object of a unit.
 
-    ``role`` and ``advice`` are parts of the messages. Names that are reported as `near-name` or `misspelt`
-    are skipped.
+    ``bracket`` is ``Relation`` for ``[ ]`` or ``Contents`` for ``{ }``. ``role`` and ``advice`` are parts of
+    the messages. Names that are reported as `near-name` or `misspelt` are skipped. So are names that resemble
+    no object and have only words of the vocabulary.
     """
     names, vocabulary = context.names, context.vocabulary
     for name, mentions in names.mentions[Kind.OBJECT].items():
@@ -117,7 +124,7 @@ def _unlisted_name_findings(
             continue
         first = min(bracketed, key=lambda mention: (mention.sheet, mention.first_index))
         sheets = len({mention.sheet for mention in bracketed})
-        how_often = times(sum(mention.occurrences for mention in bracketed)) + (
+        how_often = times_text(sum(mention.occurrences for mention in bracketed)) + (
             f" in {sheets} files" if sheets > 1 else ""
         )
         message = (

@@ -22,10 +22,11 @@ def is_of_another_network(unknown: int, total: int) -> bool:
 
 
 class Mention(NamedTuple):
-    """A line with a name.
+    """A line with a name; equal lines of a sheet are one mention.
 
-    ``sheet`` is the number of the sheet. Equal lines of a sheet are one mention: ``first_index`` is the index
-    of the first of them, ``occurrences`` is how many there are.
+    ``sheet``: the index of the sheet.
+    ``first_index``: the index of the first of the equal lines.
+    ``occurrences``: how many equal lines there are.
     """
 
     sheet: int
@@ -37,7 +38,8 @@ class Mention(NamedTuple):
 class Names:
     """Every name in the files, by its kind.
 
-    ``mentions`` are the lines with each name, in order. ``counts`` are the numbers of lines with each name.
+    ``mentions``: by kind and name, the lines with the name, in order.
+    ``counts``: by kind and name, the number of these lines.
     """
 
     def __init__(self, files: LintedFiles) -> None:
@@ -98,7 +100,7 @@ class Names:
                 endings.setdefault(" ".join(words[start:]), []).append(label)
         return endings
 
-    def by_sheet(self, kind: Kind, name: str) -> Iterator[tuple[Sheet, int, int]]:
+    def mentions_by_sheet(self, kind: Kind, name: str) -> Iterator[tuple[Sheet, int, int]]:
         """Yield each sheet with a name, the index of its first line with it, and the number of such lines."""
         by_sheet: dict[int, tuple[int, int]] = {}
         for sheet, _, index, occurrences in self.mentions[kind][name]:
@@ -118,7 +120,7 @@ def _names_in(node: ObjectNode) -> Iterator[tuple[Kind, str]]:
         yield from ((Kind.WORD, word), *((Kind.OBJECT, item) for item in items))
 
 
-def times(count: int) -> str:
+def times_text(count: int) -> str:
     """Return a count in words: ``once``, ``twice``, ``3 times``."""
     return "once" if count == 1 else "twice" if count == 2 else f"{count} times"
 

@@ -10,7 +10,7 @@ _PLURAL_ENDING = re.compile(r"e?s$")
 _VERB_ENDING = re.compile(r"(?:e?[sdr]|[ey])$")  # juice, juiced; flakes, flaked; mix, mixer; salt, salty
 
 
-class _Slips(NamedTuple):
+class _SlipLimits(NamedTuple):
     """The limits of frequency and length for a name to count as a slip: a typing error of another name.
 
     ``rare``, ``very_rare``: the greatest numbers of mentions of a slip.
@@ -22,6 +22,8 @@ class _Slips(NamedTuple):
     ``compared``: how many of the names that share all letters but one are compared, the most frequent first.
     ``name_letters``: the greatest number of letters of a name; longer texts are no names, and slow to
     compare.
+
+    Which of the numbers applies depends on the kind of slip (:func:`_is_rare_enough`).
     """
 
     rare: int = 5
@@ -36,7 +38,7 @@ class _Slips(NamedTuple):
     name_letters: int = 60
 
 
-_SLIPS = _Slips()
+_LIMITS = _SlipLimits()
 
 
 def near_names(
@@ -71,17 +73,17 @@ def near_names(
         name
         for name, count in counts.items()
         if name not in paired
-        and (count <= _SLIPS.rare or name in one_sided or _has_unknown_word(name, known_words))
+        and (count <= _LIMITS.rare or name in one_sided or _has_unknown_word(name, known_words))
     ]
     if not rare_names:
         return
     frequent: dict[str, list[str]] = {}
     for name in sorted(counts, key=lambda name: (-counts[name], name)):
-        if counts[name] < _SLIPS.ratio and name in one_sided and _has_unknown_word(name, known_words):
+        if counts[name] < _LIMITS.ratio and name in one_sided and _has_unknown_word(name, known_words):
             continue
         for shortened in _deletion_neighbourhood(name):
             sharing = frequent.setdefault(shortened, [])
-            if len(sharing) < _SLIPS.compared:
+            if len(sharing) < _LIMITS.compared:
                 sharing.append(name)
     for name in rare_names:
         candidates = {
@@ -98,13 +100,15 @@ def near_names(
 
 
 def _spelling_variants(counts: dict[str, int], known_words: Collection[str]) -> Iterator[tuple[str, str]]:
-    """Yield pairs of names that differ only in doubled letters, capitals and blanks.
+    """Yield pairs of names that differ only in doubled letters, capitals, blanks and hyphens.
 
-    The second name is the usual one: it has only known words, or else it is the most frequent.
+    The second name is the usual one: it has only known words, or else it is the most frequent. Short names
+    must also agree in their doubled letters. A name is short if it has less than five letters when a doubled
+    letter counts once.
     """
     spellings: dict[str, list[str]] = {}
     for name in counts:
-        if len(name) <= _SLIPS.name_letters:
+        if len(name) <= _LIMITS.name_letters:
             spellings.setdefault(without_doubles(name), []).append(name)
     for skeleton, names in spellings.items():
         if len(names) < 2:
@@ -112,28 +116,30 @@ def _spelling_variants(counts: dict[str, int], known_words: Collection[str]) -> 
         usual = max(names, key=lambda name: (not _has_unknown_word(name, known_words), counts[name]))
         for name in names:
             if name != usual and (
-                len(skeleton) >= _SLIPS.long or without_separators(name) == without_separators(usual)
+                len(skeleton) >= _LIMITS.long or without_separators(name) == without_separators(usual)
             ):
                 yield name, usual
 
 
 def _deletion_neighbourhood(name: str) -> Iterable[str]:
     """Return a name and all texts that lack one of its letters; nothing for a name that is too long."""
-    if len(name) > _SLIPS.name_letters:
+    if len(name) > _LIMITS.name_letters:
         return ()
     return {name, *(name[:position] + name[position + 1 :] for position in range(len(name)))}
 
 
 def near_word(word: str, deletions: Mapping[str, Iterable[str]], verbs: bool) -> str | None:
-    """Return the known word that is probably meant by an unknown word, else ``None``.
+    """Return the known word that is probably meant by an unknown word.
 
-    ``deletions`` is the :func:`deletion_index` of the known words. With ``verbs``, endings of verbs are no
-    slips.
+    ``deletions`` is the :func:`deletion_index` of the known words. If the word with ``ed`` behind it is
+    known, that word is meant. With ``verbs``, other endings of verbs are no slips. Return ``None`` if no
+    known word is similar, or if the word has less than 4 or more than 60 letters.
     """
-    if not _SLIPS.medium <= len(word) <= _SLIPS.name_letters:
+    if not _LIMITS.medium <= len(word) <= _LIMITS.name_letters:
         return None
-    if word + "ed" in deletions:
-        return word + "ed"
+    past_form = f"{word}ed"
+    if past_form in deletions.get(past_form, ()):
+        return past_form
     candidates = {
         other for shortened in _deletion_neighbourhood(word) for other in deletions.get(shortened, ())
     }
@@ -145,14 +151,14 @@ def near_word(word: str, deletions: Mapping[str, Iterable[str]], verbs: bool) ->
 
 
 def deletion_index(words: Iterable[str]) -> dict[str, list[str]]:
-    """Return the words by each text in their deletion neighbourhoods.
+    """Return, by text, the words that have this text in their deletion neighbourhoods.
 
-    The neighbourhood of a word is the word and all texts that lack one of its letters. Short words are left
-    out.
+    The neighbourhood of a word is the word and all texts that lack one of its letters. Words of less than
+    four letters are left out.
     """
     deletions: dict[str, list[str]] = {}
     for word in words:
-        if len(word) >= _SLIPS.medium:
+        if len(word) >= _LIMITS.medium:
             for shortened in _deletion_neighbourhood(word):
                 deletions.setdefault(shortened, []).append(word)
     return deletions
@@ -197,25 +203,25 @@ def _is_slip(
     if known_words and (
         word in known_words or other in known_words or (rare in one_sided and frequent not in one_sided)
     ):
-        return word not in known_words and shortest >= _SLIPS.short
-    return counts[rare] <= _SLIPS.rare and _is_rare_enough(word, other, counts[rare], counts[frequent])
+        return word not in known_words and shortest >= _LIMITS.short
+    return counts[rare] <= _LIMITS.rare and _is_rare_enough(word, other, counts[rare], counts[frequent])
 
 
 def _is_rare_enough(word: str, other: str, rare: int, frequent: int) -> bool:
     """Whether a word is so much rarer than a similar word that it is probably a slip.
 
-    ``rare`` and ``frequent`` are the numbers of mentions of the names with these words. The ratio that is
-    needed depends on the length of the words and on their difference: swapped letters, a changed letter, or a
-    missing one.
+    ``rare`` and ``frequent`` are the numbers of mentions of the names with these words. How many times more
+    frequent the other name must be depends on the length of the words and on their difference: swapped
+    letters, a changed letter, or a missing one.
     """
     # Short words, and words with another letter, are mostly words of their own: dip, drip; batter, butter.
     shortest, ratio = min(len(word), len(other)), frequent / rare
-    if frequent < _SLIPS.ratio:
+    if frequent < _LIMITS.ratio:
         return False
     if sorted(word) == sorted(other):  # letters have changed places
-        return shortest >= _SLIPS.medium and ratio >= _SLIPS.ratio
+        return shortest >= _LIMITS.medium and ratio >= _LIMITS.ratio
     if len(word) == len(other):
-        return shortest >= _SLIPS.long and ratio >= _SLIPS.high_ratio and rare <= _SLIPS.very_rare
-    if ratio >= _SLIPS.highest_ratio:
-        return shortest >= _SLIPS.short
-    return shortest >= _SLIPS.long and ratio >= _SLIPS.ratio
+        return shortest >= _LIMITS.long and ratio >= _LIMITS.high_ratio and rare <= _LIMITS.very_rare
+    if ratio >= _LIMITS.highest_ratio:
+        return shortest >= _LIMITS.short
+    return shortest >= _LIMITS.long and ratio >= _LIMITS.ratio

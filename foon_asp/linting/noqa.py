@@ -33,7 +33,7 @@ def silencing_comment(code: str) -> str:
     return f"# noqa: {code}"
 
 
-def unsilenced(context: Context) -> Iterator[Diagnostic]:
+def unsilenced_findings(context: Context) -> Iterator[Diagnostic]:
     """Yield the findings of the context that no comment silences."""
     comments = {sheet.file: _noqa_comments(sheet) for sheet in _commented_sheets(context)}
     for finding in context.findings:

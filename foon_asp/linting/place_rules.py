@@ -27,7 +27,9 @@ def find_unheld_objects(context: Context) -> Iterator[Diagnostic]:
 def unheld_nodes(side: Side, habits: Habits) -> FaultyNodes:
     """Yield each food that is in a container whose contents do not list it, with the message.
 
-    A container with several such foods is skipped, and so is one whose label is not unique on this side.
+    Skipped are containers with several such foods, containers whose label is not unique on this side, and
+    containers that are ingredients themselves. Also skipped are foods that another node contains, and foods
+    that share a word with the contents.
     """
     for holder in side.nodes:
         contents = content_names(holder)
@@ -82,7 +84,9 @@ def find_objects_in_other_places(context: Context) -> Iterator[Diagnostic]:
 def misplaced_nodes(side: Side, labels: Collection[str], habits: Habits) -> FaultyNodes:
     """Yield the nodes in or on an object that this side does not list, if another node contains them.
 
-    With each node comes the message. ``labels`` are those of all nodes of the network.
+    With each node comes the message. ``labels`` are those of all nodes of the network; the object must have
+    one of them. A node is skipped if the object or the containing node is an ingredient, if both share a
+    word, or if the containing node is in or on the object.
     """
     labels_of_side = {node.label for node in side.nodes}
     for node in side.nodes:
@@ -111,7 +115,7 @@ def misplaced_nodes(side: Side, labels: Collection[str], habits: Habits) -> Faul
 
 
 def _places_are_usual(context: Context) -> bool:
-    """Whether the files mostly state for an object among contents that it is in or on the container.
+    """Whether the files mostly state for an object among contents a relation to its container.
 
     That is, more than twice as often as they state no relation for it.
     """
@@ -128,8 +132,9 @@ def _places_are_usual(context: Context) -> bool:
 def _unplaced_foods(side: Side, places: Collection[str], habits: Habits) -> FaultyNodes:
     """Yield each food without a stated place that exactly one node of this side contains, with the message.
 
-    ``places`` are the labels that may be places. A food is skipped if it is the only content, and the other
-    side of the unit has it in that place: then the unit puts it there.
+    ``places`` are the labels that may be places; the containing node must have one of them. If the food is
+    the only content, and the other side of the unit states that it is in the container, the unit puts it
+    there, and the food is skipped.
     """
     for node in side.nodes:
         if node.relations or node.contents or node.label not in habits.foods:
@@ -150,7 +155,7 @@ def _unplaced_foods(side: Side, places: Collection[str], habits: Habits) -> Faul
 def inputs_placed_in_outputs(side: Side) -> FaultyNodes:
     """Yield each node in or on an object that only the other side lists, with the beginning of a message.
 
-    Called with the inputs of a unit. Each such object is reported once.
+    ``side`` are the inputs of a unit. Each such object is reported once.
     """
     own_labels, other_labels = ({node.label for node in nodes} for nodes in (side.nodes, side.others))
     for node in side.nodes:

@@ -172,7 +172,10 @@ def find_spaces_for_tabs(context: Context) -> Iterator[Diagnostic]:
 
 
 def _flag_after_space_findings(sheet: Sheet) -> Iterator[Diagnostic]:
-    """Yield a finding for each name of a sheet that ends in a space and a probable motion flag, 0 or 1."""
+    """Yield a finding for each name of a sheet that ends in a space and a probable motion flag, 0 or 1.
+
+    It is probably a flag if other lines have flags, or if the name without it is also in the sheet.
+    """
     labels = {line.label: line.fields for line, _, _ in sheet.distinct_lines if isinstance(line, ObjectLine)}
     flagged = any(labels.values())
     for line, index, _ in sheet.distinct_lines:

@@ -27,7 +27,7 @@ def _is_doubtful(remark: Diagnostic, vocabulary: Vocabulary, reader: FoonReader)
     """Whether the reader may have guessed the wrong kind of bracket for a mixed pair such as ``[a}``.
 
     False for other remarks. Braces are certain for a list, and after the word ``contains``. Any other guess
-    is doubtful, unless the vocabulary usually has this kind of bracket after the word.
+    is certain only if the vocabulary usually has this kind of bracket after the word.
     """
     if remark.code != "bracket" or "wrong bracket" not in remark.message:
         return False
@@ -41,7 +41,7 @@ def _is_doubtful(remark: Diagnostic, vocabulary: Vocabulary, reader: FoonReader)
 
 
 def _mending_fix(remark: Diagnostic, reader: FoonReader) -> str | None:
-    """Return the fix of a remark, or ``None`` if it has none that repairs the line.
+    """Return the fix of a remark. Return ``None`` if it has none, or one that does not repair the line.
 
     A fix does not repair a line if the reader makes the same remark on the fixed line. The fix of a missing
     separator is the line with ``//`` below it.

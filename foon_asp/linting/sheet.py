@@ -25,7 +25,7 @@ _QUOTED = re.compile(r'"((?:[^"\\]|\\(?:["\\/bfnrt]|u[0-9a-fA-F]{4}))*+)("?)')
 class Entry(NamedTuple):
     """An entry of a kitchen or of a list of goals.
 
-    ``object_index`` is the index of its object line, ``amount`` its stated amount or ``None``.
+    ``object_index`` is the index of its object line. ``amount`` is the stated amount; ``None`` without one.
     """
 
     pattern: NodePattern
@@ -115,7 +115,10 @@ class Sheet:
         return [block for block in self.written_blocks(0) if block and len(block.attributes) > 1]
 
     def written_blocks(self, start: int) -> Iterator[WrittenBlock | None]:
-        """Yield the objects from a line on, as they are written, and ``None`` where a unit ends."""
+        """Yield the objects from a line on, as they are written, and ``None`` at each ``//``.
+
+        ``start`` is the index of the line.
+        """
         block: WrittenBlock | None = None
         for number in range(start, len(self.lines)):
             text = self.lines[number]
@@ -149,7 +152,8 @@ class Sheet:
     def finding(self, message: str, index: int, name: str = "", column: int = 1) -> Diagnostic:
         """Return a finding about the line at an index; the rule adds its code and severity.
 
-        The column is that of ``name`` in the line, or else ``column``, from 1.
+        The column is that of ``name`` in the line; without a name it is ``column``, from 1. For JSON, the
+        place is that of the quoted name, or else where the unit or entry begins.
         """
         if self.places is not None:
             source, line = self._quoted_place(index, name)
@@ -187,7 +191,7 @@ class Sheet:
 
 
 def _column_of_name(line: str, name: str) -> int:
-    """Return the column of a name in a line, from 1.
+    """Return the column of a name in a line, from 1; 1 if the line does not have the name.
 
     Whole names come first: ``rice`` is not found within ``rice vinegar`` if it also stands alone.
     """

@@ -82,7 +82,8 @@ def _amounts_without_unit(sheet: Sheet, context: Context, unknown: Collection[st
 def find_missing_rates(context: Context) -> Iterator[Diagnostic]:
     """Each motion of the network needs a rate in `motion.txt`.
 
-    If one is missing, no success rate of a tree can be computed, and a question about it is an error.
+    If one is missing, no success rate of a tree can be computed, and a question about it is an error. A
+    single finding for each table names the first three.
     """
     for sheet in context.files.tables:
         rows = _first_rows(sheet)

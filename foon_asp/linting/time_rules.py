@@ -28,7 +28,7 @@ class _Clock(NamedTuple):
 
     @classmethod
     def of(cls, match: re.Match[str], group: int = 0) -> "_Clock":
-        """Return the time that a group of a match has, ``m:ss`` or ``h:mm:ss``."""
+        """Return the time in a group of a match, which is written ``m:ss`` or ``h:mm:ss``."""
         seconds = 0
         for number in match[group].split(":"):
             seconds = 60 * seconds + int(number)
@@ -38,11 +38,13 @@ class _Clock(NamedTuple):
 class _Step(NamedTuple):
     """A unit with times in one sheet.
 
-    ``unit`` is its id, ``motion`` the index of its motion line. ``spans`` are pairs of a start and an end.
+    ``unit``: the id of the unit.
+    ``motion_index``: the index of its motion line.
+    ``spans``: pairs of a start and an end.
     """
 
     unit: int
-    motion: int
+    motion_index: int
     spans: list[tuple[_Clock, _Clock]]
 
     @property
@@ -57,7 +59,7 @@ class _Step(NamedTuple):
 
 
 def _timed_sheets(context: Context) -> Iterator[tuple[Sheet, list[_Step], dict[int, tuple[str, int]]]]:
-    """Yield each sheet with times, its steps with times, and the result of :func:`_odd_times` about them."""
+    """Yield each sheet with times, its steps with times, and its unlikely times (see :func:`_odd_times`)."""
     for sheet, copies in zip(context.sheets, context.files.copies_by_sheet, strict=True):
         steps = list(_timed_steps(sheet, copies))
         if steps:
@@ -97,8 +99,8 @@ def find_unlikely_times(context: Context) -> Iterator[Diagnostic]:
     are `m:ss`. There the last number is usually a fraction of a second, and the time is read as hours.
     """
     for sheet, _, odd in _timed_sheets(context):
-        for motion, (message, column) in odd.items():
-            yield sheet.finding(message, motion, column=column)
+        for motion_index, (message, column) in odd.items():
+            yield sheet.finding(message, motion_index, column=column)
 
 
 def _odd_times(steps: list[_Step]) -> dict[int, tuple[str, int]]:
@@ -141,7 +143,7 @@ def _odd_times(steps: list[_Step]) -> dict[int, tuple[str, int]]:
             faults = ((clock_fault(start), start), (clock_fault(end), end), (span_fault(start, end), end))
             for message, clock in faults:
                 if message:
-                    odd_times.setdefault(step.motion, (message, clock.column))
+                    odd_times.setdefault(step.motion_index, (message, clock.column))
     return odd_times
 
 
@@ -154,7 +156,7 @@ def find_steps_out_of_order(context: Context) -> Iterator[Diagnostic]:
     network = context.network
     for sheet, steps, odd in _timed_sheets(context):
         makers: dict[int, _Step] = {}
-        for step in (step for step in steps if step.motion not in odd):
+        for step in (step for step in steps if step.motion_index not in odd):
             inputs = network.inputs[step.unit]
             seconds, node = max(
                 ((makers[node].earliest_start.seconds, node) for node in inputs if node in makers),
@@ -162,12 +164,12 @@ def find_steps_out_of_order(context: Context) -> Iterator[Diagnostic]:
             )
             if seconds > step.latest_end.seconds:
                 maker = makers[node]
-                line = sheet.line_name(maker.motion, sheet)
+                line = sheet.line_name(maker.motion_index, sheet)
                 message = (
                     f"the step ends at {step.latest_end.text}, and uses {str(network.objects[node])!r}, "
                     f"which {network.motions[maker.unit]!r} ({line}) begins to make at "
                     f"{maker.earliest_start.text}; is one of the times wrong?"
                 )
-                yield sheet.finding(message, step.motion, column=step.earliest_start.column)
+                yield sheet.finding(message, step.motion_index, column=step.earliest_start.column)
             for node in set(network.outputs[step.unit]).difference(inputs):
                 makers[node] = min(makers.get(node, step), step, key=lambda maker: maker.earliest_start)

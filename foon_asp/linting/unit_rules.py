@@ -6,7 +6,7 @@ from operator import eq
 
 from foon_asp.linting.context import Context
 from foon_asp.linting.linted_files import Copy
-from foon_asp.linting.names import times
+from foon_asp.linting.names import times_text
 from foon_asp.linting.rule import NOTE, WARNING, rule
 from foon_asp.linting.sheet import Sheet
 from foon_asp.network import Contents, Relation
@@ -73,7 +73,7 @@ def find_repeated_objects(context: Context) -> Iterator[Diagnostic]:
 
 
 def _repeated_nodes(context: Context, copy: Copy) -> Iterator[Diagnostic]:
-    """Yield a finding for each node that one side of a copy of a unit has already listed."""
+    """Yield a finding for each node that a side of a copy of a unit lists again."""
     sheet = context.sheets[copy.sheet]
     for side, blocks in zip(("inputs", "outputs"), context.node_lines(copy), strict=True):
         firsts: dict[object, int] = {}
@@ -111,7 +111,7 @@ def _clashes(
 ) -> Iterator[tuple[str, _Attribute, _Attribute, list[int]]]:
     """Yield the label of an object, two clashing attributes, and the indices of lines with the second one.
 
-    Each label with its two attributes is yielded once. ``is_clash`` compares an earlier with a later
+    Each label with its two attributes is yielded once. ``is_clash`` is asked with an earlier and a later
     attribute of one object.
     """
     lines_by_clash: dict[tuple[str, _Attribute, _Attribute], list[int]] = {}
@@ -127,7 +127,7 @@ def _clashes(
 
 def _first_line_finding(sheet: Sheet, message: str, indices: list[int]) -> Diagnostic:
     """Return a finding about the first of the lines at ``indices``; the message says how many there are."""
-    count = f" ({times(len(indices))} in this file)" if len(indices) > 1 else ""
+    count = f" ({times_text(len(indices))} in this file)" if len(indices) > 1 else ""
     return sheet.finding(message + count, indices[0])
 
 

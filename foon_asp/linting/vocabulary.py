@@ -90,7 +90,10 @@ class Vocabulary:
 
     @cached_property
     def _deletion_indexes(self) -> dict[Kind, dict[str, list[str]]]:
-        """The :func:`deletion_index` of the words in the names of each kind."""
+        """By kind of name, the :func:`deletion_index` of the words in its names.
+
+        States and motions share an index. For each word in ed, the word with un before it is indexed as well.
+        """
         indexes = {}
         for kind in Kind:
             kinds = (Kind.STATE, Kind.MOTION) if kind in {Kind.STATE, Kind.MOTION} else (kind,)
@@ -102,7 +105,7 @@ class Vocabulary:
     def find_slip(self, kind: Kind, name: str) -> tuple[str, str] | None:
         """Return the first unknown word of a name that is probably a slip, and the known word that is meant.
 
-        ``None`` if the name is known, or has no such word.
+        Return ``None`` if the name is known, or has no such word.
         """
         if name in self.names[kind]:
             return None
@@ -130,9 +133,10 @@ class Vocabulary:
         return dict(sorted(counts.items(), key=lambda entry: -entry[1]))
 
     def usual_bracket(self, word: str) -> Bracket | None:
-        """Return the kind of bracket that nearly always follows a word, or ``None``.
+        """Return the kind of bracket that nearly always follows a word.
 
-        It follows the word on at least three lines, and ten times as often as the other kind.
+        It follows the word on at least three lines, and ten times as often as the other kind. Return ``None``
+        if no kind does.
         """
         for bracket, occurrences in self.brackets(word).items():
             others = sum(self.brackets(word).values()) - occurrences

@@ -53,8 +53,8 @@ def check_suffix(file: Path) -> None:
 def write_chart(file: Path, title: str, height: float, draw: "Callable[[Figure, Axes], None]") -> None:
     """Write a chart to a file, as SVG or PNG by its suffix; ``draw`` fills the figure and its axes.
 
-    ``height`` is in inches. The file is written completely or not at all. Raises :class:`UserError` for
-    another suffix, and if matplotlib is not installed.
+    The chart is as wide as a printed page; ``height`` is in inches. The file is written completely or not at
+    all. Raises :class:`UserError` for another suffix, and if matplotlib is not installed.
     """
     check_suffix(file)
     picture = BytesIO()
@@ -86,5 +86,8 @@ def new_figure(width: float, height: float, **options: Any) -> "Iterator[Figure]
 
 
 def missing_package_error(error: object) -> UserError:
-    """Return the error that a picture needs a package which is not installed, and how to install it."""
+    """Return the error that a picture needs a package which is not installed; it says how to install it.
+
+    ``error`` is the reason, in parentheses.
+    """
     return UserError(f"a picture needs more packages ({error}): pip install 'foon-asp[pictures]'")

@@ -37,7 +37,7 @@ def write_comparison_chart(comparisons: Sequence[Comparison], conditions: str, f
 def _draw_boxes(comparisons: Sequence[Comparison], figure: "Figure", axes: "Axes") -> None:
     """Draw the box and the points of each search; below it stand its name and statistics.
 
-    The figure gets wider for many searches.
+    A search without points gets no box. The figure gets wider for many searches.
     """
     trees: dict[str, list[tuple[float, Verdict]]] = {}
     for comparison in comparisons:
@@ -87,5 +87,8 @@ def _draw_boxes(comparisons: Sequence[Comparison], figure: "Figure", axes: "Axes
 def _draw_points(
     axes: "Axes", xs: Sequence[float], ys: Sequence[float], colors: Sequence[str], label: str | None = None
 ) -> None:
-    """Draw points with an outline, in their colors; ``label`` is their name in the legend."""
+    """Draw points with an outline, in their colors.
+
+    ``label`` is their name in the legend; ``None`` for no entry there.
+    """
     axes.scatter(xs, ys, 14, colors, edgecolors=_BLUE, linewidths=0.7, label=label)

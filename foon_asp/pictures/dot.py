@@ -40,7 +40,7 @@ _POINT_DEFAULTS = f"""\
 
 
 def dot_text(drawing: Drawing) -> str:
-    """Return a drawing in DOT, from top to bottom.
+    """Return a drawing in DOT, from top to bottom, with a legend.
 
     A network of more than :data:`BOXED_UNITS` units is drawn by :func:`graph_text`.
     """
@@ -89,7 +89,10 @@ def _legend_lines(drawing: Drawing) -> Iterator[str]:
 
 
 def _node_line(box: Box, label: Sequence[str], attributes: str) -> str:
-    """Return the line of a box in DOT; its class is its role and the number of its head lines."""
+    """Return the line of a box in DOT; its class is its role and the number of its head lines.
+
+    ``label`` are the lines of its label.
+    """
     class_ = f"{box.role.replace(' ', '-')} head{len(box.head)}"
     return f'  {box.name} [label={_quoted_lines(label)}, class="{class_}", {attributes}]'
 

@@ -25,9 +25,10 @@ class Role(StrEnum):
 class Box(NamedTuple):
     """A box of a drawing: a motion, or an object node.
 
-    ``name`` identifies the box in arrows. ``label`` is the motion, or the label of the object node. ``node``
-    is the object node, ``None`` for a motion. ``unit`` is the id of the unit of a motion in the graph of a
-    network, else ``None``.
+    ``name``: identifies the box in arrows.
+    ``label``: the motion, or the label of the object node.
+    ``node``: the object node; ``None`` for a motion.
+    ``unit``: for a motion in the graph of a network, the id of its unit; otherwise ``None``.
     """
 
     name: str
@@ -56,8 +57,10 @@ class Box(NamedTuple):
 class Drawing(NamedTuple):
     """Boxes and arrows under a caption.
 
-    An arrow is a pair of names of boxes, from tail to head. ``caption`` has one line or more. ``graph`` is
-    true for the graph of a network, in which every object node is one box, and false for a tree or plan.
+    ``caption``: one line or more.
+    ``arrows``: pairs of names of boxes, from tail to head.
+    ``graph``: true for the graph of a network, in which every object node is one box; false for a tree or
+    plan.
     """
 
     caption: tuple[str, ...]
@@ -80,8 +83,8 @@ def draw_tree(
 ) -> Drawing:
     """Return the drawing of a task tree; arrows lead from the achiever of a node to its consumers.
 
-    Units are numbered in the order of ``units``. ``add_effects`` are the outputs that each unit makes under
-    the container rule; ``None`` stands for all outputs.
+    Units are numbered in the order of ``units``, from 1. ``add_effects``: for each unit, the outputs that it
+    makes under the container rule; ``None`` if each makes all its outputs.
 
     A kitchen item is a separate box at every use, since one shared box of the knife would connect everything.
     A by-product is a separate box, too. An output is a by-product in three cases: it is neither a goal nor an
@@ -112,12 +115,16 @@ def draw_plan(
     kitchen: Collection[ObjectNode],
     caption: Iterable[str],
 ) -> Drawing:
-    """Return the drawing of a plan in which items are used up.
+    """Return the drawing of a plan in which items are used up; units are numbered from 1.
 
     A node may have several copies. A copy is identified by its node and the position of the step that made
-    it, from 0; the position is ``None`` for the kitchen. ``sources`` are these positions for the inputs of
-    each unit, and ``goal_sources`` for the goals. A copy that a step makes and a later step or a goal takes
-    is one box. All other copies are separate boxes.
+    it, from 0. The position is ``None`` for the kitchen, and -1 if nothing makes the node.
+
+    ``sources``: for each unit, these positions by input.
+    ``goal_sources``: these positions by goal.
+
+    A copy that a step makes and a later step or a goal takes is one box, and so is a node that nothing makes.
+    All other copies are separate boxes.
     """
     canvas = _Canvas(kitchen, goal_sources.keys())
     consumed = {copy for step in (*sources, goal_sources) for copy in step.items()}
@@ -178,7 +185,8 @@ class _Canvas:
     def shared_box(self, node: ObjectNode, achiever: int | None = None) -> str:
         """Return the name of the one box of a node, which is added at the first call.
 
-        With ``achiever``, it is the box of the copy that this step makes.
+        Its role is goal, kitchen item or object, the first that fits. With ``achiever``, it is the box of the
+        copy that the step at this position makes.
         """
         if (node, achiever) not in self._names:
             role = Role.OBJECT
@@ -191,14 +199,14 @@ class _Canvas:
 
     def finished_drawing(self, caption: Iterable[str]) -> Drawing:
         """Return the drawing with all boxes and arrows that were added."""
-        return Drawing(tuple(map(printable, caption)), tuple(self._boxes), tuple(self.arrows))
+        return Drawing(tuple(map(replace_unprintable, caption)), tuple(self._boxes), tuple(self.arrows))
 
 
 def _wrapped_lines(text: str, width: int) -> tuple[str, ...]:
     """Return the lines of a text wrapped at ``width`` letters; an empty text is one empty line."""
-    return tuple(wrap(printable(text), width)) or ("",)
+    return tuple(wrap(replace_unprintable(text), width)) or ("",)
 
 
-def printable(text: str) -> str:
-    """Return a text in which characters that are invisible, misleading or forbidden in XML are replaced."""
+def replace_unprintable(text: str) -> str:
+    """Return a text with U+FFFD for every character that is invisible, misleading or forbidden in XML."""
     return _NONCHARACTERS.sub("\ufffd", UNSAFE.sub("\ufffd", text))

@@ -21,7 +21,7 @@ class PlottedFront(NamedTuple):
 
     ``goals``: the labels of the goals, as text.
     ``conditions``: container rule and level, as text.
-    ``points``: the costs of each tree by each of the ``objectives``.
+    ``points``: for each tree, its cost by each of the ``objectives``.
     ``complete``: whether the front has no other points.
     """
 
@@ -35,10 +35,11 @@ class PlottedFront(NamedTuple):
 def write_front_chart(front: PlottedFront, file: Path) -> None:
     """Write the chart of a front with at least one point, as SVG or PNG by the suffix of the file.
 
-    Two objectives are the axes, ``success`` on the vertical one. Of three objectives, the additive one with
-    the fewest values makes a series of points for each value. The line of a series is the front of all points
-    with at most its value. An incomplete front has no lines, since a line claims that no tree is beyond it.
-    Raises :class:`UserError` as :func:`foon_asp.pictures.chart.write_chart` does.
+    Two objectives are the axes, ``success`` on the vertical one. A third objective divides the points into
+    series, one for each of its values; it is the additive objective with the fewest values. The line of a
+    series is the front of all points with at most the value of the series. An incomplete front has no lines,
+    since a line claims that no tree is beyond it. Raises :class:`UserError` as
+    :func:`foon_asp.pictures.chart.write_chart` does.
     """
     columns = dict(zip(front.objectives, zip(*front.points, strict=True), strict=True))
     additive = [objective for objective in front.objectives if not multiplies(objective)]

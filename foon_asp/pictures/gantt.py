@@ -14,13 +14,16 @@ class Gantt(NamedTuple):
     makespan: Fraction
 
     @property
-    def in_order(self) -> list[TimedStep]:
-        """The steps, by start, then by end, then by step."""
+    def sorted_rows(self) -> list[TimedStep]:
+        """The rows, by start, then by end, then by step."""
         return sorted(self.rows, key=lambda row: (row.start, row.end, row.step))
 
 
 def time_text(seconds: Fraction) -> str:
-    """Return seconds as ``M:SS``, or ``H:MM:SS`` from an hour on, with at most three decimals."""
+    """Return seconds as ``M:SS``, or ``H:MM:SS`` from an hour on, rounded to three decimals.
+
+    Zeros at the end of the decimals are left out: ``1:30.5``.
+    """
     whole_seconds, milliseconds = divmod(round(seconds * 1000), 1000)
     total_minutes, second = divmod(whole_seconds, 60)
     hour, minute = divmod(total_minutes, 60)

@@ -36,7 +36,7 @@ def _draw_bars(gantt: Gantt, figure: "Figure", axes: "Axes") -> None:
 
     Each agent has a color; steps without an agent are hatched.
     """
-    rows = gantt.in_order
+    rows = gantt.sorted_rows
     agents = sorted({row.agent for row in rows}, key=lambda agent: (agent is None, agent))
     for agent in agents:
         style = _PASSIVE_LOOK if agent is None else {"facecolor": f"C{agent - 1}", "edgecolor": "white"}
@@ -55,10 +55,10 @@ def _draw_bars(gantt: Gantt, figure: "Figure", axes: "Axes") -> None:
 
 
 def _tick_times(makespan: Fraction) -> list[Fraction]:
-    """Return the times of the ticks on the axis, in seconds: at most nine.
+    """Return the times of the ticks on the axis, in seconds from 0: at most nine.
 
-    Their interval is a round number of seconds, minutes, hours or days. It is a quarter of a makespan of up
-    to 2 seconds.
+    Their interval is a round number of seconds, minutes, hours or days. If the makespan is at most 2 seconds,
+    their interval is a quarter of it.
     """
     min_interval = makespan / 8  # more labels would overlap
     days = Fraction(86400 * (min_interval // 86400 + 1))

@@ -2,7 +2,7 @@
 
 from xml.etree import ElementTree
 
-from foon_asp.pictures.drawing import Box, Drawing, printable
+from foon_asp.pictures.drawing import Box, Drawing, replace_unprintable
 
 
 def graphml_text(drawing: Drawing) -> str:
@@ -17,7 +17,7 @@ def graphml_text(drawing: Drawing) -> str:
     for box in drawing.boxes:
         element = ElementTree.SubElement(graph, "node", id=box.name)
         for name, value in _attributes(box).items():
-            ElementTree.SubElement(element, "data", key=name).text = printable(str(value))
+            ElementTree.SubElement(element, "data", key=name).text = replace_unprintable(str(value))
     for tail, head in drawing.arrows:
         ElementTree.SubElement(graph, "edge", source=tail, target=head)
     ElementTree.indent(root)
@@ -25,7 +25,7 @@ def graphml_text(drawing: Drawing) -> str:
 
 
 def _attributes(box: Box) -> dict[str, object]:
-    """Return the GraphML attributes of a box: label and kind, and more for its sort.
+    """Return the GraphML attributes of a box: its label, its role as ``kind``, and those of its sort.
 
     A motion has the id of its unit, if it has one. An object node has its states, and itself in one-line
     notation.

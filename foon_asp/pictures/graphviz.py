@@ -32,7 +32,7 @@ path+text, polygon+text,
 def svg_picture(drawing: Drawing) -> str:
     """Return a drawing as an SVG element, which can stand in a file by itself or in a page.
 
-    Raises :class:`UserError` for a drawing that is too large, and if Graphviz is not installed.
+    Raises :class:`UserError` for a drawing that is too large, if Graphviz is not installed, and if it fails.
     """
     svg = _run_graphviz(drawing, dot_text(drawing), "svg").decode()
     return svg[svg.index("<svg") :].replace('<g id="graph0"', _SVG_STYLE + '<g id="graph0"', 1)
@@ -49,7 +49,7 @@ def layout_json(drawing: Drawing) -> dict[str, Any]:
 
 
 def network_coordinates(drawing: Drawing) -> dict[str, tuple[float, float]]:
-    """Return x and y of each box of the drawing of a network, by its name, in units of the page.
+    """Return x and y of each box of the drawing of a network, by its name, in pixels of the page.
 
     Raises :class:`UserError` as :func:`svg_picture` does.
     """

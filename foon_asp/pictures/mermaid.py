@@ -30,7 +30,7 @@ def mermaid_markdown(drawing: Drawing) -> str:
 
 
 def _flowchart_lines(drawing: Drawing) -> Iterator[str]:
-    """Yield the parts of a flowchart, line by line: header, boxes, arrows, and a style for each role."""
+    """Yield the parts of a flowchart: its header with the caption, boxes, arrows, and a style by role."""
     # The header is YAML, which includes the strings of JSON.
     yield f"---\ntitle: {json_line(' | '.join(drawing.caption))}\n---"
     yield "flowchart TD"

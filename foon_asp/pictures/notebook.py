@@ -13,7 +13,7 @@ from foon_asp.pictures.graphviz import svg_picture
 def picture_bundle(value: object, drawing: Drawing) -> dict[str, str]:
     """Return the MIME bundle of a value: its ``repr``, and the drawing as SVG.
 
-    If the picture cannot be drawn, return that of :func:`page_bundle` without drawings.
+    If the picture cannot be drawn, return the bundle that :func:`page_bundle` returns without drawings.
     """
     try:
         return {"text/plain": repr(value), "image/svg+xml": svg_picture(drawing)}
@@ -24,7 +24,7 @@ def picture_bundle(value: object, drawing: Drawing) -> dict[str, str]:
 def page_bundle(value: object, drawings: Iterable[Drawing]) -> dict[str, str]:
     """Return the MIME bundle of a value: its ``repr``, and HTML of its text with pictures below.
 
-    If a picture cannot be drawn, no pictures are shown. Cells of a notebook show the HTML; lists of values
+    If one of the pictures cannot be drawn, none are shown. Cells of a notebook show the HTML; lists of values
     and consoles show the ``repr``.
     """
     blocks = [f"<pre>{html.escape(str(value))}</pre>"]

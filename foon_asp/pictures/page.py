@@ -34,8 +34,9 @@ _SCRIPTS = (
 class Page(NamedTuple):
     """A page of HTML.
 
-    ``title`` is its title, ``text`` is shown by browsers without scripts, and ``data`` is what its scripts
-    show.
+    ``title``: the title of the page.
+    ``text``: the text that browsers without scripts show.
+    ``data``: the data that the scripts of the page show.
     """
 
     title: str
@@ -99,5 +100,5 @@ def script_json(data: Json) -> str:
 
 
 def _replace_unsafe(text: str) -> str:
-    """Return a text in which invisible and misleading characters are replaced."""
+    """Return a text with U+FFFD for every invisible or misleading character."""
     return UNSAFE.sub("\ufffd", text)

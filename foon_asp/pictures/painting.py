@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def paint(drawing: Drawing, form: Literal["png", "pdf"]) -> bytes:
+def paint_drawing(drawing: Drawing, form: Literal["png", "pdf"]) -> bytes:
     """Return the bytes of a drawing as PNG or PDF, in the font of matplotlib.
 
     Raises :class:`UserError` for a drawing that is too large, and if Graphviz or matplotlib is not installed.
@@ -34,7 +34,8 @@ def paint(drawing: Drawing, form: Literal["png", "pdf"]) -> bytes:
 def _paint_elements(axes: "Axes", elements: Iterable[dict[str, Any]]) -> None:
     """Paint elements of a graph on axes, by the drawing operations in Graphviz' JSON of the graph.
 
-    Operations are those of Graphviz' output format xdot.
+    The operations are those of Graphviz' output format xdot. The class of an element, such as ``goal head2``,
+    says how many first lines of its text are bold.
     """
     from matplotlib.patches import Circle, PathPatch, Polygon  # noqa: PLC0415 (slow to import)
     from matplotlib.path import Path  # noqa: PLC0415

@@ -12,8 +12,8 @@ from foon_asp.proof.simulation import Verdict, simulate
 def plan_drawing(problem: Problem, units: Sequence[FunctionalUnit], caption: str = "") -> Drawing:
     """Return the drawing of a plan in which items are used up, with a caption below its title.
 
-    If ``caption`` is empty, the line says whether the plan executes, under which conditions, and how many
-    units it has.
+    If ``caption`` is empty, it says whether the plan executes, under which conditions, and how many units it
+    has.
     """
     replay = replay_for(problem, units)
     sources = [{copy.node: copy.made for copy in (*step.gone, *step.stayed)} for step in replay.steps]

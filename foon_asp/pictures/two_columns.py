@@ -83,7 +83,7 @@ def _difference_html(difference: UnitDifference) -> str:
 def _unit_html(unit: Unit | None, marked: set[tuple[str, str | None]]) -> str:
     """Return the HTML of a unit; names in ``marked``, each with its kind, are bold.
 
-    ``None`` is an empty cell.
+    For ``None``, return an empty cell.
     """
     if unit is None:
         return '<section class="none"></section>'
@@ -101,8 +101,8 @@ def _unit_html(unit: Unit | None, marked: set[tuple[str, str | None]]) -> str:
 def _node_html(node: Node, role: str, marked: set[tuple[str, str | None]]) -> str:
     """Return the HTML of a node in one-line notation.
 
-    It is all bold if the node itself, in its role of input or output, is in ``marked``. Else names in it that
-    are in ``marked`` are bold.
+    If the node itself, in its role of input or output, is in ``marked``, it is all bold. Otherwise the names
+    in it that are in ``marked`` are bold.
     """
     text = str(node)
     if (role, text) in marked:

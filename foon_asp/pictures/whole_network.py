@@ -42,8 +42,8 @@ class WholeNetwork(Value, frozen=True):
     def of(cls, problem: Problem) -> Self:
         """Return the whole network of a problem, with coordinates that Graphviz computes.
 
-        Raises :class:`UserError` for a network that is too large for a layout, and if Graphviz is not
-        installed.
+        An object that is in no unit is at (0, 0). Raises :class:`UserError` for a network that is too large
+        for a layout, and if Graphviz is not installed.
         """
         network = problem.network
         reached = reach(problem)

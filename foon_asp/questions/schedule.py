@@ -145,7 +145,7 @@ class Schedule(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("s
             return
         rows = [
             (str(step.step), time_text(step.start), time_text(step.end), str(step.agent or "-"), step.name)
-            for step in self.gantt.in_order
+            for step in self.gantt.sorted_rows
         ]
         yield from ("", Table(("step", "start", "end", "agent", ""), rows, left_aligned=frozenset({4})), "")
         for agent in range(1, self.agents + 1):

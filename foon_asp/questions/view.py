@@ -23,7 +23,7 @@ from foon_asp.pictures.graphml import graphml_text
 from foon_asp.pictures.mermaid import mermaid_markdown, mermaid_text
 from foon_asp.pictures.notebook import picture_bundle
 from foon_asp.pictures.page import Page
-from foon_asp.pictures.painting import paint
+from foon_asp.pictures.painting import paint_drawing
 from foon_asp.pictures.tree_drawing import network_drawing, tree_drawing
 from foon_asp.pictures.whole_network import WholeNetwork
 from foon_asp.problem import DEFAULT_RULE, ContainerRule, Objective, Problem, container_rule, levels
@@ -203,11 +203,11 @@ class View(Result, frozen=True):
 
     def png(self) -> bytes:
         """Return the picture as PNG."""
-        return paint(self._drawing_or_error(), "png")
+        return paint_drawing(self._drawing_or_error(), "png")
 
     def pdf(self) -> bytes:
         """Return the picture as PDF."""
-        return paint(self._drawing_or_error(), "pdf")
+        return paint_drawing(self._drawing_or_error(), "pdf")
 
     def mermaid(self) -> str:
         """Return the picture as a Mermaid flowchart."""

@@ -9,7 +9,8 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 class Connection(H11Protocol):  # type: ignore[misc]
     """A connection that closes when no complete request arrives in time, and when too many connections wait.
 
-    So no program that opens connections and sends nothing, or half of a request, locks the owner out.
+    So the owner is not locked out by a program that opens connections and sends nothing, or half of a
+    request.
 
     ``request_seconds``: the time limit for a request to arrive completely; with fewer, slow browsers are
     refused.
@@ -45,7 +46,7 @@ class Connection(H11Protocol):  # type: ignore[misc]
             self._start_timer()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Stop the timer of a connection that was closed."""
+        """Stop the timer once the connection is closed."""
         self._stop_timer()
         super().connection_lost(exc)
 
@@ -63,7 +64,7 @@ class Connection(H11Protocol):  # type: ignore[misc]
         self.transport.abort()
 
     def _start_timer(self) -> None:
-        """Close the connection after ``request_seconds`` from now, unless the timer is stopped before."""
+        """Begin to wait: the connection closes after ``request_seconds``, unless the timer is stopped."""
         self._stop_timer()
         self.waiting_since = self.loop.time()
         self._timer = self.loop.call_later(self.request_seconds, self.abort)

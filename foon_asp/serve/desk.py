@@ -31,8 +31,8 @@ Rules = tuple[Constraint, ...]
 class _EventReporter(Reporter):
     """A reporter that sends events to the browser.
 
-    It sends no progress after the first page. The progress of further answers, such as alternatives, would be
-    taken for that of the first.
+    It sends no progress after the first page, because the browser would take the progress of further answers,
+    such as alternatives, for that of the first.
     """
 
     def __init__(self, send_event: SendEvent) -> None:
@@ -64,13 +64,15 @@ class _EventReporter(Reporter):
 class Desk:
     """The side of the server that answers the questions of the page, one after the other.
 
-    All questions are about one set of data. Answers are sent as events. Events of kind ``progress``,
-    ``warning`` and ``without`` have a text, and those of kind ``page`` have the number of a page. Those of
-    kind ``error`` have a text and, for rules, positions in their text.
+    All questions are about the data of ``foon``. Answers are sent as events. Events of kind ``progress``,
+    ``warning`` and ``without`` have a text, and those of kind ``page`` have a text and the number of a page.
+    Those of kind ``error`` have a text and, for rules, positions in their text.
 
-    ``opening_form`` is the question that the page shows when it opens. Limits are for each question, in
-    seconds and bytes; ``None`` means no limit. Rules and encodings of ``settings`` hold for all questions.
-    The stock of ``used_up`` holds for questions in which items are used up.
+    ``opening_form``: the question that the page shows when it opens.
+    ``time_limit``, ``memory_limit``: the limits of each question, in seconds and bytes; ``None`` for no
+    limit.
+    ``settings``: rules, constants and encodings that hold for all questions.
+    ``used_up``: the stock, and the items that stay, in questions in which items are used up.
     """
 
     def __init__(
@@ -131,7 +133,7 @@ class Desk:
         return None if entry is None else entry[0].html()
 
     def cancel(self) -> None:
-        """Cancel the current question; it ends with its incumbent."""
+        """Cancel the current question; if it has an incumbent, that is its answer."""
         self._current_token.cancel()
 
     def next_token(self) -> Cancel:
@@ -143,8 +145,8 @@ class Desk:
     def answer_form(self, form: Form, token: Cancel, send_event: SendEvent) -> None:
         """Answer the question of a form with pages, once the question before it has ended.
 
-        ``token`` cancels the question. ``send_event`` receives an event for each page, for progress, and for
-        an error.
+        ``token`` cancels the question. ``send_event`` receives an event for each page, for progress, for
+        warnings and for an error. A form without goals or objectives is an error.
         """
 
         def answer(deadline: Deadline, _: _EventReporter) -> None:
@@ -170,7 +172,7 @@ class Desk:
     def _problem_of(self, form: Form) -> Problem:
         """Return the problem of a form, with the changes that the form makes to the kitchen.
 
-        If items are used up, the stock of the desk counts, too.
+        If items are used up, the stock of the desk counts, without the items that the form removes.
         """
         foon = self._foon.vary(adding=form.adding, without=form.without)
         stock = stays = None
@@ -185,8 +187,8 @@ class Desk:
     def answer_regret(self, form: RegretForm, token: Cancel, send_event: SendEvent) -> None:
         """Send the regret of a unit or kitchen item: how much worse the optimum is without it.
 
-        The tree on the page of the form has to be proved optimal. ``token`` and ``send_event`` are as for
-        :meth:`answer_form`.
+        It is sent as an event of kind ``without``. It is an error if the page of the form is no longer kept,
+        or if its tree is not proved optimal. ``token`` and ``send_event`` are as for :meth:`answer_form`.
         """
 
         def answer(deadline: Deadline, reporter: _EventReporter) -> None:

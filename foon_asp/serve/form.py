@@ -16,9 +16,12 @@ Question = TypeVar("Question", bound=msgspec.Struct)
 class Form(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A question for the best tree.
 
-    ``containers`` is the container rule. ``items`` says whether items are lasting or used up. ``adding`` and
-    ``without`` are kitchen items to add and to remove. ``rules`` is the text of rules. ``beside`` are further
-    answers that the page shows.
+    ``goals``, ``objectives``: their names; the first objective counts most.
+    ``containers``: the container rule.
+    ``items``: whether items are ``lasting`` or used up.
+    ``adding``, ``without``: kitchen items to add and to remove.
+    ``rules``: the text of rules.
+    ``beside``: further answers that the page shows.
     """
 
     goals: Names = ()

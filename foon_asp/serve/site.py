@@ -125,9 +125,10 @@ def _guard(app: Asgi, token: str, host: str) -> Asgi:
 def _refusal_status(
     method: str, path: str, headers: Mapping[str, list[str]], token: str, host: str
 ) -> int | None:
-    """Return the HTTP status with which a request is refused, or ``None`` for an authorized one.
+    """Return the HTTP status with which a request is refused; ``None`` for an authorized one.
 
-    ``headers`` are lists of values by names in small letters.
+    It is 421 for another host, 404 without the token, and 403 for a request from another site or a body that
+    is not JSON. ``headers`` are lists of values by names in small letters.
     """
     if headers.get("host") != [host]:
         return 421
@@ -146,9 +147,9 @@ async def _stream_events(
 ) -> Response:
     """Return the events of a question as a stream of JSON Lines.
 
-    ``read`` returns, from the body of the request, the function that answers the question. The question runs
-    in a thread, and is cancelled when the connection is closed. A body that is too long or no question gets
-    an error as a response.
+    ``read`` returns, from the body of the request, the function that answers the question. Before the
+    question begins, the current one is cancelled. The question runs in a thread, and is cancelled when the
+    connection is closed. A body that is too long or no question gets an error as a response.
     """
     body = b""
     async for chunk in request.stream():

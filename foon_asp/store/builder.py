@@ -35,11 +35,13 @@ from foon_asp.text.unit_price_list import UnitPriceList
 class StoreBuilder:
     """A builder that writes units into a new database; it merges copies of a unit and keeps all sources.
 
-    Nodes and units get the ids that :class:`~foon_asp.network.NetworkBuilder` would give them. ``kitchen``
-    are the entries of the kitchen file, or ``None`` without such a file. ``matched`` says of each entry
-    whether a node matches it. ``copy_count`` is the number of copies added so far. The ids of all nodes and
-    units are kept in memory, some 400 bytes for each. All writing is one transaction, which the caller
-    commits.
+    ``kitchen``: the entries of the kitchen file; ``None`` without such a file.
+    ``matched``: for each of these entries, whether a node added so far matches it.
+    ``copy_count``: the number of copies of units added so far.
+
+    Nodes and units get the ids that :class:`~foon_asp.network.NetworkBuilder` would give them. The ids of all
+    nodes and units are kept in memory, some 400 bytes for each. All writing is one transaction, which the
+    caller commits.
     """
 
     def __init__(self, database: sqlite3.Connection, kitchen: Sequence[ListedObject] | None) -> None:
@@ -113,9 +115,9 @@ class StoreBuilder:
     def final_outputs(self, units: Mapping[int, Source]) -> list[ListedObject]:
         """Return the final outputs of the last unit of each file, as entries of a goals file.
 
-        Final outputs are those that no unit needs; :func:`~foon_asp.text.assumed_goals.wanted_outputs` says
+        Final outputs are those that no unit needs; :func:`~foon_asp.text.assumed_goals.final_outputs` says
         which are returned if all are needed. ``units`` are the ids of the last units, each with its source.
-        Writes all waiting rows first.
+        An entry has the source of the first unit that makes it. Writes all waiting rows before it reads.
         """
         self._write_all_rows()
         statement = "SELECT inputs, outputs FROM unit WHERE id = ?"
@@ -146,6 +148,8 @@ class StoreBuilder:
         prices: UnitPriceList | None,
     ) -> None:
         """Write the remaining rows, the indexes, the starting kitchen and the digests.
+
+        Nothing can be added afterwards, as the ids are removed from memory.
 
         Parameters:
             goals: The entries of the goals file, or the assumed goals.
@@ -294,9 +298,9 @@ class StoreBuilder:
         return origin_id
 
     def _write_starting(self) -> None:
-        """Write the starting kitchen: the union of the starting kitchens of the files.
+        """Write the starting kitchen, which is the union of the starting kitchens of the files.
 
-        Marks its nodes, and records the files that grant a node although a unit of theirs makes it.
+        Marks its nodes, and records the files that grant a node although one of their units makes it.
         """
         for file in self._files.values():
             rows = self._database.execute(UNITS_OF_FILE, (file,))
@@ -309,7 +313,7 @@ class StoreBuilder:
                 self._insert("granted", o, file)
 
     def _insert(self, table: str, *row: Any) -> None:
-        """Add a row to those waiting for a table; when these are many, write them."""
+        """Add a row to those waiting for a table. Write the waiting rows once they are many."""
         waiting = self._rows.setdefault(table, [])
         waiting.append(row)
         if len(waiting) >= STORE.rows_per_write:

@@ -70,7 +70,10 @@ decode_ids = msgspec.json.Decoder(tuple[int, ...]).decode
 
 
 def decode_node(label: str, states: str, relations: str, contents: str) -> ObjectNode:
-    """Return the node of a row, whose attributes are as :func:`attribute_columns` returns them."""
+    """Return the node of a row, whose attributes are as :func:`attribute_columns` returns them.
+
+    Raises :class:`ValueError` or :class:`TypeError` for other attributes.
+    """
     return ObjectNode(
         label,
         _decode_states(states),
@@ -117,8 +120,8 @@ def _checked_name(value: object) -> str:
 def decode_number(text: str) -> Fraction:
     """Return the rate or price that a text states, such as ``3/4``.
 
-    Raises :class:`ValueError` for other texts, negative numbers, exponents, and for 4,000 letters or more.
-    Python cannot read integers of more than 4,300 digits.
+    Raises :class:`ValueError` for negative numbers, numbers with an exponent, and other texts. Also raises it
+    for 4,000 letters or more, since Python cannot read integers of more than 4,300 digits.
     """
     number = Fraction(text if len(text) < 4000 and "e" not in text.lower() else "")
     if number < 0:
@@ -127,7 +130,7 @@ def decode_number(text: str) -> Fraction:
 
 
 def encode_entry(entry: ListedObject) -> str:
-    """Return an entry of a kitchen or goals file as JSON, with its place and amount."""
+    """Return an entry of a kitchen or goals file as JSON, with its amount and its place without videos."""
     pattern, source, amount = entry
     parts = pattern.label, sorted(pattern.states), pattern.ingredients, pattern.container
     return encode_json([*parts, sorted(pattern.relations), pattern.contents, *source[:3], amount])

@@ -26,10 +26,12 @@ class Producers(Protocol):
 class Cone:
     """The units that goals can need, as far as they were read. Ids are those in the whole network.
 
-    ``units`` are the units that were read. ``open`` are needed nodes that are not ``available`` and whose
-    producers were not read yet. Of all other needed nodes, all producers were read, or the node is available.
     A node is needed if it is a goal, or if a unit of the cone needs it under the container rule with its
     ``utensils``.
+
+    ``units``: the units that were read.
+    ``open``: the needed nodes that are not ``available`` and whose producers were not read yet. Every other
+    needed node is available, or all its producers were read.
     """
 
     def __init__(
@@ -58,8 +60,8 @@ class Cone:
     def grow(self, objects: Iterable[int], max_units: int | None = None) -> None:
         """Read the units that make the open nodes among ``objects``, then the units that make their inputs.
 
-        This continues backwards, breadth first, and stops after about ``max_units`` more units; ``None``
-        means no limit. Nodes of which all producers were read are open no more.
+        This continues backwards, breadth first. ``max_units``: about how many units are added before it
+        stops; ``None`` for no limit. Nodes of which all producers were read are open no more.
         """
         queue = deque(objects)
         target_size = None if max_units is None else len(self.units) + max_units

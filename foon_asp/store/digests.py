@@ -38,8 +38,10 @@ def content_digests(
 ) -> dict[str, str]:
     """Return the SHA-256 digests of ``network``, ``kitchen`` and ``prices`` in hexadecimal, by these names.
 
-    They are equal to those of :meth:`foon_asp.proof.certificate_subject.Subject.digests`. ``motions`` are the
-    prices by motion, ``priced`` those of single units by id; ``None`` if there are none.
+    They are equal to those of :meth:`foon_asp.proof.certificate_subject.Subject.digests`.
+
+    ``motions``: the
+    prices by motion, ``priced``: the prices of single units by id; ``None`` if there are none.
     """
 
     def column(statement: str) -> Iterable[str]:

@@ -31,9 +31,11 @@ from foon_asp.text.unit_price_list import read_unit_prices
 class Imported(NamedTuple):
     """The result of an import.
 
-    ``copies`` is the number of units read; ``units`` and ``objects`` are the numbers of distinct units and
-    object nodes. ``left_out`` is the number of lines that were not understood. ``remarks`` are about motions
-    without a success rate and about nodes that a unit lists twice.
+    ``copies``: the number of units read.
+    ``units``, ``objects``: the numbers of distinct units and object nodes.
+    ``warnings``: the warnings about the files.
+    ``left_out``: the number of lines that were not understood.
+    ``remarks``: notes on motions without a success rate, and on nodes that a unit lists twice.
     """
 
     copies: int
@@ -48,8 +50,9 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
     """Read networks and the files beside them into a store, which replaces an older one at the end.
 
     With ``lenient``, lines that are not understood are left out. Raises :class:`InputError` for input that is
-    not understood. Raises :class:`UserError` if the store cannot be written, is being written by another
-    process, or would replace a file that is no store.
+    not understood. Raises :class:`UserError` if one of the networks is a store, or if the store cannot be
+    written. It cannot be written if its name does not end in ``.foon``, if another process is writing it, or
+    if it would replace a file that is no store.
     """
     if store.suffix != STORE_SUFFIX:
         raise UserError(f"{store}: the name of a store ends in {STORE_SUFFIX}")
@@ -66,7 +69,7 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
     counted_motions = {row.name[0] for row in amount_rows}
     counted_units: dict[FunctionalUnit, None] = {}  # those with a motion of the table
     prices = read_unit_prices(files.unit_prices) if files.unit_prices else None
-    earlier_warnings = len(warnings)
+    earlier_warning_count = len(warnings)
     last_units: dict[int, Source] = {}
     try:
         with _new_database(store) as database, without_garbage_collection():
@@ -82,7 +85,7 @@ def import_files(files: DataFiles, store: Path, lenient: bool = False) -> Import
                         counted_units[FunctionalUnit.of(motion, inputs, outputs)] = None
                 if last_unit:
                     last_units.setdefault(*last_unit)
-            reader.raise_errors(earlier_warnings)
+            reader.raise_errors(earlier_warning_count)
             goals_from = ""
             if files.goals is None:
                 goals, goals_from = _assumed_goals(reader, builder, last_units)

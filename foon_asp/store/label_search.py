@@ -12,7 +12,7 @@ from foon_asp.store.tuning import STORE
 def write_trigrams(database: sqlite3.Connection) -> None:
     """Fill the index of trigrams with all labels, each with a blank before and after it.
 
-    Does nothing if the database has no such index, because this SQLite cannot make one.
+    Does nothing if the database has no such index, which SQLite can make only with FTS5.
     """
     if database.execute("SELECT 1 FROM sqlite_master WHERE sql = ?", (TRIGRAMS,)).fetchone():
         rows = database.execute("SELECT id, name FROM label")

@@ -98,8 +98,8 @@ class Outline:
     def units_with_traits(self, traits: Iterable[Trait], kitchen: Mask) -> Mask:
         """Return the mask of the units that may have all of the traits.
 
-        Names are searched in the text of contents, so the mask may have further units. A node in the mask
-        ``kitchen`` does not count as made.
+        Names are searched in the text of contents, so the mask may have further units. ``kitchen`` is the
+        mask of the nodes that do not count for :attr:`.Role.MADE`.
         """
         mask = np.ones(len(self.motions), dtype=np.bool_)
         for role, word in traits:
@@ -130,12 +130,15 @@ class Outline:
     ) -> Distances:
         """Return the distance of each unit: its cost plus the largest distance of its inputs (``h_max``).
 
-        The distance of a node is the least one of its producers. The distance of ``available`` nodes and
-        ``free`` units is 0. The cost of another unit is that of its motion in ``costs``. A tree costs at
-        least the distance of each of its units.
+        The distance of a node is the least one of its producers. A tree costs at least the distance of each
+        of its units.
 
-        A distance above ``max_distance`` becomes :data:`FAR`. ``limit`` is called with the distances found so
-        far, and returns a lower maximum.
+        ``available``: the nodes whose distance is 0.
+        ``costs``: by motion, the cost of its units.
+        ``max_distance``: the maximum; greater distances become :data:`FAR`.
+        ``free``: the units whose distance is 0.
+        ``limit``: a function that is called in each round with the distances found so far. If it returns less
+        than the maximum, this is the maximum of all distances found from then on. ``None`` for no function.
         """
         node_distances = np.where(available, 0, FAR)
         distances = np.where(free, 0, FAR)
@@ -166,8 +169,8 @@ class Outline:
     def units_leading_to(self, units: Mask, available: Mask, candidates: Mask) -> Mask:
         """Return the mask of ``units`` and of the candidates through which their inputs can be made.
 
-        These are the units among ``candidates`` that produce an input which is not ``available``, the
-        candidates that produce inputs of these, and so on.
+        These candidates produce an input of ``units`` that is not ``available``, or such an input of another
+        of these candidates, and so on.
         """
         mask = units.copy()
         new = np.flatnonzero(mask)
@@ -180,7 +183,7 @@ class Outline:
 
 
 def _saturating_sum(distances: Distances, costs: Distances) -> Distances:
-    """Return distances plus costs; the sum is :data:`FAR` if the distance is, else less."""
+    """Return distances plus costs. A distance of :data:`FAR` stays; all other sums are less than it."""
     return np.where(distances < FAR, np.minimum(distances + costs, FAR - 1), FAR)
 
 
@@ -192,10 +195,13 @@ def _checked_ids(ids: Numbers, count: int) -> Numbers:
 
 
 class _Lists:
-    """Lists of numbers of different lengths, one after the other in one array (compressed sparse rows).
+    """Lists of numbers, one after the other in one array (compressed sparse rows).
 
-    ``lengths`` are the lengths of the lists, ``entries`` the numbers of all lists. ``count`` is the number of
-    lists. Raises :class:`LookupError` if the lengths do not add up to the entries.
+    ``lengths``: the length of each list.
+    ``entries``: the numbers of all lists.
+    ``count``: the number of lists.
+
+    Raises :class:`LookupError` if the lengths do not add up to the number of entries.
     """
 
     def __init__(self, lengths: Numbers, entries: Numbers) -> None:
@@ -221,12 +227,15 @@ class _Lists:
         return np.unique(self.entries[self.positions_of(lists)[0]]).astype(np.int64)
 
     def inverse(self, size: int) -> "_Lists":
-        """Return for each number below ``size`` the lists that contain it."""
+        """Return for each number below ``size`` the list of the lists that contain it, ascending."""
         counts = np.bincount(self.entries, minlength=size).astype(np.uint32)
         return _Lists(counts, self.owners[np.argsort(self.entries, kind="stable")])
 
     def positions_of(self, lists: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return the positions of all entries of the lists with these numbers, and for each its list."""
+        """Return the positions in ``entries`` of all entries of some lists, and for each position its list.
+
+        ``lists`` are the numbers of these lists.
+        """
         lengths = self._lengths[lists].astype(np.int64)
         owners = np.repeat(lists, lengths)
         offsets = np.repeat(np.cumsum(lengths) - lengths, lengths)

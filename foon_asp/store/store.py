@@ -61,7 +61,7 @@ class Store:
 
     Methods read only what they need, so their time does not grow with the network; :meth:`read_whole` and
     :attr:`outline` read it all. Opening and each method raise :class:`UserError` for a file that is no store,
-    is newer than this program or is damaged.
+    has another version of the format or is damaged.
     """
 
     level = 3
@@ -167,7 +167,7 @@ class Store:
         return {self.node(o): int(amount) for o, amount in self.file.about("stock")}
 
     def units_with_motions(self, motions: Container[str]) -> Iterator[FunctionalUnit]:
-        """Yield the units that have one of the motions."""
+        """Yield the units of the network that have one of the motions."""
         numbers = [number for number, (name, _) in self._motions.items() if name in motions]
         for (number,) in self.file.rows("SELECT id FROM unit WHERE motion IN ids", numbers).fetchall():
             motion, *sides, _ = self.unit_parts(number)
@@ -179,8 +179,8 @@ class Store:
     def unit_prices(self, network: Network, from_file: bool) -> dict[FunctionalUnit, Fraction]:
         """Read the prices of single units of ``network``, which is a part of the stored network or all of it.
 
-        These are the prices that the imported networks state. With ``from_file``, prices of the imported file
-        take precedence.
+        Units without such a price are left out. The prices are those that the imported networks state. With
+        ``from_file``, prices of the imported file take precedence.
         """
         if not self.has_unit_prices:
             return {}
@@ -197,10 +197,10 @@ class Store:
     def unpriced(
         self, motions: Container[str], units: Iterable[FunctionalUnit], from_file: bool
     ) -> list[Unpriced]:
-        """Count the units without a price, by motion.
+        """Return for each motion with unpriced units how many there are, and the source of the first.
 
-        Motions in ``motions`` and units in ``units`` count as priced. ``from_file`` says whether prices of
-        the imported file count, too.
+        Units that have one of ``motions`` or are among ``units`` count as priced. ``from_file`` says whether
+        prices of the imported file count as well.
         """
         unpriced_motions = [number for number, (name, _) in self._motions.items() if name not in motions]
         if not unpriced_motions:
@@ -359,8 +359,7 @@ class Store:
     def _sources_of_rows(self, rows: Iterable[tuple[int, int, int, int]]) -> dict[int, tuple[Source, ...]]:
         """Return the sources of each unit, by its id, from rows of the table ``source``.
 
-        The rows of a unit follow each other. :meth:`_cache_origins` has to be called with their origins
-        before.
+        The rows of a unit follow each other. Their origins have to be passed to :meth:`_cache_origins` first.
         """
 
         def source(_: int, origin: int, line: int, column: int) -> Source:
@@ -417,7 +416,7 @@ class Store:
     def producers_of(self, objects: Sequence[int]) -> list[list[int]]:
         """Return, for each of the nodes, the ids of the units that have it as an output, ascending.
 
-        All are read in one query, and their rows are kept.
+        All are read in one query, and the rows of these units are kept.
         """
         rows = self.file.rows(
             "SELECT node, id, motion, inputs, outputs FROM producer JOIN unit ON id = unit WHERE node IN ids "
@@ -437,7 +436,8 @@ class Store:
     ) -> list[list[int]]:
         """Return, for each of the units, the ids of the nodes that it needs under a container rule.
 
-        ``utensils`` are the labels of utensils for this rule.
+        ``utensils`` are the labels of utensils for this rule. The rows of the units and of their inputs are
+        kept.
         """
         self.read_units(units)
         inputs = [self._unit_row(unit)[1] for unit in units]
@@ -522,9 +522,10 @@ class Store:
         objects: Sequence[ObjectNode],
         ids: Mapping[int, int] | range,
     ) -> Network:
-        """Build a network; ``ids`` are the new ids of the nodes by their ids in the store.
+        """Build a network of rows of units with their sources, and of nodes.
 
-        Raises :class:`ValueError` if a node or unit is there twice, or if a unit lists a node twice.
+        ``ids`` are the new ids of the nodes by their ids in the store. Raises :class:`ValueError` if a node
+        or unit is there twice, or if a unit lists a node twice.
         """
         motions: list[str] = []
         inputs: list[tuple[int, ...]] = []

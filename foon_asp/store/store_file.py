@@ -43,7 +43,7 @@ class StoreFile:
     """The opened file of a store, read only; any number of processes can have the same store open.
 
     The file is closed by :meth:`close`, or when nothing refers to the object any more. Opening and reading
-    raise :class:`UserError` for a file that is no store, was made by a newer program, is cut off or is
+    raise :class:`UserError` for a file that is no store, has another version of the format, is cut off or is
     damaged.
     """
 

@@ -40,22 +40,26 @@ makes it. ``price``: what the networks state for a unit, and what the imported f
 """
 
 TRIGRAMS = "CREATE VIRTUAL TABLE label_trigram USING fts5(name, content='', detail=none, tokenize='trigram')"
-"""An index of three letters in a row of each label; SQLite has it from 3.34 on, if built with FTS5."""
+"""An index of labels by trigrams, three letters in a row; SQLite has it from 3.34 on, if built with FTS5."""
 
 OUTLINE = ("motions", "input_counts", "inputs", "output_counts", "outputs")
-"""The rows of the table ``outline``: an entry a unit, or a list a unit for inputs and outputs."""
+"""The rows of the table ``outline``, each an array with the units in the order of ids.
+
+``motions``: the motion of each unit. ``input_counts``, ``output_counts``: how many nodes each unit has.
+``inputs``, ``outputs``: the nodes of all units, one unit after the other.
+"""
 
 UNITS_OF_FILE = (
     "SELECT unit.id, inputs, outputs FROM source JOIN origin ON origin.id = origin "
     'JOIN unit ON unit.id = unit WHERE file = ? ORDER BY line, "column", unit'
 )
-"""Selects the units of a file, by number, in its order; once for each copy."""
+"""Selects id, inputs and outputs of the units of the file with a number, in its order, once for each copy."""
 
 _SHADOWS = {f"label_trigram_{suffix}" for suffix in ("data", "idx", "docsize", "config")}  # FTS5's own tables
 
 
 def create_tables(database: sqlite3.Connection) -> None:
-    """Create the tables of a store in a new database, without their indexes.
+    """Create the tables of a store in a new database, and its index of trigrams, but no other index.
 
     The index of trigrams is left out where SQLite lacks FTS5; then similar labels are found by a scan.
     """
@@ -79,7 +83,7 @@ def _has_trigrams() -> bool:
 
 
 def create_indexes(database: sqlite3.Connection) -> None:
-    """Create the indexes of filled tables, which is faster than updating them at each insertion."""
+    """Create the indexes of the filled tables, which is faster than updating them at each insertion."""
     for statement in SCHEMA:
         if statement.startswith("CREATE INDEX"):
             database.execute(statement)
@@ -88,7 +92,7 @@ def create_indexes(database: sqlite3.Connection) -> None:
 def check_tables(database: sqlite3.Connection) -> None:
     """Raise :class:`ValueError` if the tables, indexes, views or triggers are not exactly those of a store.
 
-    Others could run code.
+    Any others could run code when the store is read.
     """
     database.execute("PRAGMA trusted_schema = OFF")
     rows = database.execute("SELECT type, name, sql FROM sqlite_master WHERE sql IS NOT NULL").fetchall()

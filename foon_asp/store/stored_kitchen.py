@@ -11,7 +11,7 @@ from foon_asp.store.stored_ids import StoredIds
 
 
 class StoredStartingKitchen(StartingKitchen[int]):
-    """The starting kitchen of a store; files are the numbers of files in the store."""
+    """The starting kitchen of a store. Files are given by their numbers in the store."""
 
     def __init__(self, store: Store) -> None:
         self.file, self._nodes = store.file, StoredIds(store, "starting")
@@ -43,6 +43,6 @@ class StoredStartingKitchen(StartingKitchen[int]):
 
     @reporting_damage
     def units_of(self, file: int) -> Iterable[tuple[Sequence[int], Sequence[int]]]:
-        """Return the inputs and outputs of each unit of a file, in the order of the file."""
+        """Return the inputs and outputs of each unit of a file, in the order of the file, each unit once."""
         rows = self.file.database.execute(UNITS_OF_FILE, (file,))
         return {unit: (decode_ids(inputs), decode_ids(outputs)) for unit, inputs, outputs in rows}.values()

@@ -10,19 +10,20 @@ from numpy.typing import NDArray
 from foon_asp.problem import Objective, Trait
 from foon_asp.store.outline import FAR, Distances, Mask, Outline
 
-_SCALE = 2**40  # of logarithms of success rates, which are whole numbers
+_SCALE = 2**40  # of natural logarithms of success rates, which become integers
 
 
 class UnitDistances:
     """The distances of all units of a network: lower bounds on the cost of a tree that has the unit.
 
     The distance of a unit is its cost plus the largest distance of its inputs. The distance of a node is the
-    least one of its producers (``h_max`` of Bonet and Geffner, Artificial Intelligence 129, 2001). It is 0
-    for nodes in the mask ``kitchen``, which are available, and in the mask ``skipped``, which units do not
-    need.
+    least one of its producers (``h_max`` of Bonet and Geffner, Artificial Intelligence 129, 2001). Two masks
+    have the nodes whose distance is 0: ``kitchen`` those that are available, ``skipped`` those that units do
+    not need.
 
     The cost of a unit is 1. If ``objective`` is ``success`` and there are ``rates``, it is the negative
-    logarithm of the unit's rate, scaled to an integer and rounded down.
+    logarithm of the rate of its motion, scaled to an integer and rounded down. A motion without a rate then
+    costs 0.
     """
 
     def __init__(
@@ -56,9 +57,11 @@ class UnitDistances:
     ) -> tuple[list[int], list[int]]:
         """Return the nearest units of each kind with the units that lead to them, and the least distances.
 
-        ``kinds`` are masks of units. ``executed`` are the ids of units that cost nothing. Of each kind, at
-        most ``max_units`` units are chosen. Their distances are at most ``max_steps`` steps above the
-        greatest of the kinds' least distances. A step is the cost of a unit, or a fixed part of a logarithm.
+        ``kinds``: masks of units.
+        ``executed``: the ids of units that cost nothing.
+        ``max_units``: how many units of each kind are chosen at most.
+        ``max_steps``: how many steps a chosen unit may be farther than the greatest of the kinds' least
+        distances. A step is the cost of one unit, or for ``success`` 1/8 of a natural logarithm.
 
         The first list has the ids of all chosen units and of units that lead to them. The second list has the
         least distance of each kind, or :data:`FAR` if none of its units can be reached.
@@ -84,11 +87,14 @@ class UnitDistances:
     def relevant_units(
         self, kinds: Sequence[Mask] | None, executed: Collection[int], max_cost: int
     ) -> list[int]:
-        """Return the ids of the units that may be in a cheap enough tree with a unit of some kind.
+        """Return the ids of units that may be in a cheap enough tree that has a unit of one of the kinds.
 
         These are the units of the ``kinds`` with a distance of at most ``max_cost``, and units with such a
-        distance that lead to them. ``kinds`` are masks of units; ``None`` means that all units count.
-        ``executed`` are the ids of units that cost nothing; they are not returned.
+        distance that lead to them.
+
+        ``kinds``: masks of units; ``None`` if the tree may have any units.
+        ``executed``: the ids of units that cost nothing; they are not returned.
+        ``max_cost``: the greatest cost of a tree.
         """
         if max_cost < int(self._costs.min(initial=FAR)):
             return []
@@ -114,18 +120,24 @@ class UnitDistances:
 
 
 def least_cost(rate: Fraction) -> int:
-    """Return a lower bound on the cost of a rate above 0: its scaled negative logarithm, rounded down."""
+    """Return a lower bound on the cost of a rate above 0: its negative natural logarithm times 2**40.
+
+    The bound is rounded down to an integer.
+    """
     exact, error = _logarithm(rate)
     return max(0, math.floor(exact) - error)
 
 
 def greatest_cost(rate: Fraction) -> int:
-    """Return an upper bound on the cost of a rate above 0: its scaled negative logarithm, rounded up."""
+    """Return an upper bound on the cost of a rate above 0: its negative natural logarithm times 2**40.
+
+    The bound is rounded up to an integer.
+    """
     exact, error = _logarithm(rate)
     return math.ceil(exact) + error
 
 
 def _logarithm(rate: Fraction) -> tuple[float, int]:
-    """Return the negative logarithm of a rate, scaled by ``_SCALE``, and a bound on its error."""
+    """Return the negative natural logarithm of a rate, scaled by ``_SCALE``, and a bound on its error."""
     logarithms = math.log(rate.denominator), math.log(rate.numerator)
     return (logarithms[0] - logarithms[1]) * _SCALE, 2 + math.ceil(sum(logarithms) * _SCALE * 2**-50)

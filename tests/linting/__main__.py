@@ -4,7 +4,7 @@ import textwrap
 from collections.abc import Iterator
 
 from foon_asp.linting.catalog import CATALOG
-from foon_asp.linting.example import Example, example
+from foon_asp.linting.example import Example, read_example
 from foon_asp.linting.rule import Rule
 from foon_asp.report.rule_page import example_texts
 from tests.conftest import ROOT
@@ -17,7 +17,7 @@ WIDTH = 120
 def page() -> str:
     """Return the page: what people wrote, and below it the codes."""
     written, _, _ = FILE.read_text(encoding="utf-8").partition(BEGINNING)
-    examples = {code: example(code) for code in CATALOG}
+    examples = {code: read_example(code) for code in CATALOG}
     rows = "".join(_row(rule, examples[code]) for code, rule in CATALOG.items())
     sections = [
         f"### {code}\n\n" + "\n".join(_section(rule, examples[code])) for code, rule in CATALOG.items()

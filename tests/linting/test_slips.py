@@ -7,6 +7,7 @@ import pytest
 import slips
 
 from foon_asp.linting.linter import lint
+from foon_asp.linting.near_names import deletion_index, near_word
 from foon_asp.linting.vocabulary import read_vocabulary
 from foon_asp.resources import bundled_kitchen, bundled_vocabulary
 from foon_asp.text.diagnostics import InputError
@@ -48,6 +49,12 @@ def test_a_vocabulary_is_learned_and_used(tmp_path: Path, cli: Cli) -> None:
             read_vocabulary(names)
         ran = cli("lint", "--vocabulary", names, tmp_path / "FOON.txt")
         assert (ran.code, f"names.txt:1:{column}: error" in ran.err) == (2, True)
+
+
+def test_only_known_words_are_meant() -> None:
+    known_words = deletion_index(["chopped", "grated"])
+    assert near_word("grat", known_words, verbs=True) == "grated"
+    assert near_word("chop", known_words, verbs=True) is None  # not "choped", which is no word
 
 
 def test_our_vocabulary_has_all_of_the_bundled_kitchen(cli: Cli) -> None:

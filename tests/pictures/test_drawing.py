@@ -22,7 +22,7 @@ from foon_asp.pictures.drawing import Box, Drawing, Role, draw_network, draw_tre
 from foon_asp.pictures.graphml import graphml_text
 from foon_asp.pictures.graphviz import MAX_UNITS, svg_picture
 from foon_asp.pictures.mermaid import mermaid_text
-from foon_asp.pictures.painting import paint
+from foon_asp.pictures.painting import paint_drawing
 from foon_asp.questions.result import Ending
 from tests.conftest import Cli
 
@@ -158,14 +158,14 @@ def test_svg_holds_every_text_and_its_style() -> None:
 
 def test_png_is_a_picture_with_text() -> None:
     drawing = draw_tree(TREE, KITCHEN, [SALAD], CAPTION)
-    png = paint(drawing, "png")
+    png = paint_drawing(drawing, "png")
     assert all(600 < size < 3000 for size in size_of_png(png))
-    assert png == paint(drawing, "png")
-    pdf = paint(drawing, "pdf")
-    assert (pdf[:5], pdf) == (b"%PDF-", paint(drawing, "pdf"))
+    assert png == paint_drawing(drawing, "png")
+    pdf = paint_drawing(drawing, "pdf")
+    assert (pdf[:5], pdf) == (b"%PDF-", paint_drawing(drawing, "pdf"))
     # with one letter in each box, the same picture has far less in it
     bare = drawing._replace(boxes=tuple(box._replace(label="l", node=None) for box in drawing.boxes))
-    assert len(png) > 1.5 * len(paint(bare, "png"))
+    assert len(png) > 1.5 * len(paint_drawing(bare, "png"))
 
 
 def test_what_is_too_large_to_be_laid_out_is_refused() -> None:
@@ -174,7 +174,7 @@ def test_what_is_too_large_to_be_laid_out_is_refused() -> None:
     with pytest.raises(UserError, match=r"a tree of 301 functional units is too large .* view.* GraphML"):
         svg_picture(drawing)
     with pytest.raises(UserError):
-        paint(drawing, "png")
+        paint_drawing(drawing, "png")
     assert dot_text(drawing).count("class=") == 2 * 301 + 2
     assert mermaid_text(drawing).count(" --> ") == 301
     whole = draw_network(enumerate(units * (MAX_UNITS // 300 + 1)), (), (), CAPTION)
@@ -236,7 +236,7 @@ def test_dot_is_used_where_it_is(tmp_path: Path) -> None:
 def test_a_missing_package_is_named_with_advice(package: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(UserError, match=rf"{package}.*pip install 'foon-asp\[pictures\]'"):
-        paint(draw_tree(TREE, KITCHEN, [SALAD], CAPTION), "png")
+        paint_drawing(draw_tree(TREE, KITCHEN, [SALAD], CAPTION), "png")
 
 
 def test_nothing_is_left_half_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
