@@ -30,7 +30,10 @@ class Postconditions:
         self._settings, self._own = settings, own
 
     def require(self, holds: bool, otherwise: Callable[[], str]) -> None:
-        """Raise :class:`BugError` with the message of ``otherwise`` and the question, unless ``holds``."""
+        """Raise :class:`BugError` unless ``holds``.
+
+        Its text is the message that ``otherwise`` returns, and the question.
+        """
         if not holds:
             raise BugError(f"{otherwise()}\n{self._question()}")
 
@@ -163,7 +166,11 @@ class Postconditions:
         )
 
     def _require_bounds(self, outcome: Outcome, costs: Costs) -> None:
-        """Require that the bounds allow the tree, and equal its costs if it is called optimal."""
+        """Require that the bounds allow the tree, and equal its costs if it is called optimal.
+
+        They are compared in the order of the objectives, up to the first one whose bound is missing or better
+        than the cost.
+        """
         exact = {objective: costs.measure(objective) for objective in self.levels}
         self.require(
             outcome.status is not Status.OPTIMAL or outcome.bounds == exact,
@@ -255,14 +262,17 @@ class Postconditions:
 
 
 def _costs_text(costs: Costs | None) -> str:
-    """Return costs as text: ``units 2, inputs 6``."""
+    """Return costs as text: ``units 2, inputs 6``; ``nothing`` for ``None``."""
     if costs is None:
         return "nothing"
     return ", ".join(f"{name} {_number_text(figure)}" for name, figure in costs.measures.items())
 
 
 def _number_text(figure: int | Fraction | None) -> str:
-    """Return a number as text, ``3/5`` or ``unknown``, even if it has more digits than ``str`` allows."""
+    """Return a number as text, such as ``3/5``; ``unknown`` for ``None``.
+
+    It may have more digits than ``str`` allows.
+    """
     if figure is None:
         return "unknown"
     numerator, denominator = Decimal(figure.numerator), Decimal(figure.denominator)

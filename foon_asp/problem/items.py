@@ -18,7 +18,7 @@ Named = str | ObjectNode
 
 
 class Fate(StrEnum):
-    """The reason why an input of a unit stays available, or that it is used up.
+    """The reason why an input of a unit stays available, or why it is used up.
 
     ``OUTPUT``: stays, since the same node is also an output.
     ``TOOL``: stays, since it is a utensil with no ingredients.
@@ -123,7 +123,7 @@ class UnitFlows(Sequence[Flow]):
 
 @dataclass(frozen=True)
 class UsedUp:
-    """The model in which items are used up: what the user declared, the stock, and wanted copies.
+    """The model in which items are used up: declarations of the user, the stock, and wanted copies.
 
     ``told`` maps labels and object nodes to whether they stay. This overrides the reasons of :class:`Fate`.
     ``stock`` has the number of copies of kitchen nodes. Kitchen nodes that are not in it never run out.

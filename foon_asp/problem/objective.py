@@ -96,7 +96,7 @@ class Objective(str, metaclass=_IterableOverBuiltIns):
     ``DISSIMILARITY``: least sum of the dissimilarities of stand-ins.
 
     Iteration over the class yields these built-in objectives. :meth:`of_measure` returns the objective of a
-    user measure. Each objective is a single object.
+    user measure. Each of these objectives is a single object, so they can be compared by ``is``.
 
     Example:
         >>> [str(objective) for objective in foon_asp.Objective][:3]
@@ -156,7 +156,10 @@ class Objective(str, metaclass=_IterableOverBuiltIns):
         raise AttributeError(f"an objective does not change, and cannot be given {name!r}")
 
     def __reduce__(self) -> tuple[Callable[[str], "Objective"], tuple[str]]:
-        """Pickle an objective as its name: unpickling returns the single object of that name."""
+        """Pickle an objective as its name: unpickling returns the single object of that name.
+
+        Unpickling raises ``ValueError`` for an objective of :meth:`of_row`.
+        """
         return Objective.of_measure if self.row.needs is OptionalData.MEASURES else Objective, (str(self),)
 
     def __repr__(self) -> str:
@@ -235,7 +238,10 @@ for _objective in _BUILT_IN.values():
 
 
 def multiplies(objective: Objective) -> bool:
-    """Whether an objective is a product, of which more is better; others are sums: less is better."""
+    """Whether an objective is a product, of which more is better.
+
+    Others are sums, of which less is better.
+    """
     return objective.row.multiplies
 
 
@@ -262,12 +268,12 @@ def parse_objectives(names: Iterable[str], measures: Collection[str] = ()) -> tu
 
 
 def with_dissimilarity(objectives: tuple[Objective, ...]) -> tuple[Objective, ...]:
-    """Return a list of objectives with ``dissimilarity``, which is put first unless it is listed."""
+    """Return a list of objectives with ``dissimilarity``: put first if the list does not have it."""
     return objectives if Objective.DISSIMILARITY in objectives else (Objective.DISSIMILARITY, *objectives)
 
 
 def levels(objectives: tuple[Objective, ...]) -> tuple[Objective, ...]:
-    """Return the list by which trees are optimized: ``units`` is put last unless it is listed.
+    """Return the list by which trees are optimized: ``units`` is put last if the list does not have it.
 
     With ``units`` in the list, optimal trees are irredundant.
     """
