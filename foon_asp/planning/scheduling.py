@@ -24,8 +24,9 @@ class BestSchedule(NamedTuple):
     ``starts``: the starts of the steps in ticks; ``None`` without a schedule.
     ``bound``: a lower bound on the makespan, in ticks.
     ``proved``: whether it is proved that no schedule is shorter or, without ``starts``, that there is none.
-    ``lacking``: without ``starts``, numbers of copies by tool with which there is a schedule. They need the
-    fewest additional copies, unless a limit stopped this search.
+    ``lacking``: without ``starts``, the numbers of copies, for each tool of which there are too few, with
+    which there is a schedule; else empty. They need the fewest additional copies, unless a limit stopped this
+    search.
     """
 
     starts: tuple[int, ...] | None
@@ -37,7 +38,8 @@ class BestSchedule(NamedTuple):
 def shortest_schedule(task: ScheduleTask, deadline: Deadline) -> BestSchedule:
     """Return the schedule of least makespan; at a limit or ctrl-C, the best one found so far.
 
-    CP-SAT searches for it in another process. Raises :class:`UserError` if OR-Tools is not installed.
+    CP-SAT searches for it in another process. If there are too few tools for a schedule, the result says
+    which are lacking. Raises :class:`UserError` if OR-Tools is not installed.
     """
     if find_spec("ortools") is None:
         raise UserError(_NOT_INSTALLED)
@@ -140,7 +142,7 @@ def timed_steps(task: ScheduleTask, starts: Sequence[int]) -> list[TimedStep]:
 
 
 def _color_intervals(spans: dict[int, tuple[int, int]]) -> dict[int, int]:
-    """Return a number from 1 for each span, such that overlapping spans have different numbers.
+    """Return a number from 1 for each span, by its key; overlapping spans have different numbers.
 
     A span is a start and an end. Of the free numbers, it gets the one that has been free the longest. This
     colors an interval graph with the fewest numbers.

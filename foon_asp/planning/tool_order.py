@@ -56,7 +56,7 @@ def tool_order(task: ScheduleTask, deadline: Deadline) -> ToolOrder:
 
 
 def _run(task: ScheduleTask, deadline: Deadline, may_lack: bool) -> Run:
-    """Run clingo on the order of the uses of tools; return the run.
+    """Run clingo for an order of the uses of tools; return the run.
 
     With ``may_lack``, clingo may add copies of tools, and minimizes their number.
     """
