@@ -56,9 +56,9 @@ def assemble(
 ) -> Program:
     """Return the program of a question: the encodings and constraints of settings, read and checked.
 
-    ``used_up`` selects the encodings of plans, in which items are used up. ``warn`` receives warnings. With a
-    ``problem``, it is also warned of names in rules that do not occur in its network. If grounding user rules
-    may not terminate, a worker process is started in advance.
+    ``used_up`` selects the encodings of plans, in which items are used up. ``warn`` receives warnings; with a
+    ``problem``, also about names in rules that its network does not have. If grounding user rules may not
+    terminate, a worker process is started in advance.
 
     Raises :class:`UserError` for files that are missing or at fault, for ``#script``, for constants that no
     encoding has, and for clingo options that would change what an answer means.
@@ -151,14 +151,15 @@ def assemble(
 
 
 def program_of(problem: Problem, settings: Settings, warn: Callable[[str], None]) -> Program:
-    """Return the program of a question: by :func:`ready_made_program`, or else by :func:`assemble`."""
+    """Return the program of :func:`ready_made_program`; if it is ``None``, that of :func:`assemble`."""
     return ready_made_program(problem, settings, warn) or assemble(settings, warn, problem=problem)
 
 
 def ready_made_program(problem: Problem, settings: Settings, warn: Callable[[str], None]) -> Program | None:
     """Return the program of a question whose user rules are all ready-made constraints, without clingo.
 
-    Ready-made constraints come with this program, so their effect is computed without their text. Returns
+    Ready-made constraints come with this program, so their effect is computed without their text: ``files``
+    are without them, and ``ready_made`` has them. ``warn`` receives warnings about their parameters. Returns
     ``None`` if there are other rules, if items are used up, or if the rules mean something else for clingo in
     this problem. Also returns ``None`` for a large network, unless it is a part of a store or the rules
     require units.
@@ -193,8 +194,9 @@ def _warn_of_names(
     constants: Sequence[str],
     warn: Callable[[str], None],
 ) -> None:
-    """Warn of names in rules, measures and parameters that do not occur in the network of a problem.
+    """Warn of names in rules, measures and parameters that the network of a problem does not have.
 
+    Parameters are the constants of ready-made constraints. ``added`` are the encodings of all constraints.
     Without a problem, nothing is checked.
     """
     if problem is None:
@@ -223,7 +225,7 @@ def _warn_of_names(
 
 
 def _is_built_in(encoding: "Encoding") -> bool:
-    """Whether an encoding is a file of this program."""
+    """Whether an encoding is an unchanged file of this program."""
     rules = encoding.rules
     file = rules.file if isinstance(rules, Stated) else rules
     return file is not None and is_own(file)
@@ -296,7 +298,8 @@ class ReachOfRules(Enum):
 def reach_of_rules(settings: Settings) -> ReachOfRules:
     """Return which units the user rules can depend on or require.
 
-    Rules that cannot be analysed can depend on all units. Raises as :func:`assemble` does.
+    Rules that are not local, or that cannot be analysed, can depend on all units. Raises as :func:`assemble`
+    does.
     """
     rules = _ready_made_rules(settings) or _analysed_rules(settings)
     if rules is None or not rules.local:
@@ -308,7 +311,8 @@ def hold_for_subtrees(settings: Settings) -> bool:
     """Whether the user rules are antimonotone: if a tree keeps to them, each of its subtrees does, too.
 
     This has to be so in every part of the network, and also if more object nodes are available than the
-    kitchen has. True without rules, false with replaced encodings. Raises as :func:`assemble` does.
+    kitchen has. It is true without rules, and false with replaced encodings, with rewritten rules, and for
+    rules that are not local. Raises as :func:`assemble` does.
     """
     if settings.replaced is not None:
         return False
@@ -367,9 +371,8 @@ def rules_digest(
 def _encodings_folder_for(path: Path | None, built_in_folder: Path) -> Path:
     """Return the folder of encodings: ``path``, or ``built_in_folder`` if it is ``None``.
 
-    If ``path`` is a mere name and no folder, it is a folder in ``built_in_folder``.
-
-    Raises :class:`UserError` if the folder has no encodings.
+    If ``path`` is a mere name and no folder, it is a folder in ``built_in_folder``. Raises :class:`UserError`
+    if the folder has no encodings.
     """
     if path is None:
         return built_in_folder

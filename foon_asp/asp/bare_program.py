@@ -120,9 +120,7 @@ def bare_plan_program(
 def _require_no_amounts(problem: Problem) -> None:
     """Raise :class:`UserError` if a unit takes or makes several copies of a node.
 
-    Also if several copies of a goal are wanted.
-
-    The encodings have one copy of each output.
+    Also if several copies of a goal are wanted. The encodings have one copy of each output.
     """
     if problem.counts_amounts:
         raise UserError("amounts are not built for bare clingo, whose encodings have one copy of each output")

@@ -56,12 +56,11 @@ def relax(
 ) -> tuple[tuple[IntegrityConstraint, ...], Relaxed]:
     """Number integrity constraints from 1, and rewrite them so that trees may break them.
 
-    Returns the numbered integrity constraints, and the rewritten rules.
-
-    Without ``soft``, integrity constraint number C need not hold if the atom ``_dropped(C)`` is true
-    (``questions/clash.lp``). With ``soft``, it becomes a rule for ``_broken(C,Way)``, where ``Way`` has the
-    values of its variables (``questions/soft.lp``). Other rules of the ``constraints`` stay as they are.
-    ``constants`` are the user's settings of constants.
+    Returns the numbered integrity constraints, and the rewritten rules. Without ``soft``, integrity
+    constraint number C need not hold if the atom ``_dropped(C)`` is true (``questions/clash.lp``). With
+    ``soft``, it becomes a rule for ``_broken(C,Way)``, where ``Way`` has the values of its variables
+    (``questions/soft.lp``). Other rules of the ``constraints`` stay as they are. ``constants`` are the user's
+    settings of constants. ``deadline`` has the limits of the checks.
 
     ``before`` are other constraints of the question, which are not rewritten. In messages, the numbers of
     their texts precede those of ``constraints``. Each constraint is first parsed and grounded without facts,

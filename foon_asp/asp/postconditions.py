@@ -19,8 +19,8 @@ from foon_asp.rules.passed_constraint import RuleText
 class Postconditions:
     """Checks of the answers to one question; a check that fails raises :class:`BugError` with the question.
 
-    ``levels`` are the objectives as optimized. ``own`` says that all rules are built-in; then a tree that
-    does not execute is a bug of this program.
+    ``levels`` are the objectives as optimized. ``own`` says that all rules are built in. Then a tree that
+    does not execute is a bug of this program; otherwise it is an error in the user's rules.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class Postconditions:
     def require_no_tree(self) -> None:
         """Require that no tree makes all goals and required sets of the restriction.
 
-        This is checked by forward reachability over the units that are relevant for them.
+        This is checked by forward reachability over the units that are relevant for these goals and sets.
         """
         needs, gives, producers = self.problem.needs, self.problem.gives, self.problem.makers
         kitchen = self.problem.kitchen
@@ -109,8 +109,9 @@ class Postconditions:
     ) -> None:
         """Require that the claims of an outcome with a tree are true: its costs, its bounds and its proof.
 
-        ``best`` has the costs of the incumbent of the search: the tree must not cost more. ``reduced`` is the
-        result of the reductions: it must agree with the costs. Both may be ``None``.
+        No unit may be in the tree twice. ``best`` has the costs of the incumbent of the search: the tree must
+        not cost more. ``reduced`` is the result of the reductions: it must agree with the costs. Both may be
+        ``None``.
         """
         assert outcome.units is not None
         assert outcome.costs is not None

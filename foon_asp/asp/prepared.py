@@ -102,7 +102,7 @@ class Prepared:
             return facts + writing.write_required([map(number, sorted(remaining & units)) for units in sets])
 
     def keeps(self, units: Collection[int]) -> bool | None:
-        """Whether a tree, given by unit ids, keeps to all user rules; ``None`` if a limit is reached before.
+        """Whether a tree, given by unit ids, keeps to all user rules; ``None`` if a limit stops the check.
 
         The rules have to be local: units outside the tree must not matter for them. clingo decides, unless
         all rules are ready-made. Raises :class:`UserError` for a fault in a rule.

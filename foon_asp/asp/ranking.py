@@ -111,9 +111,8 @@ class Ranked:
     def _require_in_order(self, run: Run, tree: _Tree, earlier: Sequence[_Tree]) -> None:
         """Require that clingo's costs of a tree are right and in order, and that it contains no earlier tree.
 
-        ``earlier`` are the trees found before, in order.
-
-        Raises :class:`UserError` where replaced encodings measure something else.
+        ``earlier`` are the trees found before, in order. Raises :class:`UserError` where replaced encodings
+        measure something else.
         """
         units, _, rounded = tree
         agree = [cost % 2**32 for cost in rounded] == [cost % 2**32 for cost in run.cost]

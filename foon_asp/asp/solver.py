@@ -112,7 +112,7 @@ class _IncumbentListener(Listener):
             self.reporter.statistics(run.statistics)
 
     def costs(self, units: Units) -> Costs:
-        """Return the costs of units, cached for the last tree."""
+        """Return the costs of a tree; those of the last tree are cached."""
         if self._last_costed is None or self._last_costed[0] != units:
             self._last_costed = units, self.problem.costs(units)
         return self._last_costed[1]
@@ -216,9 +216,9 @@ class _Solver:
     ) -> Outcome:
         """Find the best tree under rules that the reductions ignored.
 
-        ``tree_without_rules`` is the best tree without these rules; it may be without proof. If it is proved
-        and also keeps to the rules, it is optimal. It is taken to break them if a similar question explored
-        units.
+        ``tree_without_rules`` is the best tree that was found without these rules. If it keeps to the rules,
+        and ``reduced`` proves it best without them, it is optimal. If a similar question explored units, the
+        tree is taken to break the rules, and not checked.
         """
         if self._mattered:  # the tree breaks rules, as in the similar question
             return self._solve_violated(subproblem, tree_without_rules)
@@ -233,12 +233,17 @@ class _Solver:
         return self._solve_violated(subproblem, tree_without_rules)
 
     def _solve_violated(self, subproblem: Subproblem, tree_without_rules: Units) -> Outcome:
-        """Find the best tree under rules that ``tree_without_rules`` breaks, the best tree without them.
+        """Find the best tree under the rules if the best tree without them breaks some of them.
 
-        Three searches are tried in turn: by a price on a limited sum, for trees with open preconditions, and
-        in ever larger neighbourhoods of the goals. The last one is the only one if trees may need redundant
-        units. The first one is left out if a similar question explored units. If it finds a tree, a final
-        search of the gap-bounded subproblem proves which tree is the best.
+        ``tree_without_rules`` is that tree. These searches are made in turn, until one finds the best tree or
+        proves that there is none:
+
+        - by a price on a limited sum, unless a similar question explored units;
+        - for trees with open preconditions;
+        - in ever larger neighbourhoods of the goals. If one has a tree, the gap-bounded subproblem is
+          searched for the best tree.
+
+        If trees may need redundant units, only the last search is made.
         """
         if (
             not subproblem.redundant
@@ -508,9 +513,8 @@ class _Solver:
     def _outcome_at_limit(self, units: Units, lower: Sequence[int]) -> Outcome:
         """Return the outcome with the incumbent at a limit.
 
-        With replaced encodings, it has the tree ``units`` and no bounds.
-
-        ``lower`` are clingo's lower bounds, the highest priority first; it may be empty.
+        With replaced encodings, it has the tree ``units`` and no bounds. ``lower`` are clingo's lower bounds,
+        the highest priority first; it may be empty.
         """
         bounds = {} if self.program.replaced else self._objective_bounds(lower)
         return self._outcome(Status.FEASIBLE, self._best_reported(units), bounds)
@@ -526,12 +530,15 @@ class _Solver:
     ) -> "Run":
         """Run clingo for the best tree by ``objectives``, report trees, and return the run.
 
-        Its units are ids in the network of the problem. At a limit before the search, the run is empty.
+        The units of the run are given by id in the network of the problem. At a limit before the search, the
+        run is empty.
 
         ``products``: totals by the rounded objective, such as products of success rates, each as the vector
         of :meth:`Scales.vector`. Trees with one of these totals are excluded.
-        ``wanted``: the index of a total that is required instead.
-        ``fewer``: numbers of units by index of a total. Trees with this total and fewer units are allowed.
+        ``wanted``: the index, in ``products``, of a total that is required instead; ``None`` to exclude all
+        of them.
+        ``fewer``: numbers of units by index of a total. Trees with this total are allowed if they have fewer
+        units.
         ``opt_mode``: the ``--opt-mode`` of clasp.
         ``bounds``: whether to report bounds as well; with replaced encodings, none are reported.
         """
@@ -694,9 +701,9 @@ class _Solver:
     def _measures_agree(self, units: Units, cost: Sequence[int], objectives: Sequence[Objective]) -> bool:
         """Return whether clingo's costs (modulo 2^32) are the weights of the units.
 
-        If they are not, objectives.lp must have been replaced; then a warning is reported. In any case the
-        weights are required to fit the exact costs. ``cost`` may have all levels, with 0 for those not
-        optimized.
+        If they are not, a warning is reported if objectives.lp was replaced; otherwise this is a bug. In any
+        case the weights are required to fit the exact costs. ``cost`` may have all levels, with 0 for those
+        not optimized.
         """
         scales, costs = self._current_scales(), self.listener.costs(units)
         weights = {objective: scales.weight(objective, units) for objective in objectives}
@@ -779,8 +786,8 @@ class _Solver:
     ) -> Outcome:
         """Return the outcome with this status, these units and these bounds.
 
-        If ``units`` is a tree, its postconditions are checked before. ``None`` stands for an outcome without
-        a tree.
+        If ``units`` is ``None``, the outcome has no tree. Otherwise the postconditions of the tree are
+        checked first.
         """
         prepared, reduced = self.prepared, self.prepared.reduced
         proof = Proof.SOLVER if status in {Status.OPTIMAL, Status.INFEASIBLE} else None
@@ -825,11 +832,9 @@ class _Solver:
 def _cut_objects(reduced: Reduced | None) -> list[frozenset[int]]:
     """Return the objects of each cut that a certificate can start from.
 
-    The list is empty without reductions.
-
-    These are the cuts of the best bound, those found before any reduction, and tight ones. Excluded actions
-    may cross many cuts of the best bound. The cuts found before any reduction count all actions. Tight cuts
-    count the actions that remained when they were found.
+    The list is empty without reductions. These are the cuts of the best bound, those found before any
+    reduction, and tight ones. Excluded actions may cross many cuts of the best bound. The cuts found before
+    any reduction count all actions. Tight cuts count the actions that remained when they were found.
     """
     if reduced is None:
         return []

@@ -18,11 +18,10 @@ from foon_asp.problem import Objective, Problem, levels, reach
 
 
 class UserRuleCheck:
-    """A check which user rules an executable tree breaks; or a plan, if items are used up.
+    """A check of which user rules an executable tree breaks, or a plan if items are used up.
 
-    The constraints are read once, for any number of trees.
-
-    ``local`` says that units outside a tree do not decide whether it breaks a constraint.
+    The constraints are read once, for any number of trees. ``local`` says that units outside a tree do not
+    decide whether it breaks a constraint.
     """
 
     def __init__(self, settings: Settings, used_up: bool = False) -> None:

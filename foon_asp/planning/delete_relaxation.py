@@ -45,9 +45,8 @@ class _Relaxation:
     def strips(self) -> StripsTask:
         """Return the compiled task, with its facts numbered in order.
 
-        Its facts are those of the goal and of preconditions.
-
-        Actions that add none of these facts are left out.
+        Its facts are those of the goal and of preconditions. Actions that add none of these facts are left
+        out.
         """
         task = self._task
         relevant = self._relevant_facts()
@@ -59,7 +58,7 @@ class _Relaxation:
         numbers = {fact: number for number, fact in enumerate(sorted(needed))}
 
         def numbered(facts: Iterable[int]) -> list[int]:
-            """Return the new numbers of the relevant ones among some facts."""
+            """Return the new numbers of those facts that the compiled task has."""
             return [numbers[fact] for fact in facts if fact in numbers]
 
         return StripsTask(

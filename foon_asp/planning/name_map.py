@@ -56,7 +56,7 @@ class Scale(Value, frozen=True):
 
     Attributes:
         factor: What its values were multiplied by.
-        rounded: Whether they were rounded then.
+        rounded: Whether the products were rounded.
     """
 
     objective: Objective

@@ -15,7 +15,7 @@ from foon_asp.text.tables import Duration
 
 
 class Change(Value, frozen=True):
-    """One object of a step, and its nodes on both sides.
+    """One object of a step, and its nodes before and after the step.
 
     Attributes:
         object: The label of the object.
@@ -129,7 +129,7 @@ def robot_steps(
 
 
 def _is_tool(problem: Problem, unit: FunctionalUnit, node: ObjectNode) -> bool:
-    """Whether an input, which is no place, is a tool: a utensil.
+    """Whether an input that is no place is a tool, that is, a utensil.
 
     If the problem has no utensils, a tool is an input that is also an output.
     """

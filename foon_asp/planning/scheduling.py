@@ -24,9 +24,9 @@ class BestSchedule(NamedTuple):
     ``starts``: the starts of the steps in ticks; ``None`` without a schedule.
     ``bound``: a lower bound on the makespan, in ticks.
     ``proved``: whether it is proved that no schedule is shorter or, without ``starts``, that there is none.
-    ``lacking``: without ``starts``, the numbers of copies, for each tool of which there are too few, with
-    which there is a schedule; else empty. They need the fewest additional copies, unless a limit stopped this
-    search.
+    ``lacking``: without ``starts``, maps each tool of which there are too few copies to the number that a
+    schedule needs; else empty. In total, these are the fewest additional copies, unless a limit stopped the
+    search for them.
     """
 
     starts: tuple[int, ...] | None
@@ -144,8 +144,8 @@ def timed_steps(task: ScheduleTask, starts: Sequence[int]) -> list[TimedStep]:
 def _color_intervals(spans: dict[int, tuple[int, int]]) -> dict[int, int]:
     """Return a number from 1 for each span, by its key; overlapping spans have different numbers.
 
-    A span is a start and an end. Of the free numbers, it gets the one that has been free the longest. This
-    colors an interval graph with the fewest numbers.
+    A span is a start and an end. In order of their starts, each span gets the number that has been free the
+    longest. This colors an interval graph with the fewest numbers.
     """
     free_at: list[int] = []
     numbers: dict[int, int] = {}

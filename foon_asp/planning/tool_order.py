@@ -24,8 +24,8 @@ class ToolOrder(NamedTuple):
 
     ``steps``: the steps in order; ``None`` without an order.
     ``proved``: whether it is proved that there is no order.
-    ``lacking``: without an order, the numbers of copies by tool that make one feasible, for those tools of
-    which more are needed. They need the fewest additional copies in total. Empty if they are not known.
+    ``lacking``: without an order, maps each tool of which there are too few copies to the number that an
+    order needs. In total, these are the fewest additional copies. Empty if they are not known.
     """
 
     steps: tuple[int, ...] | None

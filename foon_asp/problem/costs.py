@@ -13,7 +13,7 @@ class Costs:
     """The costs of one tree or plan: ``measures`` maps each objective to its exact value.
 
     Objectives whose data are missing, such as rates, have no value. ``inputs`` is the number of input object
-    nodes, summed over the units; inputs that a container rule skips count, too. ``kitchen`` is the number of
+    nodes, summed over the units. It includes inputs that a container rule skips. ``kitchen`` is the number of
     distinct kitchen items that the units need. If items are used up, each copy of a consumable item counts as
     one kitchen item.
 
@@ -67,16 +67,17 @@ class Costs:
         return None if success is None else Fraction(success)
 
     def measure(self, objective: Objective) -> int | Fraction:
-        """Return the exact value by an objective; of ``success`` more is better, of the others less.
+        """Return the exact value by an objective.
 
+        A greater value of ``success`` is better; of the other objectives, a smaller value is.
         ``dissimilarity`` is 0 for a problem without stand-ins.
 
         Parameters:
             objective: The objective.
 
         Raises:
-            ValueError: if data are missing, as for ``success`` without rates, or for ``attempts`` with a
-                rate of 0.
+            ValueError: if data are missing, as for ``success`` without rates, or for ``attempts`` with a rate
+                of 0.
         """
         if objective not in self.measures and objective.row.needs is OptionalData.STAND_INS:
             return Fraction(0)  # there are none

@@ -12,7 +12,7 @@ from foon_asp.problem.relevance import reach
 
 
 class Cause(StrEnum):
-    """The reason why an object node causes dead ends.
+    """The reason why an object node causes dead ends: goals that cannot be made.
 
     ``missing``: the node is not in the kitchen, and every unit that makes it also needs it.
     ``cycle``: the node is in a set of nodes that can only be made from each other.
@@ -23,7 +23,7 @@ class Cause(StrEnum):
 
 
 class RootCause(NamedTuple):
-    """An object node that causes dead ends.
+    """An object node that causes dead ends: goals that cannot be made.
 
     ``object``: its id. Of a cycle, it is the id of one of its nodes: if possible, of one on the cheapest path
     to the goals.
@@ -118,7 +118,7 @@ def _unreachable_achievers(
 
 
 def _consumers(achievers: Mapping[int, Sequence[Blocked]]) -> dict[int, list[int]]:
-    """Return a mapping from the id of each lacking node to the ids of the blocked units that lack it."""
+    """Return a mapping from the id of each node that some blocked unit lacks to the ids of these units."""
     consumers: dict[int, list[int]] = {}
     for blocked in {unit.unit: unit for units in achievers.values() for unit in units}.values():
         for lack in blocked.lacks:

@@ -52,11 +52,12 @@ class Row(NamedTuple):
     ``words``: its name on the axis of a chart.
     ``unit``: a function that returns the cost of a unit, an exact number.
     ``item``: the cost of each distinct kitchen item that the units need.
-    ``multiplies``: the values of units are multiplied, and more is better. Otherwise they are added up, and
-    less is better.
+    ``multiplies``: whether the values of units are multiplied, and more is better. Otherwise they are added
+    up, and less is better.
     ``needs``: the kind of optional data that the objective needs; ``None`` if it needs none.
-    ``is_fact``: the encodings read the costs of units from facts ``cost/3``, since no other fact states them.
-    ``whole``: all costs are integers.
+    ``is_fact``: whether the encodings read the costs of units from facts ``cost/3``. No other facts state
+    these costs.
+    ``whole``: whether all costs are integers.
     """
 
     term: str

@@ -210,7 +210,7 @@ class Problem:
     def whole(self) -> "Problem":
         """The same problem over the whole network, with all stand-ins; of a store, all of it is read.
 
-        The problem itself, if its network is whole already or if it was made by hand.
+        It is the problem itself if its network is whole already, or if the problem was made by hand.
         """
         nearest = self.stand_ins is not None and self.stand_ins.nearest
         is_part = self.network.object_numbers or nearest
@@ -265,7 +265,7 @@ class Problem:
 
         Raises:
             UserError: for a name that means no object node or several, a value out of range, or a problem
-                made by hand, which :func:`dataclasses.replace` varies.
+                made by hand. Use :func:`dataclasses.replace` to vary such a problem.
         """
         if self.origin is None:
             raise UserError("this problem was put together by hand: dataclasses.replace makes another of it")
@@ -369,7 +369,10 @@ class Problem:
 
     @cached_property
     def kitchen_seen(self) -> frozenset[int]:
-        """The ids of the kitchen items that the user's rules see: without items that a relaxation adds."""
+        """The ids of the kitchen items that the user's rules see.
+
+        If ``as_seen`` is set, items outside its kitchen are left out.
+        """
         return self.kitchen if self.as_seen is None else self.kitchen & self.as_seen.kitchen
 
     @cached_property
@@ -382,9 +385,8 @@ class Problem:
     def copies_taken(self, plan: Iterable[int]) -> dict[int, int]:
         """Return the fewest copies of each consumable kitchen item with which a plan can be executed.
 
-        The numbers are by object node id; there are none if items last.
-
-        If the item is a goal, the copies that are wanted in the end count, too.
+        The numbers are by object node id; there are none if items last. If the item is a goal, the copies
+        that are wanted in the end count, too.
 
         Parameters:
             plan: The ids of the units, in the order of execution.
@@ -562,7 +564,7 @@ class Problem:
         return {}  # by measure
 
     def _costs_by(self, name: str) -> Sequence[int | Fraction]:
-        """Return the cost of each unit by a measure, computed at the first access.
+        """Return the cost of each unit by a measure; at the first access, all measures are computed.
 
         Raises ``ValueError`` for an unknown measure.
         """
@@ -575,7 +577,7 @@ class Problem:
         """Compute the costs of all units by each measure that has not been computed yet, and keep them.
 
         Parameters:
-            deadline: The limits.
+            deadline: The limits; ``None`` for no limits.
 
         Raises:
             UserError: if rules are wrong.
