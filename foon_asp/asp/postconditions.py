@@ -85,20 +85,20 @@ class Postconditions:
                         wanted.add(o)
                         stack.append(o)
         made: set[int] = set()
-        ran = bytearray(len(needs))
+        executed = bytearray(len(needs))
         while ready:
             unit = ready.pop()
-            ran[unit] = 1
+            executed[unit] = 1
             for o in gives[unit]:
                 if o not in made:
                     made.add(o)
-                    for unit in consumers.get(o, ()):
-                        missing[unit] -= 1
-                        if not missing[unit]:
-                            ready.append(unit)
+                    for consumer in consumers.get(o, ()):
+                        missing[consumer] -= 1
+                        if not missing[consumer]:
+                            ready.append(consumer)
         self.require(
             any(
-                goal not in kitchen and not any(ran[unit] for unit in producers[goal])
+                goal not in kitchen and not any(executed[unit] for unit in producers[goal])
                 for goal in self.problem.targets
             ),
             lambda: "the answer is that there is no tree, but the goals can be made",

@@ -242,8 +242,8 @@ def prepare(
             reached = reach(stocked)
             tree = first_tree(stocked, reached)
             # backwards with the kitchen as it is: items for sale may also be made
-            cut = program.own or (prepared.unsettled and not prepared.redundant)
-            units = relevant_units(kept, reached) if cut else tuple(sorted(reached.units))
+            only_relevant = program.own or (prepared.unsettled and not prepared.redundant)
+            units = relevant_units(kept, reached) if only_relevant else tuple(sorted(reached.units))
         return replace(prepared, units=units, tree=None if tree is None else frozenset(tree))
     except KeyboardInterrupt:
         deadline.interrupt()

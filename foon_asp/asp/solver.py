@@ -379,20 +379,20 @@ class _Solver:
             ),
             max_units,
         )
-        by, fewest = _UNITS_ONLY, 0  # fast, and enough to prove that there is no tree
+        minimized, fewest = _UNITS_ONLY, 0  # fast, and enough to prove that there is no tree
         for _ in range(SEARCH.open_rounds):
             self._mattered.update(map(number, explored))
             self._restrict_to(explored.union(subproblem.achievers_for(explored), *landmarks))
             prepared = replace(self.prepared, program=program)
             text = required + write_known(map(number, sorted(explored)))
-            run = prepared.run(text + write_objectives(by))
+            run = prepared.run(text + write_objectives(minimized))
             self.listener.run_ended(run)
-            if by != self.levels and run.exhausted and run.units is not None:
+            if minimized != self.levels and run.exhausted and run.units is not None:
                 tree = self._unit_ids(run.units)
                 if tree <= explored:  # it keeps to all rules: its cost bounds the optimum
-                    by, fewest = self.levels, len(tree)
-                    worst = self._current_scales().weight(by[0], tree)
-                    run = prepared.run(text + write_objectives(by), f"opt,{worst}")
+                    minimized, fewest = self.levels, len(tree)
+                    worst = self._current_scales().weight(minimized[0], tree)
+                    run = prepared.run(text + write_objectives(minimized), f"opt,{worst}")
                     self.listener.run_ended(run)
             if not run.exhausted or run.units is None:
                 return run if run.exhausted else None
@@ -401,14 +401,14 @@ class _Solver:
                 return self._settle_open_preconditions(run, program, text, explored, fewest)
             if len(explored) > max_units:
                 return None
-            fresh = subproblem.rival_achievers(run.units - explored)
+            frontier = subproblem.rival_achievers(run.units - explored)
             enough = min(max_units, len(explored) * SEARCH.explored_growth)
-            while fresh and len(explored) < enough:
-                fresh = (
-                    subproblem.with_only_achievers(fresh | subproblem.achievers_for(fresh), max_units)
+            while frontier and len(explored) < enough:
+                frontier = (
+                    subproblem.with_only_achievers(frontier | subproblem.achievers_for(frontier), max_units)
                     - explored
                 )
-                explored |= fresh
+                explored |= frontier
         return None
 
     def _settle_open_preconditions(
@@ -649,7 +649,7 @@ class _Solver:
             self.levels[position + 1 :],
         )
         totals: list[dict[int, int]] = []
-        fixed = [scales.weight(objective, best) for objective in earlier_levels]
+        earlier_weights = [scales.weight(objective, best) for objective in earlier_levels]
         chosen, rival, wanted = best, best, [0]  # indices of the totals as good as that of the chosen tree
         # a second search with open preconditions is slow
         at_once = self._open_preconditions and later_levels == _UNITS_ONLY
@@ -660,8 +660,8 @@ class _Solver:
             doubt = scales.count_rounded(chosen)
             if not doubt and multiplies(scales.rounded):
                 break  # nothing succeeds more often than always, and equal products have equal vectors
-            band = scales.weight(scales.rounded, chosen) + max(0, doubt - 1)
-            mode = ",".join(["opt", *map(str, fixed), str(band)])
+            rounded_limit = scales.weight(scales.rounded, chosen) + max(0, doubt - 1)
+            mode = ",".join(["opt", *map(str, earlier_weights), str(rounded_limit)])
             fewer = wanted if at_once and len(chosen) > fewest else ()
             run = self._run(rounded_levels, totals, opt_mode=mode, fewer=dict.fromkeys(fewer, len(chosen)))
             if not run.exhausted or (at_once and run.units is None):
@@ -683,7 +683,7 @@ class _Solver:
             return chosen, True
         for number in wanted:
             limits = (scales.weight(objective, chosen) for objective in later_levels)
-            mode = ",".join(["opt", *map(str, fixed), *map(str, limits)])
+            mode = ",".join(["opt", *map(str, earlier_weights), *map(str, limits)])
             run = self._run((*earlier_levels, *later_levels), totals, number, mode)
             if run.units is not None:
                 self._require_measures(

@@ -178,12 +178,12 @@ class _UnionSearch:
             if self._is_above_limit(order):
                 return False
             tree = self._irredundant_subtree(order) if self._worse else frozenset(order)
-            counts = self._is_within_limit(tree)
-            if counts:
+            is_within_limit = self._is_within_limit(tree)
+            if is_within_limit:
                 sizes = len(self._in_some), len(self._in_every)
                 self._in_some |= tree
                 self._in_every &= tree
-            if not counts or (len(self._in_some), len(self._in_every)) == sizes:
+            if not is_within_limit or (len(self._in_some), len(self._in_every)) == sizes:
                 self._settled += write_avoided(self._avoided, map(self._number, sorted(tree)))
                 self._avoided += 1
                 continue

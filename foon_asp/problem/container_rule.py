@@ -141,8 +141,8 @@ def network_makers(network: Network, rule: ContainerRule, utensils: frozenset[st
     for unit, (outputs, added) in enumerate(zip(network.outputs, gives, strict=True)):
         if len(added) < len(outputs):
             for o in set(outputs).difference(added):
-                known = achievers.get(o, network.producers[o])
-                achievers[o] = tuple(other for other in known if other != unit)
+                remaining = achievers.get(o, network.producers[o])
+                achievers[o] = tuple(other for other in remaining if other != unit)
     if not achievers:
         return network.producers
     return tuple(achievers.get(o, producers) for o, producers in enumerate(network.producers))
