@@ -41,8 +41,8 @@ def read_who_does_units(constraints: Sequence[Constraint]) -> bool:
 def require_local(settings: Settings) -> None:
     """Raise :class:`UserError` for constraints that are not local, or that name a unit by number.
 
-    A constraint is local if units outside the tree do not matter for it. Such constraints would be wrong if a
-    unit may exist twice: done by the robot and by a person. The error has the place of the first such rule.
+    A constraint is local if units outside the tree do not matter for it. Other constraints would be wrong if
+    a unit may exist twice: done by the robot and by a person. The error has the place of the first such rule.
     """
     from foon_asp.encoding.encoding import read_encoding  # noqa: PLC0415 (takes clingo along)
     from foon_asp.rules.numbered_units import numbered_unit  # noqa: PLC0415

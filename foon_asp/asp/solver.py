@@ -324,7 +324,7 @@ class _Solver:
         """Search the gap-bounded subproblem: all units that trees up to the cost of ``tree`` can have.
 
         ``run`` is the search that found the tree; ``None`` if the tree was found without clingo. If that
-        search was over all these units, it is not repeated.
+        search was over all these units, it is not repeated. At a limit, the outcome has ``tree``.
         """
         try:
             with self.deadline.watched("cutting the network", late=True):

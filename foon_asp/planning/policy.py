@@ -150,10 +150,10 @@ def _chance(problem: Problem, branches: tuple[PolicyBranch, ...]) -> Fraction:
     model = _ExecutionModel(problem)
     # by branch, position in it, and minus the failures left: a success and a failure lead to later keys
     waiting = {(0, 0, -branches[0].failures): {State(): Fraction(1)}}
-    order = [*waiting]
+    keys = [*waiting]  # a heap
     reached = Fraction(0)
-    while order:
-        key = heapq.heappop(order)
+    while keys:
+        key = heapq.heappop(keys)
         branch, position, failures = key
         units = branches[branch].units
         for state, chance in waiting.pop(key).items():
@@ -174,7 +174,7 @@ def _chance(problem: Problem, branches: tuple[PolicyBranch, ...]) -> Fraction:
                 if share:
                     if following not in waiting:
                         waiting[following] = {}
-                        heapq.heappush(order, following)
+                        heapq.heappush(keys, following)
                     states = waiting[following]
                     states[new_state] = states.get(new_state, 0) + chance * share
     return reached

@@ -39,7 +39,8 @@ def shortest_schedule(task: ScheduleTask, deadline: Deadline) -> BestSchedule:
     """Return the schedule of least makespan; at a limit or ctrl-C, the best one found so far.
 
     CP-SAT searches for it in another process. If there are too few tools for a schedule, the result says
-    which are lacking. Raises :class:`UserError` if OR-Tools is not installed.
+    which are lacking. At a limit before an order of the steps is known, the steps follow one after the other
+    as listed, if the tools allow it. Raises :class:`UserError` if OR-Tools is not installed.
     """
     if find_spec("ortools") is None:
         raise UserError(_NOT_INSTALLED)
@@ -168,7 +169,8 @@ def _followers(
 ) -> Iterator[tuple[int, int]]:
     """Yield pairs of steps that share an agent, a tool or a copy: an earlier step and a later one.
 
-    The earlier step has to end before the later one starts. ``spans`` are the start and end of each use.
+    Only steps and uses that follow each other directly are paired. The earlier step has to end before the
+    later one starts. ``spans`` are the start and end of each use.
     """
     uses = task.uses
     steps_of_agent: dict[int, list[int]] = {}

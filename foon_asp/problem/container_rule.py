@@ -82,7 +82,7 @@ def given_outputs(
 def _preconditions_and_add_effects(
     unit: FunctionalUnit, rule: ContainerRule, utensils: frozenset[str], network: Network | None
 ) -> tuple[tuple[ObjectNode, ...], tuple[ObjectNode, ...]]:
-    """Return what :func:`needed_inputs` and :func:`given_outputs` return for a unit."""
+    """Return as a pair what :func:`needed_inputs` and :func:`given_outputs` return for a unit."""
     if rule is ContainerRule.STRICT:
         return unit.inputs, unit.outputs
     if network is not None and network.detailed is not None:
