@@ -56,9 +56,9 @@ def assemble(
 ) -> Program:
     """Return the program of a question: the encodings and constraints of settings, read and checked.
 
-    ``used_up`` selects the encodings of plans, in which items are used up. ``warn`` receives warnings. With a
-    ``problem``, these also name words in rules that do not occur in its network. If grounding user rules may
-    not terminate, a worker process is started in advance.
+    ``used_up`` selects the encodings of plans, in which items are used up. ``warn`` receives warnings; with a
+    ``problem``, also about names in rules that its network does not have. If grounding user rules may not
+    terminate, a worker process is started in advance.
 
     Raises :class:`UserError` for files that are missing or at fault, for ``#script``, for constants that no
     encoding has, and for clingo options that would change what an answer means.
@@ -151,16 +151,18 @@ def assemble(
 
 
 def program_of(problem: Problem, settings: Settings, warn: Callable[[str], None]) -> Program:
-    """Return the program of a question: by :func:`ready_made_program`, or else by :func:`assemble`."""
+    """Return the program of :func:`ready_made_program`; if it is ``None``, that of :func:`assemble`."""
     return ready_made_program(problem, settings, warn) or assemble(settings, warn, problem=problem)
 
 
 def ready_made_program(problem: Problem, settings: Settings, warn: Callable[[str], None]) -> Program | None:
     """Return the program of a question whose user rules are all ready-made constraints, without clingo.
 
-    Ready-made constraints come with this program, so their effect is computed without their text. ``None`` if
-    there are other rules or items are used up. Also ``None`` for a large network, unless it is a part of a
-    store or the rules require units.
+    Ready-made constraints come with this program, so their effect is computed without their text: ``files``
+    are without them, and ``ready_made`` has them. ``warn`` receives warnings about their parameters. Returns
+    ``None`` if there are other rules, if items are used up, or if the rules mean something else for clingo in
+    this problem. Also returns ``None`` for a large network, unless it is a part of a store or the rules
+    require units.
     """
     rules = _ready_made_rules(settings)
     if rules is None or problem.items is not None:
@@ -192,8 +194,9 @@ def _warn_of_names(
     constants: Sequence[str],
     warn: Callable[[str], None],
 ) -> None:
-    """Warn of names in rules, measures and parameters that do not occur in the network of a problem.
+    """Warn of names in rules, measures and parameters that the network of a problem does not have.
 
+    Parameters are the constants of ready-made constraints. ``added`` are the encodings of all constraints.
     Without a problem, nothing is checked.
     """
     if problem is None:
@@ -222,7 +225,7 @@ def _warn_of_names(
 
 
 def _is_built_in(encoding: "Encoding") -> bool:
-    """Whether an encoding is a file of this program."""
+    """Whether an encoding is an unchanged file of this program."""
     rules = encoding.rules
     file = rules.file if isinstance(rules, Stated) else rules
     return file is not None and is_own(file)
@@ -231,7 +234,8 @@ def _is_built_in(encoding: "Encoding") -> bool:
 def _ready_made_rules(settings: Settings) -> "ReadyMade | None":
     """Return the user rules if all are ready-made constraints, else ``None``.
 
-    Also ``None`` without reductions, with other encodings, and with rewritten constraints or bounds.
+    Without reductions, with other encodings, and with rewritten constraints or bounds, return ``None`` as
+    well.
     """
     if not settings.constraints or not settings.reductions or settings.replaced is not None:
         return None
@@ -245,8 +249,8 @@ def _ready_made_rules(settings: Settings) -> "ReadyMade | None":
 def _optional_predicates(encodings: "Sequence[Encoding]") -> frozenset[tuple[str, str]]:
     """Return the predicates that user rules read and that have facts only in some questions.
 
-    Each is a pair of the predicate's name and its first argument; the latter is empty if it is no name. An
-    example is ``("cost", "price")``.
+    Each is a pair of the predicate's name and its first argument, such as ``("cost", "price")``. The first
+    argument is empty if it is no name.
     """
     predicates: set[tuple[str, str]] = set()
     for encoding in encodings:
@@ -270,7 +274,10 @@ def _overflow_checks(encodings: "Sequence[Encoding]") -> list[Stated]:
 
 
 def _analysed_rules(settings: Settings) -> "Rules | None":
-    """Return the user rules as analysed, ``None`` without any; raises as :func:`assemble` does."""
+    """Return the user rules, analysed; ``None`` for none, with other encodings, and if rules are rewritten.
+
+    Raises as :func:`assemble` does.
+    """
     return assemble(settings, lambda _: None).understood
 
 
@@ -289,7 +296,11 @@ class ReachOfRules(Enum):
 
 
 def reach_of_rules(settings: Settings) -> ReachOfRules:
-    """Return which units the user rules can depend on or require; raises as :func:`assemble` does."""
+    """Return which units the user rules can depend on or require.
+
+    Rules that are not local, or that cannot be analysed, can depend on all units. Raises as :func:`assemble`
+    does.
+    """
     rules = _ready_made_rules(settings) or _analysed_rules(settings)
     if rules is None or not rules.local:
         return ReachOfRules.ALL
@@ -300,7 +311,8 @@ def hold_for_subtrees(settings: Settings) -> bool:
     """Whether the user rules are antimonotone: if a tree keeps to them, each of its subtrees does, too.
 
     This has to be so in every part of the network, and also if more object nodes are available than the
-    kitchen has. True without rules, false with replaced encodings. Raises as :func:`assemble` does.
+    kitchen has. It is true without rules, and false with replaced encodings, with rewritten rules, and for
+    rules that are not local. Raises as :func:`assemble` does.
     """
     if settings.replaced is not None:
         return False
@@ -322,7 +334,8 @@ def need_clingo(settings: Settings) -> bool:
 def rules_for_varying_kitchens(settings: Settings) -> "Rules | None":
     """Return the user rules, analysed for questions that differ in which object nodes are available.
 
-    ``None`` without rules. Raises as :func:`assemble` does.
+    Returns ``None`` without rules, with other encodings, and if rules are rewritten. Raises as
+    :func:`assemble` does.
     """
     rules = _analysed_rules(settings)
     return None if rules is None else rules.varying({("available", 1)})
@@ -331,8 +344,9 @@ def rules_for_varying_kitchens(settings: Settings) -> "Rules | None":
 def need_whole_network(problem: Problem, settings: Settings) -> bool:
     """Whether user rules may be about units beyond those that the goals can need.
 
-    Then a part of a store is not enough for the question. A part is enough if every rule is local and none
-    requires units that no goal needs.
+    Then a part of a store is not enough for the question. A part is enough without user rules, or if every
+    rule is local and none requires units that no goal needs. Return ``True`` for other rules, with replaced
+    encodings, if items are used up, and if the network is whole already.
     """
     if not settings.constraints and settings.replaced is None:
         return False
@@ -355,9 +369,10 @@ def rules_digest(
 
 
 def _encodings_folder_for(path: Path | None, built_in_folder: Path) -> Path:
-    """Return the folder of encodings: ``path``, a built-in folder of that name, or ``ours`` without a path.
+    """Return the folder of encodings: ``path``, or ``built_in_folder`` if it is ``None``.
 
-    Raises :class:`UserError` if the folder has no encodings.
+    If ``path`` is a mere name and no folder, it is a folder in ``built_in_folder``. Raises :class:`UserError`
+    if the folder has no encodings.
     """
     if path is None:
         return built_in_folder

@@ -25,7 +25,7 @@ def assistance_bounds(twins: Mapping[int, int], max_assisted: int) -> Bounded:
 
 
 def read_who_does_units(constraints: Sequence[Constraint]) -> bool:
-    """Whether constraints read who does a unit: its success rate, or that a person does it.
+    """Whether constraints read who does a unit: its success rate or risk, or predicates about the person.
 
     Raises as :func:`foon_asp.encoding.encoding.read_encoding` does.
     """
@@ -41,8 +41,8 @@ def read_who_does_units(constraints: Sequence[Constraint]) -> bool:
 def require_local(settings: Settings) -> None:
     """Raise :class:`UserError` for constraints that are not local, or that name a unit by number.
 
-    They would be wrong where each unit may exist twice: done by the robot and by a person. The error has the
-    place of the first such rule.
+    A constraint is local if units outside the tree do not matter for it. Other constraints would be wrong if
+    a unit may exist twice: done by the robot and by a person. The error has the place of the first such rule.
     """
     from foon_asp.encoding.encoding import read_encoding  # noqa: PLC0415 (takes clingo along)
     from foon_asp.rules.numbered_units import numbered_unit  # noqa: PLC0415

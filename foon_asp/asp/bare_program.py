@@ -47,7 +47,11 @@ def bare_program(
 
     ``soft`` has the weight of each constraint that may be broken. Then the first objective is the least sum
     of the weights of broken rules. Under ``success``, clingo compares rounded weights, so its optimum may
-    differ in the last digits. Raises :class:`UserError` like :func:`foon_asp.asp.solve`.
+    differ in the last digits. The limits of ``settings`` are ignored. If there is no tree, the program has
+    all units that could matter, so that clingo can prove it.
+
+    Raises :class:`UserError` like :func:`foon_asp.asp.solve`; if items are used up, also for soft constraints
+    and amounts.
     """
     penalty = ""
     # limits of time do not apply to bare clingo
@@ -84,7 +88,7 @@ def bare_program(
 def printable_program(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, soft: Mapping[Constraint, int]
 ) -> BareProgram:
-    """Return what :func:`bare_program` returns; with user rules or encodings, for the whole network."""
+    """Return the program of :func:`bare_program`; under user rules or encodings, over the whole network."""
     ruled = settings.constraints or settings.encodings or soft
     return bare_program(problem.whole if ruled else problem, objectives, settings, soft)
 
@@ -114,9 +118,9 @@ def bare_plan_program(
 
 
 def _require_no_amounts(problem: Problem) -> None:
-    """Raise :class:`UserError` if a unit takes or makes several copies of a node, or several are wanted.
+    """Raise :class:`UserError` if a unit takes or makes several copies of a node.
 
-    The encodings have one copy of each output.
+    Also if several copies of a goal are wanted. The encodings have one copy of each output.
     """
     if problem.counts_amounts:
         raise UserError("amounts are not built for bare clingo, whose encodings have one copy of each output")

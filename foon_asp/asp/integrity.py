@@ -28,8 +28,8 @@ _PASSED_OVER = {ASTType.Program, ASTType.Comment}
 class IntegrityConstraint(NamedTuple):
     """A rule without a head: its number, the constraint that it belongs to, its source and text.
 
-    ``number`` counts from 1. ``constants`` are the user's settings, ``NAME=VALUE``, of the constants in the
-    rule.
+    ``number`` counts from 1. ``constants`` are the user's settings of constants that occur in the rule:
+    ``NAME=VALUE``.
     """
 
     number: int
@@ -56,15 +56,16 @@ def relax(
 ) -> tuple[tuple[IntegrityConstraint, ...], Relaxed]:
     """Number integrity constraints from 1, and rewrite them so that trees may break them.
 
-    Without ``soft``, integrity constraint number C need not hold if the atom ``_dropped(C)`` is true
-    (``questions/clash.lp``). With ``soft``, it becomes a rule for ``_broken(C,Way)``, where ``Way`` has the
-    values of its variables (``questions/soft.lp``). Other rules of the ``constraints`` stay as they are.
-    ``constants`` are the user's settings of constants.
+    Returns the numbered integrity constraints, and the rewritten rules. Without ``soft``, integrity
+    constraint number C need not hold if the atom ``_dropped(C)`` is true (``questions/clash.lp``). With
+    ``soft``, it becomes a rule for ``_broken(C,Way)``, where ``Way`` has the values of its variables
+    (``questions/soft.lp``). Other rules of the ``constraints`` stay as they are. ``constants`` are the user's
+    settings of constants. ``deadline`` has the limits of the checks.
 
-    ``before`` are other constraints of the question, which are not rewritten; in messages, their texts are
-    numbered before those of ``constraints``. Each constraint is first parsed and grounded without facts, so
-    that its errors are raised with their places. Raises as :func:`foon_asp.encoding.encoding.read_encoding`
-    does.
+    ``before`` are other constraints of the question, which are not rewritten. In messages, the numbers of
+    their texts precede those of ``constraints``. Each constraint is first parsed and grounded without facts,
+    so that its errors are raised with their places. Raises as
+    :func:`foon_asp.encoding.encoding.read_encoding` does.
     """
     numbered: list[IntegrityConstraint] = []
     rules: dict[str, Source] = {}
@@ -105,7 +106,10 @@ def _statements(rules: Loaded) -> list[AST]:
 
 @contextmanager
 def errors_at_sources(relaxed: Relaxed, text: str) -> Iterator[None]:
-    """Return a context in which errors in the rewritten ``text`` are raised with places in the files."""
+    """Return a context in which errors in the rewritten rules are raised with places in the user's files.
+
+    ``text`` is the text given to clingo, which has the rules.
+    """
     try:
         yield
     except InputError as error:
@@ -127,7 +131,7 @@ def errors_at_sources(relaxed: Relaxed, text: str) -> Iterator[None]:
 def _check_alone(rules: Loaded, deadline: Deadline) -> None:
     """Parse and ground one constraint without facts, to raise its errors with their places.
 
-    Later it is only a part of a rewritten text.
+    Later it is a part of a rewritten text, in which errors have no place. At a limit, the check ends early.
     """
     read_encoding(rules)
     try:  # without facts, for unsafe variables alone
@@ -161,7 +165,7 @@ def _rule_for_broken(rule: AST, number: int) -> str:
 
 
 def _parse_statement(text: str) -> AST:
-    """Return the last statement of a text."""
+    """Return the parsed statement of a text that has a single statement."""
     statements: list[AST] = []
     parse_string(text, statements.append)
     return statements[-1]

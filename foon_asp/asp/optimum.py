@@ -20,9 +20,10 @@ def solve(
 ) -> Outcome:
     """Return the best tree, or the best plan where items are used up, with what is proved about it.
 
-    ``objectives`` are lexicographic; ``units`` decides last. At a limit, the outcome has the best tree so
-    far. The other parameters are those of :func:`foon_asp.asp.solver.solve`. Raises :class:`UserError` as
-    that function and :func:`foon_asp.plans.plan_search.solve_used_up` do.
+    ``objectives`` are lexicographic; ``units`` decides last. At a limit, the outcome has the best tree or
+    plan found. The other parameters are those of :func:`foon_asp.asp.solver.solve`; ``mattered`` and
+    ``solved`` have no effect on plans. Raises :class:`UserError` as that function and
+    :func:`foon_asp.plans.plan_search.solve_used_up` do.
     """
     if problem.items is None:
         return solver.solve(problem, objectives, settings, reporter, mattered, solved)

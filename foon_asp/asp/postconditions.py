@@ -19,8 +19,8 @@ from foon_asp.rules.passed_constraint import RuleText
 class Postconditions:
     """Checks of the answers to one question; a check that fails raises :class:`BugError` with the question.
 
-    ``levels`` are the objectives as optimized. ``own`` says that all rules are built-in; then a tree that
-    does not execute is a bug of this program.
+    ``levels`` are the objectives as optimized. ``own`` says that all rules are built in. Then a tree that
+    does not execute is a bug of this program; otherwise it is an error in the user's rules.
     """
 
     def __init__(
@@ -30,7 +30,10 @@ class Postconditions:
         self._settings, self._own = settings, own
 
     def require(self, holds: bool, otherwise: Callable[[], str]) -> None:
-        """Raise :class:`BugError` with the message of ``otherwise`` and the question, unless ``holds``."""
+        """Raise :class:`BugError` unless ``holds``.
+
+        Its text is the message that ``otherwise`` returns, and the question.
+        """
         if not holds:
             raise BugError(f"{otherwise()}\n{self._question()}")
 
@@ -60,7 +63,7 @@ class Postconditions:
     def require_no_tree(self) -> None:
         """Require that no tree makes all goals and required sets of the restriction.
 
-        This is checked by forward reachability over the units that are relevant for them.
+        This is checked by forward reachability over the units that are relevant for these goals and sets.
         """
         needs, gives, producers = self.problem.needs, self.problem.gives, self.problem.makers
         kitchen = self.problem.kitchen
@@ -82,20 +85,20 @@ class Postconditions:
                         wanted.add(o)
                         stack.append(o)
         made: set[int] = set()
-        ran = bytearray(len(needs))
+        executed = bytearray(len(needs))
         while ready:
             unit = ready.pop()
-            ran[unit] = 1
+            executed[unit] = 1
             for o in gives[unit]:
                 if o not in made:
                     made.add(o)
-                    for unit in consumers.get(o, ()):
-                        missing[unit] -= 1
-                        if not missing[unit]:
-                            ready.append(unit)
+                    for consumer in consumers.get(o, ()):
+                        missing[consumer] -= 1
+                        if not missing[consumer]:
+                            ready.append(consumer)
         self.require(
             any(
-                goal not in kitchen and not any(ran[unit] for unit in producers[goal])
+                goal not in kitchen and not any(executed[unit] for unit in producers[goal])
                 for goal in self.problem.targets
             ),
             lambda: "the answer is that there is no tree, but the goals can be made",
@@ -106,8 +109,9 @@ class Postconditions:
     ) -> None:
         """Require that the claims of an outcome with a tree are true: its costs, its bounds and its proof.
 
-        ``best`` has the costs of the incumbent of the search: the tree must not cost more. ``reduced`` is the
-        result of the reductions: it must agree with the costs. Both may be ``None``.
+        No unit may be in the tree twice. ``best`` has the costs of the incumbent of the search: the tree must
+        not cost more. ``reduced`` is the result of the reductions: it must agree with the costs. Both may be
+        ``None``.
         """
         assert outcome.units is not None
         assert outcome.costs is not None
@@ -163,7 +167,11 @@ class Postconditions:
         )
 
     def _require_bounds(self, outcome: Outcome, costs: Costs) -> None:
-        """Require that the bounds allow the tree, and equal its costs if it is called optimal."""
+        """Require that the bounds allow the tree, and equal its costs if it is called optimal.
+
+        They are compared in the order of the objectives, up to the first one whose bound is missing or better
+        than the cost.
+        """
         exact = {objective: costs.measure(objective) for objective in self.levels}
         self.require(
             outcome.status is not Status.OPTIMAL or outcome.bounds == exact,
@@ -255,14 +263,17 @@ class Postconditions:
 
 
 def _costs_text(costs: Costs | None) -> str:
-    """Return costs as text: ``units 2, inputs 6``."""
+    """Return costs as text: ``units 2, inputs 6``; ``nothing`` for ``None``."""
     if costs is None:
         return "nothing"
     return ", ".join(f"{name} {_number_text(figure)}" for name, figure in costs.measures.items())
 
 
 def _number_text(figure: int | Fraction | None) -> str:
-    """Return a number as text, ``3/5`` or ``unknown``, even if it has more digits than ``str`` allows."""
+    """Return a number as text, such as ``3/5``; ``unknown`` for ``None``.
+
+    It may have more digits than ``str`` allows.
+    """
     if figure is None:
         return "unknown"
     numerator, denominator = Decimal(figure.numerator), Decimal(figure.denominator)

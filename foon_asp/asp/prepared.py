@@ -80,7 +80,8 @@ class Prepared:
     def facts(self) -> str:
         """The facts of the problem, as text, without the facts about objectives.
 
-        They include bounds on costs and, where needed, the sets of units that rules require. Raises
+        If user rules were applied before the search, only facts that some rule reads are written. Bounds on
+        costs are included and, if clingo has to enforce them, the sets of units that rules require. Raises
         ``KeyboardInterrupt`` at a limit.
         """
         from foon_asp.encoding import fact_writer as writing  # noqa: PLC0415
@@ -101,7 +102,7 @@ class Prepared:
             return facts + writing.write_required([map(number, sorted(remaining & units)) for units in sets])
 
     def keeps(self, units: Collection[int]) -> bool | None:
-        """Whether a tree keeps to all user rules. ``None`` if a limit was reached first.
+        """Whether a tree, given by unit ids, keeps to all user rules; ``None`` if a limit stops the check.
 
         The rules have to be local: units outside the tree must not matter for them. clingo decides, unless
         all rules are ready-made. Raises :class:`UserError` for a fault in a rule.
@@ -138,8 +139,9 @@ class Prepared:
     ) -> "Run":
         """Run clingo with additional facts and encodings; see :func:`foon_asp.encoding.clingo_run.run`.
 
-        Returns an empty run if a limit is reached while the facts are written. Errors in rewritten
-        constraints have their places in the files.
+        ``predicates`` are those whose atoms the run has, in addition to the units. Returns an empty run if a
+        limit is reached while the facts are written. Errors in rewritten constraints have their places in the
+        files.
         """
         from foon_asp.encoding.clingo_run import run  # noqa: PLC0415 (both take clingo along)
         from foon_asp.encoding.run import Run  # noqa: PLC0415
@@ -184,13 +186,13 @@ def prepare(
 
     ``listener``: receives trees and bounds. Without one, no reductions by costs are made, so that all trees
     remain. With one, they may exclude every tree except one of the best. If ``program`` has bounds on trees,
-    none are made either, since perhaps only excluded trees meet the bounds.
-    ``for_sale``: ids of object nodes that may be added to the kitchen.
+    none are made either: perhaps only excluded trees meet the bounds.
+    ``for_sale``: ids of object nodes that may be added to the kitchen. With them, no rules are applied first.
     ``brief``: whether to skip the search for the best tree without the rules that clingo has to enforce.
-    ``solved``: goals of the same question that are solved already, by which reductions save work.
+    ``solved``: the solved goals of questions that differ only in their goals, by which reductions save work.
 
     At a limit, a question with ``stopped`` is returned. Raises :class:`UserError` if an objective needs data
-    that are missing, and for items that are used up.
+    that are missing, if a constant has the name of an objective, and for items that are used up.
     """
     if problem.items is not None:
         raise UserError("this question is not built for items that are used up")
@@ -240,8 +242,8 @@ def prepare(
             reached = reach(stocked)
             tree = first_tree(stocked, reached)
             # backwards with the kitchen as it is: items for sale may also be made
-            cut = program.own or (prepared.unsettled and not prepared.redundant)
-            units = relevant_units(kept, reached) if cut else tuple(sorted(reached.units))
+            only_relevant = program.own or (prepared.unsettled and not prepared.redundant)
+            units = relevant_units(kept, reached) if only_relevant else tuple(sorted(reached.units))
         return replace(prepared, units=units, tree=None if tree is None else frozenset(tree))
     except KeyboardInterrupt:
         deadline.interrupt()
@@ -252,7 +254,8 @@ def _apply_rules(prepared: Prepared, rules: "Rules | ReadyMade") -> Prepared:
     """Apply the user rules that remove units or require sets of units, and return the question.
 
     If other rules remain, the question is ``unsettled``; if no tree can satisfy the rules, it is
-    ``contradicted``. It is returned unchanged if the rules cannot be applied because they are not local.
+    ``contradicted``. It is returned unchanged if the rules cannot be applied: if they are not local, or
+    clingo refuses one. In a large network, all rules may be left to the search.
     """
     if rules.unsettled and not rules.local:
         return prepared

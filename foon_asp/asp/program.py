@@ -26,17 +26,17 @@ class Program(NamedTuple):
     ``rules``: rules as text, in addition to the files.
     ``bounded``: whether bounds on costs may exclude trees.
     ``looked_at``: the predicates that user rules read, by name and arity.
-    ``text``: the content of the files when they were checked.
+    ``text``: the content of the files when they were checked; empty if all files are built in.
     ``endless``: whether grounding may not terminate.
     ``encodings``: the folder that replaces the built-in encodings; ``None`` without one.
     ``ours``: the files without those that the user added.
     ``understood``: the user rules, analysed. ``None`` if there are none, if encodings are replaced, or if
     rules may be broken or dropped.
-    ``named``: the names of constants that files define.
+    ``named``: the names of the constants that encodings and user rules define.
     ``reads``: the predicates that user rules read and that have facts only in some questions. Each is a pair
     of its name and its first argument, which is empty if it is no name.
-    ``ready_made``: the user rules, if all are ready-made constraints; else ``None``. Then ``files`` are
-    without them.
+    ``ready_made``: the user rules, if all are ready-made constraints; else ``None``. If they are ready-made,
+    ``files`` are without them.
     ``whole``: for ready-made constraints, the program with these rules, which clingo runs.
     """
 
@@ -61,7 +61,7 @@ class Program(NamedTuple):
 
     @property
     def added(self) -> "Rules | ReadyMade | None":
-        """The user rules as ready-made or analysed ones, ``None`` without any."""
+        """The user rules, ready-made or analysed; ``None`` if they are neither."""
         return self.ready_made or self.understood
 
     def require_facts(self, problem: Problem, objectives: Collection[Objective]) -> None:

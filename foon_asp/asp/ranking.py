@@ -111,7 +111,8 @@ class Ranked:
     def _require_in_order(self, run: Run, tree: _Tree, earlier: Sequence[_Tree]) -> None:
         """Require that clingo's costs of a tree are right and in order, and that it contains no earlier tree.
 
-        Raises :class:`UserError` where replaced encodings measure something else.
+        ``earlier`` are the trees found before, in order. Raises :class:`UserError` where replaced encodings
+        measure something else.
         """
         units, _, rounded = tree
         agree = [cost % 2**32 for cost in rounded] == [cost % 2**32 for cost in run.cost]
@@ -144,7 +145,10 @@ class Ranked:
         return units, costs
 
     def _is_settled(self, tree: _Tree, last: Rounded) -> bool:
-        """Whether a tree is at least as good as every tree whose rounded costs are ``last`` or more."""
+        """Whether a tree is at least as good as every tree whose rounded costs are ``last`` or more.
+
+        If no costs are rounded, it always is.
+        """
         rounded_objective = self._prepared.scales.rounded
         if rounded_objective is None:
             return True

@@ -49,7 +49,7 @@ class Reporter:
         """Receive the number of answers found so far: once at the start, then after each answer.
 
         Parameters:
-            word: What is being done, as a word for people.
+            word: A word for people that names the work being done.
             done: The number of answers found.
             total: The number of answers asked for.
         """

@@ -6,11 +6,11 @@ from typing import NamedTuple
 class SearchTuning(NamedTuple):
     """Sizes of the programs that clingo gets, and of the results that are stored.
 
-    ``nearest_units``: the number of units in the first reduced-cost neighbourhood, and of units of landmarks
-    explored at once.
+    ``nearest_units``: the number of units in the first reduced-cost neighbourhood. Landmarks of at most so
+    many units are explored at once.
     ``nearest_growth``: the factor by which the neighbourhood grows if it has no tree.
     ``explored_units``: the greatest number of explored units, without those that mattered before.
-    ``explored_growth``: the factor by which the explored units grow in each round.
+    ``explored_growth``: the greatest factor by which the explored units grow in each round.
     ``open_rounds``: the greatest number of searches for trees with open preconditions; each explores more
     units.
     ``cut_objects``: the number of object nodes in the cuts that a certificate tries first; it finds others by

@@ -21,7 +21,7 @@ class Relaxed(NamedTuple):
 
     ``constraints``: the original constraints, which are checked like others, but not loaded.
     ``rules``: their rewritten text.
-    ``encoding``: the built-in file of ``encodings/questions`` that is loaded with it.
+    ``encoding``: the built-in file of ``encodings/questions`` that is loaded with the rules.
     ``places``: the source of each rewritten rule, by its text.
     ``files``: the files that the places are in.
     """
@@ -57,14 +57,15 @@ class Settings(NamedTuple):
     """Settings of the search: constraints, encodings, reductions and limits.
 
     ``constraints``: user rules, which are added to the encodings.
-    ``encodings``: a folder whose files replace the built-in ones; ``None`` without one.
+    ``encodings``: a folder whose files replace the built-in encodings; ``None`` to use the built-in ones.
     ``constants``: settings of constants, ``NAME=VALUE``.
     ``clingo_options``: options that go to clingo unchanged.
-    ``reductions``: those to make before the search. They are made as far as constraints allow, and not with
-    bounds or other encodings.
-    ``relaxed``: rewritten constraints.
-    ``bounded``: upper bounds on costs.
-    ``deadline``: the limits on everything from the reductions to the last proof; they have begun.
+    ``reductions``: the reductions to make before the search. They are made as far as constraints allow. With
+    bounds or other encodings, none are made.
+    ``relaxed``: rewritten constraints that trees may break; ``None`` for none.
+    ``bounded``: upper bounds on costs; ``None`` for none.
+    ``deadline``: the limits on everything from the reductions to the last proof, whose time is running;
+    ``None`` for no limits.
     """
 
     constraints: tuple[Constraint, ...] = ()
@@ -89,10 +90,10 @@ class Settings(NamedTuple):
 
     @property
     def asks_for_statistics(self) -> bool:
-        """Whether the options request clingo's statistics."""
+        """Whether ``clingo_options`` request clingo's statistics."""
         return asks_for_statistics(self.clingo_options)
 
     @property
     def begun(self) -> Deadline:
-        """The ``deadline``; without one, a deadline without limits that begins now."""
+        """The ``deadline``; if it is ``None``, a new :class:`Deadline` without limits, which begins now."""
         return self.deadline or Deadline()

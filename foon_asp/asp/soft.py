@@ -44,8 +44,8 @@ def soft_rules(
 ) -> tuple[tuple[IntegrityConstraint, ...], dict[int, int], Relaxed]:
     """Return the integrity constraints of soft constraints, their weights by number, and rewritten rules.
 
-    ``weights`` are by soft constraint. The rewritten rules count the instances that a tree breaks. Raises
-    :class:`UserError` for a soft constraint that is also a constraint of ``settings``.
+    ``weights`` maps each soft constraint to its weight. The rewritten rules count the instances that a tree
+    breaks. Raises :class:`UserError` for a soft constraint that is also a constraint of ``settings``.
     """
     weight_of = {find_constraint(constraint): weight for constraint, weight in weights.items()}
     both = weight_of.keys() & set(map(find_constraint, settings.constraints))
@@ -68,8 +68,9 @@ def solve_soft(
 ) -> SoftOutcome:
     """Find the tree with the least penalty, and among these the best by lexicographic objectives.
 
-    ``weights`` are by soft constraint; the constraints of ``settings`` are hard. Each instance of a rule that
-    a tree breaks costs the weight of the rule. Two instances differ in the values of global variables. Raises
+    ``weights`` maps each soft constraint to its weight; the constraints of ``settings`` are hard. Each
+    instance of a rule that a tree breaks costs the weight of the rule. Two instances differ in the values of
+    global variables. At a limit, the tree found so far is returned, without a proof. Raises
     :class:`UserError` like :func:`foon_asp.asp.solve`.
     """
     settings = settings._replace(deadline=settings.begun)
@@ -84,11 +85,14 @@ def solve_soft(
     penalty_run = Run()
 
     def run_with_penalty(question_facts: str) -> Run:
-        """Run clingo for the least penalty, under additional facts."""
+        """Run clingo for the least penalty, with additional facts; count the instances broken."""
         return prepared.run(question_facts + write_least_penalty(1), predicates=[("_broken", 2)])
 
     def soft_outcome(outcome: Outcome, ways: Mapping[int, int]) -> SoftOutcome:
-        """Return an outcome with its penalty; ``ways`` has the number of broken instances by constraint."""
+        """Return an outcome with its penalty.
+
+        ``ways`` has the number of broken instances by number of integrity constraint.
+        """
         broken = tuple(
             Broken(constraint, by_number[constraint.number], ways.get(constraint.number, 0))
             for constraint in constraints

@@ -48,12 +48,12 @@ def solve(
     """Return the best task tree under lexicographic objectives, with what is proved about it.
 
     ``units`` decides last, so that the tree is irredundant. At a limit or ctrl-C, the outcome has the
-    incumbent.
+    incumbent. If clingo's statistics are requested and clingo does not run, this is reported.
 
     ``mattered``: units, by id in the whole network, that the search for a similar question explored. They are
     explored first, and the units that this search explores are added.
-    ``solved``: goals of the same question that are solved already, by which reductions save work; this goal
-    is added.
+    ``solved``: the solved goals of questions that differ only in their goals, by which reductions save work.
+    The goal of this question is added.
 
     Raises :class:`UserError` for faults in constraints, encodings and options, and for ``success`` without
     known rates. Raises :class:`BugError` if stand-ins that the best tree may need are not in the network.
@@ -73,9 +73,9 @@ def solve(
 
 
 def solve_prepared(prepared: Prepared, objectives: Sequence[Objective], rules: str = "") -> Outcome:
-    """Return the best task tree of a prepared question under additional ``rules``, with what is proved.
+    """Return the best task tree of a prepared question under additional rules, with what is proved.
 
-    Nothing is reported.
+    ``rules`` are the additional rules, as text. Nothing is reported.
     """
     return _Solver(
         prepared, objectives, _IncumbentListener(prepared.problem, objectives, Reporter()), {}, rules
@@ -99,7 +99,10 @@ class _IncumbentListener(Listener):
             self.reporter.tree(costs)
 
     def bound(self, costs: ExactCosts, bound: int) -> None:
-        """Receive a proved lower bound, and report it as one on the first objective."""
+        """Receive a proved lower bound, and report it as a bound on the first objective.
+
+        ``bound`` is in the scaled integers of ``costs``.
+        """
         self.reporter.bound(self.levels[0], costs.first_objective_bound(bound))
 
     def run_ended(self, run: "Run") -> None:
@@ -109,7 +112,7 @@ class _IncumbentListener(Listener):
             self.reporter.statistics(run.statistics)
 
     def costs(self, units: Units) -> Costs:
-        """Return the costs of units, cached for the last tree."""
+        """Return the costs of a tree; those of the last tree are cached."""
         if self._last_costed is None or self._last_costed[0] != units:
             self._last_costed = units, self.problem.costs(units)
         return self._last_costed[1]
@@ -129,9 +132,10 @@ class _Solver:
     ) -> None:
         """Take a prepared question.
 
-        ``listener`` has the incumbent of the reductions, and receives better trees. ``seconds``, the time by
-        phase, is added to. ``rules`` are additional rules as text. ``mattered`` are units to explore first,
-        by id in the whole network; explored units are added to it.
+        ``listener`` has the incumbent of the reductions, and receives better trees. ``seconds`` has the time
+        of each phase; the times of this search are added. ``rules`` are additional rules as text.
+        ``mattered`` are units to explore first, by id in the whole network; the units that are explored are
+        added.
         """
         self.prepared, self.objectives, self.listener, self.seconds = (
             prepared,
@@ -151,7 +155,8 @@ class _Solver:
     def solve(self) -> Outcome:
         """Return the outcome of the search; at a limit or ctrl-C, the outcome with the incumbent.
 
-        The ground program is closed at the end.
+        If there is no incumbent at a limit, it is the tree of the prepared question, unless rules or bounds
+        may exclude this tree. The ground program is closed at the end.
         """
         deadline = self.deadline
         try:
@@ -178,7 +183,11 @@ class _Solver:
         return self.prepared.tree if decided else None
 
     def _solve(self) -> Outcome:
-        """Return the outcome of the search; a limit raises ``KeyboardInterrupt``."""
+        """Return the outcome of the reductions or, if they leave the question open, of a search with clingo.
+
+        A limit during a run of clingo leads to an outcome without a proof. Any other limit raises
+        ``KeyboardInterrupt``.
+        """
         prepared = self.prepared
         if prepared.stopped:
             return self._outcome(Status.UNKNOWN, None, {})
@@ -202,40 +211,54 @@ class _Solver:
         # at a limit, not even what clingo would be given is written
         return self._outcome_at_limit(incumbent, ()) if self.deadline.passed else self._search(incumbent)
 
-    def _solve_unsettled(self, reduced: Reduced, subproblem: Subproblem, tree: Units) -> Outcome:
+    def _solve_unsettled(
+        self, reduced: Reduced, subproblem: Subproblem, tree_without_rules: Units
+    ) -> Outcome:
         """Find the best tree under rules that the reductions ignored.
 
-        ``tree`` is the best tree without these rules, if that is proved. If it also keeps to the rules, it is
-        optimal.
+        ``tree_without_rules`` is the best tree that was found without these rules. If it keeps to the rules,
+        and ``reduced`` proves it best without them, it is optimal. If a similar question explored units, the
+        tree is taken to break the rules, and not checked.
         """
         if self._mattered:  # the tree breaks rules, as in the similar question
-            return self._solve_violated(subproblem, tree)
-        keeps = self.prepared.keeps(tree)
+            return self._solve_violated(subproblem, tree_without_rules)
+        keeps = self.prepared.keeps(tree_without_rules)
         if keeps:
-            self.listener.tree(tree)
+            self.listener.tree(tree_without_rules)
             if reduced.settled:
-                return self._optimal_outcome(tree)
+                return self._optimal_outcome(tree_without_rules)
         self.prepared = replace(self.prepared, reduced=reduced._replace(settled=False))
         if keeps:
-            return self._search_gap_bounded(subproblem, tree, None)
-        return self._solve_violated(subproblem, tree)
+            return self._search_gap_bounded(subproblem, tree_without_rules, None)
+        return self._solve_violated(subproblem, tree_without_rules)
 
-    def _solve_violated(self, subproblem: Subproblem, tree: Units) -> Outcome:
-        """Find the best tree under rules that ``tree`` breaks; ``tree`` is the best one without the rules.
+    def _solve_violated(self, subproblem: Subproblem, tree_without_rules: Units) -> Outcome:
+        """Find the best tree under the rules if the best tree without them breaks some of them.
 
-        Three searches are tried in turn: by a price on a limited sum, for trees with open preconditions, and
-        in ever larger neighbourhoods of the goals.
+        ``tree_without_rules`` is that tree. These searches are made in turn, until one finds the best tree or
+        proves that there is none:
+
+        - by a price on a limited sum, unless a similar question explored units;
+        - for trees with open preconditions;
+        - in ever larger neighbourhoods of the goals. If one has a tree, the gap-bounded subproblem is
+          searched for the best tree.
+
+        If trees may need redundant units, only the last search is made.
         """
         if (
             not subproblem.redundant
             and not self._mattered
-            and (outcome := self._solve_by_priced_limit(subproblem, tree)) is not None
+            and (outcome := self._solve_by_priced_limit(subproblem, tree_without_rules)) is not None
         ):
             return outcome
-        run = None if subproblem.redundant else self._search_with_open_preconditions(subproblem, tree)
+        run = (
+            None
+            if subproblem.redundant
+            else self._search_with_open_preconditions(subproblem, tree_without_rules)
+        )
         is_best = run is not None
         if run is None:
-            run = self._search_near_goals(subproblem, tree)
+            run = self._search_near_goals(subproblem, tree_without_rules)
         if run.units is None:
             return self._outcome(Status.INFEASIBLE if run.exhausted else Status.UNKNOWN, None, {})
         self.listener.tree(run.units)
@@ -245,11 +268,12 @@ class _Solver:
             return self._outcome_at_limit(run.units, ())
         return self._search_gap_bounded(subproblem, self._best_reported(run.units), run)
 
-    def _solve_by_priced_limit(self, subproblem: Subproblem, tree: Units) -> Outcome | None:
+    def _solve_by_priced_limit(self, subproblem: Subproblem, tree_without_rules: Units) -> Outcome | None:
         """Find the best tree under a limit on a sum by putting a Lagrangian price on the sum.
 
-        This is tried for each sum of the rules whose limit ``tree`` exceeds. ``None`` if no price yields a
-        tree that keeps to all rules.
+        Each sum of the rules whose limit ``tree_without_rules`` exceeds is tried in turn. Returns an outcome
+        without a tree if no tree is within a limit, or if the time is up. Returns ``None`` if no price yields
+        a tree that keeps to all rules.
         """
         from foon_asp.hypergraph.priced_limit import search_within_limit  # noqa: PLC0415 (of use with few rules)
 
@@ -257,12 +281,12 @@ class _Solver:
         assert program is not None
         assert program.added is not None
         for row in program.added.upper_limits(self.problem, self.deadline):
-            if row.total(tree) <= row.bound:
+            if row.total(tree_without_rules) <= row.bound:
                 continue
             try:
                 with self.deadline.watched("cutting the network", late=True):
                     result = search_within_limit(
-                        subproblem, self.levels, tree, row, lambda: self.deadline.passed
+                        subproblem, self.levels, tree_without_rules, row, lambda: self.deadline.passed
                     )
             except KeyboardInterrupt:
                 self.deadline.interrupt()
@@ -279,14 +303,17 @@ class _Solver:
                 return self._search_gap_bounded(subproblem, result.tree, None)
         return None
 
-    def _search_near_goals(self, subproblem: Subproblem, tree: Units) -> "Run":
+    def _search_near_goals(self, subproblem: Subproblem, tree_without_rules: Units) -> "Run":
         """Search ever larger neighbourhoods of the goals until one has a tree; return the last run.
 
-        The last neighbourhood is the whole subproblem. If a limit is reached, the run is not exhausted.
+        Each neighbourhood includes ``tree_without_rules``. The last one is the whole subproblem. If a limit
+        is reached, the run is not exhausted.
         """
         all_units, size = subproblem.all_units(), SEARCH.nearest_units
         while True:
-            neighbourhood = all_units if size >= len(all_units) else subproblem.nearest_units(size) | tree
+            neighbourhood = (
+                all_units if size >= len(all_units) else subproblem.nearest_units(size) | tree_without_rules
+            )
             size *= SEARCH.nearest_growth
             self._restrict_to(neighbourhood)
             run = self._run(self.levels)
@@ -296,8 +323,8 @@ class _Solver:
     def _search_gap_bounded(self, subproblem: Subproblem, tree: Units, run: "Run | None") -> Outcome:
         """Search the gap-bounded subproblem: all units that trees up to the cost of ``tree`` can have.
 
-        ``run`` is the search that found the tree, ``None`` if the tree was found without clingo. If that
-        search was over all these units, it is not repeated.
+        ``run`` is the search that found the tree; ``None`` if the tree was found without clingo. If that
+        search was over all these units, it is not repeated. At a limit, the outcome has ``tree``.
         """
         try:
             with self.deadline.watched("cutting the network", late=True):
@@ -309,16 +336,23 @@ class _Solver:
         self._restrict_to(candidates)
         return self._search(tree)
 
-    def _search_with_open_preconditions(self, subproblem: Subproblem, tree: Units) -> "Run | None":
+    def _search_with_open_preconditions(
+        self, subproblem: Subproblem, tree_without_rules: Units
+    ) -> "Run | None":
         """Search a relaxation in which preconditions of unexplored units may stay open.
 
         An open precondition is one that no unit of the tree makes. Every tree that keeps to the rules has a
         part that is feasible in the relaxation. So an infeasible relaxation proves that there is no tree, and
         a best tree without open preconditions is optimal. A unit of each landmark is required as well, since
-        every tree has one. The units of the best tree and their rivals are explored in the next round.
+        every tree has one. Until a tree without open preconditions is found, only units are minimized, which
+        is fast.
 
-        Returns the run with a proof; ``None`` if no run has one within ``SEARCH.open_rounds``. The explored
-        units are added to ``_mattered``.
+        The first round explores ``tree_without_rules``, small landmarks and the units that mattered before.
+        Each later round also explores the units of the best tree and their rivals, the other achievers of
+        what they make.
+
+        Returns the run with a proof. Returns ``None`` if no run has one within the limits of
+        :class:`SearchTuning`. The explored units are added to ``_mattered``.
         """
         from foon_asp.encoding.fact_writer import write_known, write_objectives, write_required  # noqa: PLC0415
 
@@ -336,28 +370,29 @@ class _Solver:
         program = program._replace(files=files, arguments=arguments)
         landmarks = subproblem.landmarks()
         required = write_required([map(number, sorted(landmark)) for landmark in landmarks])
-        before = subproblem.units_of_numbers(self._mattered)
-        max_units = SEARCH.explored_units + len(before)
+        explored_before = subproblem.units_of_numbers(self._mattered)
+        max_units = SEARCH.explored_units + len(explored_before)
         explored = subproblem.with_only_achievers(
-            before.union(
-                tree, *(landmark for landmark in landmarks if len(landmark) <= SEARCH.nearest_units)
+            explored_before.union(
+                tree_without_rules,
+                *(landmark for landmark in landmarks if len(landmark) <= SEARCH.nearest_units),
             ),
             max_units,
         )
-        by, fewest = _UNITS_ONLY, 0  # fast, and enough to prove that there is no tree
+        minimized, fewest = _UNITS_ONLY, 0  # fast, and enough to prove that there is no tree
         for _ in range(SEARCH.open_rounds):
             self._mattered.update(map(number, explored))
             self._restrict_to(explored.union(subproblem.achievers_for(explored), *landmarks))
             prepared = replace(self.prepared, program=program)
             text = required + write_known(map(number, sorted(explored)))
-            run = prepared.run(text + write_objectives(by))
+            run = prepared.run(text + write_objectives(minimized))
             self.listener.run_ended(run)
-            if by != self.levels and run.exhausted and run.units is not None:
+            if minimized != self.levels and run.exhausted and run.units is not None:
                 tree = self._unit_ids(run.units)
                 if tree <= explored:  # it keeps to all rules: its cost bounds the optimum
-                    by, fewest = self.levels, len(tree)
-                    worst = self._current_scales().weight(by[0], tree)
-                    run = prepared.run(text + write_objectives(by), f"opt,{worst}")
+                    minimized, fewest = self.levels, len(tree)
+                    worst = self._current_scales().weight(minimized[0], tree)
+                    run = prepared.run(text + write_objectives(minimized), f"opt,{worst}")
                     self.listener.run_ended(run)
             if not run.exhausted or run.units is None:
                 return run if run.exhausted else None
@@ -366,14 +401,14 @@ class _Solver:
                 return self._settle_open_preconditions(run, program, text, explored, fewest)
             if len(explored) > max_units:
                 return None
-            fresh = subproblem.rival_achievers(run.units - explored)
+            frontier = subproblem.rival_achievers(run.units - explored)
             enough = min(max_units, len(explored) * SEARCH.explored_growth)
-            while fresh and len(explored) < enough:
-                fresh = (
-                    subproblem.with_only_achievers(fresh | subproblem.achievers_for(fresh), max_units)
+            while frontier and len(explored) < enough:
+                frontier = (
+                    subproblem.with_only_achievers(frontier | subproblem.achievers_for(frontier), max_units)
                     - explored
                 )
-                explored |= fresh
+                explored |= frontier
         return None
 
     def _settle_open_preconditions(
@@ -381,20 +416,21 @@ class _Solver:
     ) -> "Run | None":
         """Find the best tree of a relaxation with open preconditions by exact costs.
 
-        ``run`` found its best tree by rounded costs. Every tree has at least ``fewest`` units. Returns the
-        run, with the tree that is best by exact costs. ``None`` if the tree is not proved best, or if it has
-        units that are not ``explored``, so that it may have open preconditions.
+        ``run`` found its best tree by rounded costs. ``program`` and ``text`` are the encodings and facts of
+        the relaxation. Every tree has at least ``fewest`` units. Returns the run, with the tree that is best
+        by exact costs. Returns ``None`` if the tree is not proved best, or if it has units that are not
+        ``explored``: then it may have open preconditions.
         """
         assert run.units is not None
         self._measures_agree(run.units, run.cost, self.levels)
         if self._current_scales().rounded is None:
             return run
-        before, rules = self.program, self.rules
-        self.program, self.rules, self._open_preconditions = program, rules + text, True
+        usual_program, usual_rules = self.program, self.rules
+        self.program, self.rules, self._open_preconditions = program, usual_rules + text, True
         try:
             best, proved = self._settle(run.units, fewest)
         finally:
-            self.program, self.rules, self._open_preconditions = before, rules, False
+            self.program, self.rules, self._open_preconditions = usual_program, usual_rules, False
         run.units = best
         return run if proved and best <= set(explored) else None
 
@@ -405,7 +441,7 @@ class _Solver:
             self.prepared = replace(self.prepared, program=self.program)
 
     def _restrict_to(self, units: Collection[int]) -> None:
-        """Restrict all later searches to these units; close the ground program."""
+        """Restrict all later searches to these units; drop the scales, and close the ground program."""
         self.prepared = replace(self.prepared, units=tuple(sorted(units)))
         self._scales = None
         if self._ground:
@@ -427,14 +463,18 @@ class _Solver:
         return self._conclude(run, run.units)
 
     def _conclude(self, run: "Run", units: Units) -> Outcome:
-        """Return the outcome of a run that found a tree; settle ties that rounded costs leave."""
+        """Return the outcome of a run that found the tree ``units``.
+
+        If clingo rounded costs, exact costs decide, except with replaced encodings that measure something
+        else.
+        """
         best, proved = self._best_reported(units), run.exhausted
         if self._measures_agree(units, run.cost, self.levels) and proved:
             best, proved = self._settle(best)
         return self._optimal_outcome(best) if proved else self._outcome_at_limit(best, run.lower)
 
     def _best_reported(self, units: Units) -> Units:
-        """Return the incumbent; with replaced encodings ``units``, since these may define another order."""
+        """Return the incumbent, or ``units`` with replaced encodings, which may define another order."""
         assert self.listener.incumbent is not None
         return units if self.program.replaced else self.listener.incumbent[0]
 
@@ -471,9 +511,10 @@ class _Solver:
         return self._outcome(Status.OPTIMAL, units, {o: costs.measure(o) for o in self.levels})
 
     def _outcome_at_limit(self, units: Units, lower: Sequence[int]) -> Outcome:
-        """Return the outcome with the incumbent at a limit; with replaced encodings, it has no bounds.
+        """Return the outcome with the incumbent at a limit.
 
-        ``lower`` are clingo's lower bounds.
+        With replaced encodings, it has the tree ``units`` and no bounds. ``lower`` are clingo's lower bounds,
+        the highest priority first; it may be empty.
         """
         bounds = {} if self.program.replaced else self._objective_bounds(lower)
         return self._outcome(Status.FEASIBLE, self._best_reported(units), bounds)
@@ -487,14 +528,19 @@ class _Solver:
         bounds: bool = False,
         fewer: Mapping[int, int] | None = None,
     ) -> "Run":
-        """Run clingo for the best tree by ``objectives``, and report trees; return the run.
+        """Run clingo for the best tree by ``objectives``, report trees, and return the run.
+
+        The units of the run are given by id in the network of the problem. At a limit before the search, the
+        run is empty.
 
         ``products``: totals by the rounded objective, such as products of success rates, each as the vector
         of :meth:`Scales.vector`. Trees with one of these totals are excluded.
-        ``wanted``: the index of a total that is required instead.
-        ``fewer``: numbers of units by index of a total. Trees with this total and fewer units are allowed.
+        ``wanted``: the index, in ``products``, of a total that is required instead; ``None`` to exclude all
+        of them.
+        ``fewer``: numbers of units by index of a total. Trees with this total are allowed if they have fewer
+        units.
         ``opt_mode``: the ``--opt-mode`` of clasp.
-        ``bounds``: whether to report bounds, too.
+        ``bounds``: whether to report bounds as well; with replaced encodings, none are reported.
         """
         on_bound = self._report_bound if bounds and not self.program.replaced else None
 
@@ -528,7 +574,8 @@ class _Solver:
     ) -> "Grounded":
         """Return the ground program for the parameters of :meth:`_run`.
 
-        The last program is kept, and returned if the question is the same.
+        The last program is kept. It is returned again for the same parameters; of ``products``, only their
+        number is compared.
         """
         question = objectives, len(products), wanted, fewer
         if self._ground:
@@ -589,7 +636,8 @@ class _Solver:
         """Find the best tree by exact costs where clingo compares rounded ones (docs/dev/exact-success.md).
 
         ``best`` is the best tree by rounded costs. Every total that rounding may have hidden is examined. No
-        tree has fewer units than ``fewest``. Returns the best tree, and whether it is proved best.
+        tree has fewer units than ``fewest``. Returns the best tree, and whether it is proved best. If no
+        costs are rounded, this is ``best``, proved.
         """
         scales = self._current_scales()
         if scales.rounded not in self.levels:  # a kept program has other levels, too
@@ -601,7 +649,7 @@ class _Solver:
             self.levels[position + 1 :],
         )
         totals: list[dict[int, int]] = []
-        fixed = [scales.weight(objective, best) for objective in earlier_levels]
+        earlier_weights = [scales.weight(objective, best) for objective in earlier_levels]
         chosen, rival, wanted = best, best, [0]  # indices of the totals as good as that of the chosen tree
         # a second search with open preconditions is slow
         at_once = self._open_preconditions and later_levels == _UNITS_ONLY
@@ -612,8 +660,8 @@ class _Solver:
             doubt = scales.count_rounded(chosen)
             if not doubt and multiplies(scales.rounded):
                 break  # nothing succeeds more often than always, and equal products have equal vectors
-            band = scales.weight(scales.rounded, chosen) + max(0, doubt - 1)
-            mode = ",".join(["opt", *map(str, fixed), str(band)])
+            rounded_limit = scales.weight(scales.rounded, chosen) + max(0, doubt - 1)
+            mode = ",".join(["opt", *map(str, earlier_weights), str(rounded_limit)])
             fewer = wanted if at_once and len(chosen) > fewest else ()
             run = self._run(rounded_levels, totals, opt_mode=mode, fewer=dict.fromkeys(fewer, len(chosen)))
             if not run.exhausted or (at_once and run.units is None):
@@ -635,7 +683,7 @@ class _Solver:
             return chosen, True
         for number in wanted:
             limits = (scales.weight(objective, chosen) for objective in later_levels)
-            mode = ",".join(["opt", *map(str, fixed), *map(str, limits)])
+            mode = ",".join(["opt", *map(str, earlier_weights), *map(str, limits)])
             run = self._run((*earlier_levels, *later_levels), totals, number, mode)
             if run.units is not None:
                 self._require_measures(
@@ -653,9 +701,9 @@ class _Solver:
     def _measures_agree(self, units: Units, cost: Sequence[int], objectives: Sequence[Objective]) -> bool:
         """Return whether clingo's costs (modulo 2^32) are the weights of the units.
 
-        If they are not, objectives.lp must have been replaced; then a warning is reported. In any case the
-        weights are required to fit the exact costs. ``cost`` may have all levels, with 0 for those not
-        optimized.
+        If they are not, a warning is reported if objectives.lp was replaced; otherwise this is a bug. In any
+        case the weights are required to fit the exact costs. ``cost`` may have all levels, with 0 for those
+        not optimized.
         """
         scales, costs = self._current_scales(), self.listener.costs(units)
         weights = {objective: scales.weight(objective, units) for objective in objectives}
@@ -684,7 +732,7 @@ class _Solver:
     def _require_measures(self, agree: bool) -> None:
         """Raise :class:`UserError` unless ``agree``: clingo's costs are the weights of a tree.
 
-        It is called after they were so for an earlier tree. If they are not, a replaced objectives.lp
+        This is for a tree after one whose costs agreed. Disagreement means that a replaced objectives.lp
         measures only some trees as usual, so that trees cannot be compared.
         """
         if not agree:
@@ -699,7 +747,8 @@ class _Solver:
         Without a bound of clingo, costs are at least 0 and success is at most 1. The bound of the cuts on the
         first objective counts, too. A bound on a cost is at most the cost of the incumbent, since clingo may
         search for better trees only. Objectives after a rounded one have no bound, since it is not known
-        which trees they count among.
+        which trees they count among. After reductions, only the first objective has a bound if it multiplies,
+        or if its bound is not the cost of the incumbent.
         """
         bounds: dict[Objective, int | Fraction] = {}
         for objective, value in zip(self.levels, lower or [0], strict=False):
@@ -735,7 +784,11 @@ class _Solver:
     def _outcome(
         self, status: Status, units: Units | None, bounds: dict[Objective, int | Fraction]
     ) -> Outcome:
-        """Return the outcome of this question, after its postconditions are checked if it has a tree."""
+        """Return the outcome with this status, these units and these bounds.
+
+        If ``units`` is ``None``, the outcome has no tree. Otherwise the postconditions of the tree are
+        checked first.
+        """
         prepared, reduced = self.prepared, self.prepared.reduced
         proof = Proof.SOLVER if status in {Status.OPTIMAL, Status.INFEASIBLE} else None
         if status is Status.OPTIMAL and reduced and reduced.settled:
@@ -777,11 +830,11 @@ class _Solver:
 
 
 def _cut_objects(reduced: Reduced | None) -> list[frozenset[int]]:
-    """Return the objects of each cut that a certificate can start from; empty without reductions.
+    """Return the objects of each cut that a certificate can start from.
 
-    These are the cuts of the best bound, those found before any reduction, and tight ones. Excluded actions
-    may cross many cuts of the best bound. The cuts found before any reduction count all actions. Tight cuts
-    count the actions that remained when they were found.
+    The list is empty without reductions. These are the cuts of the best bound, those found before any
+    reduction, and tight ones. Excluded actions may cross many cuts of the best bound. The cuts found before
+    any reduction count all actions. Tight cuts count the actions that remained when they were found.
     """
     if reduced is None:
         return []

@@ -49,7 +49,8 @@ def tree_union(
     If ``worse`` is 0, the trees are the optimal ones. Otherwise they are all irredundant trees whose first
     objective is worse than the best value by at most this share of it: by 10% for ``Fraction(1, 10)``. Each
     search finds a tree that adds a unit to the units of some tree, or removes one from the units of every
-    tree. The last search proves that there is no such tree. Without a proved optimum, nothing is searched.
+    tree. The last search proves that there is no such tree. Without a proved optimum, nothing is searched:
+    the units of the tree that was found are in ``in_some``, and undecided.
 
     Raises :class:`UserError` like :func:`foon_asp.asp.solve`, and for user rules if ``worse`` is not 0.
     """
@@ -67,7 +68,7 @@ def tree_union(
 
 
 class _UnionSearch:
-    """The search: the units seen so far, and the facts that exclude trees that do not count."""
+    """The search of :func:`tree_union`: the units of the trees found so far, and the trees to exclude."""
 
     def __init__(self, prepared: Prepared, best: Outcome, worse: Fraction) -> None:
         """Begin with the units of the ``best`` tree; for ``worse``, see :func:`tree_union`."""
@@ -99,9 +100,10 @@ class _UnionSearch:
         return TreeUnion(self._best, in_some, in_every, frozenset(undecided))
 
     def _candidates(self) -> tuple[int, ...]:
-        """Return the ids of the units that trees up to the cost limit can have; with user rules, maybe more.
+        """Return the ids of the units that trees up to the cost limit can have.
 
-        At a limit, all units of the prepared question are returned.
+        Without reductions, under user rules that remain for clingo and at a limit, these are all units of the
+        prepared question.
         """
         prepared, deadline = self._prepared, self._prepared.deadline
         if not prepared.program.own or prepared.unsettled or not prepared.settings.reductions:
@@ -158,8 +160,9 @@ class _UnionSearch:
     def _add_next_tree(self, question: str) -> bool | None:
         """Find another tree that changes the result, and change the result by it.
 
-        ``question`` are facts that ask for such a tree. Returns ``True`` if one was found, ``False`` if there
-        is none, ``None`` at a limit.
+        ``question`` are facts that ask for such a tree. Trees that do not count are excluded from all later
+        searches, as are trees that change nothing. Returns ``True`` if one was found, ``False`` if there is
+        none, ``None`` at a limit.
         """
         problem, levels = self._prepared.problem, self._prepared.levels
         while True:
@@ -175,19 +178,22 @@ class _UnionSearch:
             if self._is_above_limit(order):
                 return False
             tree = self._irredundant_subtree(order) if self._worse else frozenset(order)
-            counts = self._is_within_limit(tree)
-            if counts:
+            is_within_limit = self._is_within_limit(tree)
+            if is_within_limit:
                 sizes = len(self._in_some), len(self._in_every)
                 self._in_some |= tree
                 self._in_every &= tree
-            if not counts or (len(self._in_some), len(self._in_every)) == sizes:
+            if not is_within_limit or (len(self._in_some), len(self._in_every)) == sizes:
                 self._settled += write_avoided(self._avoided, map(self._number, sorted(tree)))
                 self._avoided += 1
                 continue
             return True
 
     def _is_above_limit(self, tree: Sequence[int]) -> bool:
-        """Whether this tree and all trees not found yet cost too much to count, by rounded costs."""
+        """Whether a tree costs too much to count, by rounded costs.
+
+        clingo finds trees in order of these costs, so the trees not found yet cost too much as well.
+        """
         prepared, costs = self._prepared, self._prepared.problem.costs(tree)
         scales = prepared.scales
         for objective in prepared.levels[:1] if self._worse else prepared.levels:

@@ -18,9 +18,10 @@ from foon_asp.problem import Objective, Problem, levels, reach
 
 
 class UserRuleCheck:
-    """A check of executable trees by constraints, which are read once; of plans, if items are used up.
+    """A check of which user rules an executable tree breaks, or a plan if items are used up.
 
-    ``local`` says that units outside a tree do not decide whether it breaks a constraint.
+    The constraints are read once, for any number of trees. ``local`` says that units outside a tree do not
+    decide whether it breaks a constraint.
     """
 
     def __init__(self, settings: Settings, used_up: bool = False) -> None:
@@ -43,7 +44,7 @@ class UserRuleCheck:
 
         ``tree`` has unit ids; for a plan, the id of a unit comes once per execution. Raises
         ``KeyboardInterrupt`` at a limit. Raises :class:`UserError` if a rule reads facts that the question
-        lacks, or if rules of another form exclude the tree.
+        lacks, or if rules that are no integrity constraints exclude the tree.
         """
         self._program.require_facts(problem, (Objective.UNITS,))
         clingo_run = (
@@ -61,7 +62,10 @@ class UserRuleCheck:
         return tuple(rule for rule in self._rules if ways.get(rule.number))
 
     def _run_on_tree(self, problem: Problem, tree: Collection[int]) -> Run:
-        """Run clingo on the facts of a tree, with constraints rewritten to count their broken instances."""
+        """Run clingo on the facts of a tree, with constraints rewritten to count their broken instances.
+
+        If some constraint is not local, the facts also have all other reachable units.
+        """
         used = set(tree)
         units = sorted(used if self.local else used.union(reach(problem).units))
         objective_levels = levels((Objective.UNITS,))

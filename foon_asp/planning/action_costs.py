@@ -55,9 +55,9 @@ def action_costs(
     """Return integer costs by which a cheapest plan is a best one by a lexicographic list of objectives.
 
     A tree executes each of the ``units`` at most once, and takes at most ``items`` kitchen items. So an
-    objective gets a weight above the greatest sum of all less important objectives. ``tree`` is a feasible
-    tree; plans are assumed to cost at most ``repeats`` times as much. Costs that planners cannot add up
-    exactly are rounded.
+    objective gets a weight above the greatest sum of all less important objectives. ``units`` and ``tree``
+    are unit ids; ``tree`` is feasible. Plans are assumed to cost at most ``repeats`` times as much as
+    ``tree`` and the most expensive unit together. Costs that planners cannot add up exactly are rounded.
 
     Raises :class:`UserError` if even rounded costs are too large, and for a success rate of 0.
     """
@@ -86,8 +86,10 @@ def _integer_costs(
 ) -> tuple[dict[int, int], Fraction, bool]:
     """Return the integer costs of units by an objective, their scale's factor, and whether they are rounded.
 
-    The factor is chosen such that a tree and the most expensive unit together cost at most ``max_cost``. For
-    an objective that multiplies, see :func:`_logarithms`.
+    The factor is the common denominator of the costs, so that they are exact, if ``tree`` and the most
+    expensive unit together then cost at most ``max_cost``. It is 1 for costs that are integers. Otherwise it
+    is the greatest integer, from 1 to 1,000,000, for which they cost at most ``max_cost``, and the costs are
+    rounded. For an objective that multiplies, see :func:`_logarithms`.
     """
     if multiplies(objective):
         return _logarithms(problem, units)

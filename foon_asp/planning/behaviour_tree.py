@@ -66,7 +66,8 @@ LIST_SEPARATOR = ";"  # BehaviorTree.CPP splits lists at it
 def node_name(node: Node) -> str:
     """Return the name of an object node in ports: ``o43-ice``, its name in PDDL.
 
-    A node that the network does not have, such as a place that is no object of a unit, is named by its label.
+    A node that the network does not have, such as a place that is no object of a unit, is named by its label,
+    with commas for ``;`` and parentheses for braces.
     """
     if node.id is None:
         return _without_braces(node.label).replace(LIST_SEPARATOR, ",")
@@ -107,8 +108,8 @@ def behaviour_tree_text(name: str, branches: Sequence[Branch], is_used_up: bool)
 def _add_reactive_sequence(parent: ElementTree.Element, name: str, steps: Iterable[RobotStep]) -> None:
     """Add to an element the reactive sequence of the steps of a branch, for items that last.
 
-    A step is a fallback: the condition that its outputs are available, or else its action. Without steps, the
-    sequence succeeds.
+    A step is a fallback: the condition that its outputs are available, or else its action. A step without
+    outputs has only the action. Without steps, the sequence succeeds.
     """
     sequence = ElementTree.SubElement(parent, "ReactiveSequence", name=escaped(name))
     for step in steps:
@@ -168,7 +169,10 @@ def _add_action(parent: ElementTree.Element, step: RobotStep) -> None:
 
 
 def _without_braces(name: str) -> str:
-    """Return a name with parentheses for braces, since ``{name}`` would be a blackboard entry."""
+    """Return a name with parentheses for braces, since ``{name}`` would be a blackboard entry.
+
+    Characters that cannot be printed are escaped.
+    """
     return escaped(name).replace("{", "(").replace("}", ")")
 
 

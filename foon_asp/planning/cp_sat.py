@@ -16,7 +16,7 @@ from foon_asp.proof.timetable import ToolName
 def serve() -> None:
     """Solve tasks from standard input, in an endless loop; send the answers to the pipe of answers.
 
-    Without OR-Tools, send ``missing`` and return.
+    A task comes with an incumbent for :class:`_Model`. Without OR-Tools, send ``missing`` and return.
     """
     tasks, answers = become_worker(receive)
     try:

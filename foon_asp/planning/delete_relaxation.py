@@ -20,7 +20,7 @@ from foon_asp.planning.strips_task import DERIVED, StripsAction, StripsTask
 def delete_relaxation(task: SasTask) -> StripsTask:
     """Return the delete relaxation of a task, in STRIPS.
 
-    Raises :class:`UserError` for an operator whose conditional effects have more than 1000 combinations. Also
+    Raises :class:`UserError` for an operator whose conditional effects have more than 1,000 combinations, and
     for a condition that negates a fact which axioms derive by recursion.
     """
     return _Relaxation(task).strips()
@@ -43,9 +43,10 @@ class _Relaxation:
             self._rules[default.pop()].append(axiom)
 
     def strips(self) -> StripsTask:
-        """Return the compiled task, in which the relevant facts are numbered in order.
+        """Return the compiled task, with its facts numbered in order.
 
-        Actions that add no relevant fact are left out.
+        Its facts are those of the goal and of preconditions. Actions that add none of these facts are left
+        out.
         """
         task = self._task
         relevant = self._relevant_facts()
@@ -57,7 +58,7 @@ class _Relaxation:
         numbers = {fact: number for number, fact in enumerate(sorted(needed))}
 
         def numbered(facts: Iterable[int]) -> list[int]:
-            """Return the new numbers of the relevant ones among some facts."""
+            """Return the new numbers of those facts that the compiled task has."""
             return [numbers[fact] for fact in facts if fact in numbers]
 
         return StripsTask(
@@ -113,8 +114,9 @@ class _Relaxation:
         """Yield actions without conditional effects for an operator, one for each union of effect conditions.
 
         The conditions of the union become preconditions, and the action adds all effects whose conditions are
-        in the union. Conditional effects that add no relevant fact are left out. Raises :class:`UserError`
-        for more than ``max_variants`` unions; their number may be exponential.
+        in the union. Conditions that hold initially or are preconditions always hold, since nothing is
+        deleted. Conditional effects that add no relevant fact are left out. Raises :class:`UserError` for
+        more than ``max_variants`` unions; their number may be exponential.
         """
         holding = self._start.union(operator.preconditions)
         always: dict[int, None] = {}
@@ -144,9 +146,9 @@ class _Relaxation:
     def _default_derivations(self, defaults: set[int]) -> Iterator[StripsAction]:
         """Yield actions that derive the default values of derived variables (Clark's completion).
 
-        A variable has its default value if each axiom that sets it has a condition that fails. Where several
-        values make an axiom fail, a new fact says that it fails. Raises :class:`UserError` if such a
-        derivation is cyclic.
+        A variable has its default value if each axiom that sets it has a condition that fails. If several
+        values make an axiom fail, a new fact of the task says that it fails. Raises :class:`UserError` if
+        such a derivation is cyclic.
         """
         graph: dict[int, set[int]] = {}
         pending = sorted(defaults)

@@ -26,8 +26,8 @@ class NameMap(NamedTuple):
     """The meaning of the actions of a planning task, and the question that the task stands for.
 
     ``units`` maps the name of an action to the unit that it executes. ``taking`` has the names of the actions
-    that take a kitchen item. ``goals``, ``containers``, ``level`` and ``items`` are those of the question;
-    ``items`` is ``None`` if items last.
+    that take a kitchen item. ``goals``, ``containers``, ``level`` and ``items`` are those of the question. If
+    items last, ``items`` is ``None``.
     """
 
     units: Mapping[str, FunctionalUnit]
@@ -56,7 +56,7 @@ class Scale(Value, frozen=True):
 
     Attributes:
         factor: What its values were multiplied by.
-        rounded: Whether they were rounded then.
+        rounded: Whether the products were rounded.
     """
 
     objective: Objective

@@ -109,7 +109,7 @@ class PddlOutline:
 def require_task(domain: PddlOutline, problem: PddlOutline) -> None:
     """Raise :class:`InputError` if a problem is of another domain, or a type or cost is not declared.
 
-    Also if an action has two costs.
+    Raise it for an action with two costs as well.
     """
     for token, word in zip(problem.tokens, problem.tokens[1:], strict=False):
         if token.text == ":domain" and word.text != domain.name:

@@ -47,8 +47,9 @@ class PlanStep(NamedTuple):
 def read_plan_text(text: str, file: str, names: NameMap) -> Sequence[PlanStep]:
     """Return the steps of a plan that execute units, in order; steps that take a kitchen item are left out.
 
-    Names are looked up in lower case. Raises one :class:`InputError` for all lines that are no steps of a
-    plan or have unknown names; also for a log without a plan.
+    Upper case in names does not count. Blank lines, comments and a heading are skipped. Raises one
+    :class:`InputError` for all lines that are no steps of a plan or have unknown names. Raises it for a log
+    without a plan as well.
     """
     steps: list[PlanStep] = []
     faults: list[Diagnostic] = []
@@ -92,8 +93,8 @@ def read_plan_text(text: str, file: str, names: NameMap) -> Sequence[PlanStep]:
 def _plan_lines(lines: Sequence[str], file: str) -> Sequence[tuple[int, str]]:
     """Return the lines of a plan with their numbers from 1: all lines, or those of the last plan in a log.
 
-    Raises :class:`InputError` for a log without a plan, and for one whose last plan is cut off or has another
-    length than the log says.
+    Lines of a log are without time stamps and costs of steps. Raises :class:`InputError` for a log without a
+    plan, and for one whose last plan is cut off or has another length than the log says.
     """
     plan_starts = [index for index, line in enumerate(lines) if _PLAN_FOLLOWS.match(line.strip())]
     if not plan_starts:

@@ -41,7 +41,7 @@ class PlanningTask:
 
     ``names``: the name of every object node in the task.
     ``start``: the initial state.
-    ``goals``: the nodes that have to be made.
+    ``goals``: the goals of the problem, without kitchen items that have a cost.
     ``costs``: the integer costs of actions.
     ``merged``: where items are used up, whether all copies of a node are merged into one. Otherwise the
     copies of consumable nodes are counted.
@@ -71,7 +71,7 @@ class PlanningTask:
     def flow(self, action: Action) -> Flow:
         """Return how many copies of each node an action asks for, uses up and adds.
 
-        It is one copy of each if the task counts no copies.
+        If the task counts no copies, all numbers are 1.
         """
         if action.unit is None or not self.counted:
             sides = (action.preconditions, action.consumption, action.add_effects)
@@ -102,8 +102,9 @@ def planning_task(
 ) -> PlanningTask:
     """Return the planning task of a problem, over the units relevant to its goals or the ``whole`` network.
 
-    With ``merged``, copies are not counted, but merged into one. If kitchen items have a cost, the task has
-    an action for each of them, which takes the item.
+    Units that add nothing are left out. With ``merged``, copies are not counted: a node is available or not.
+    If kitchen items have a cost, the task has an action for each item that some unit needs, which takes the
+    item.
 
     Raises :class:`UserError` if planners cannot add up the costs of an objective. Where items are used up,
     also for several objectives, for an objective by which items of a stock have a cost, and for ``merged`` if

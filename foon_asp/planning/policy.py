@@ -72,7 +72,7 @@ def best_policy(problem: Problem, trees: Sequence[tuple[int, ...]], retries: int
 
     Among policies of equal chance, one with the fewest branches is returned. If there are more policies than
     :attr:`PolicyLimits.policies`, only the first ones are compared, which have the fewest branches. If there
-    are too many states, ``bound`` of the policy is not exact.
+    are more states or units than :class:`PolicyLimits` allows, ``bound`` is not exact.
 
     Parameters:
         problem: The problem, whose items last, with rates.
@@ -143,14 +143,17 @@ class _ExecutionModel:
 
 
 def _chance(problem: Problem, branches: tuple[PolicyBranch, ...]) -> Fraction:
-    """Return the exact chance that the branches, followed one after the other, make the goals."""
+    """Return the exact chance that the branches, followed one after the other, make the goals.
+
+    A unit whose outputs are all available already is skipped.
+    """
     model = _ExecutionModel(problem)
     # by branch, position in it, and minus the failures left: a success and a failure lead to later keys
     waiting = {(0, 0, -branches[0].failures): {State(): Fraction(1)}}
-    order = [*waiting]
+    keys = [*waiting]  # a heap
     reached = Fraction(0)
-    while order:
-        key = heapq.heappop(order)
+    while keys:
+        key = heapq.heappop(keys)
         branch, position, failures = key
         units = branches[branch].units
         for state, chance in waiting.pop(key).items():
@@ -171,7 +174,7 @@ def _chance(problem: Problem, branches: tuple[PolicyBranch, ...]) -> Fraction:
                 if share:
                     if following not in waiting:
                         waiting[following] = {}
-                        heapq.heappush(order, following)
+                        heapq.heappush(keys, following)
                     states = waiting[following]
                     states[new_state] = states.get(new_state, 0) + chance * share
     return reached
@@ -212,7 +215,10 @@ class _Optimum:
         return self._values[state]
 
     def _choices(self, state: State) -> list[int]:
-        """Return the units that can be executed in a state and add something; a necessary one alone."""
+        """Return the units that can be executed in a state and add something.
+
+        If one of them is necessary for the goals, only the first such unit is returned.
+        """
         model = self._model
         useful = [unit for unit in self._units if not model.makes(unit) <= state]
         ready = [unit for unit in useful if model.needs(unit) <= state]
@@ -231,6 +237,6 @@ def _bound(problem: Problem, units: Sequence[int], retries: int) -> Fraction:
             continue
         rate = model.rate(unit)
         for failures in range(retries + 1):
-            earlier = chances[failures - 1] if failures else Fraction(0)  # of this unit, changed already
-            chances[failures] = rate * chances[failures] + (1 - rate) * earlier
+            one_failure_less = chances[failures - 1] if failures else Fraction(0)  # changed already
+            chances[failures] = rate * chances[failures] + (1 - rate) * one_failure_less
     return sum(chances, Fraction(0))

@@ -142,7 +142,7 @@ def _leaf(name: str, ask: Callable[[], bool | None]) -> "Behaviour":
     from py_trees.common import Status  # noqa: PLC0415
 
     class Leaf(Behaviour):
-        """The behaviour."""
+        """The behaviour, which calls ``ask`` at each tick."""
 
         def update(self) -> "Status":
             """Return the status of a tick."""

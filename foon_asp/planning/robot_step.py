@@ -15,7 +15,7 @@ from foon_asp.text.tables import Duration
 
 
 class Change(Value, frozen=True):
-    """One object of a step, and its nodes on both sides.
+    """One object of a step, and its nodes before and after the step.
 
     Attributes:
         object: The label of the object.
@@ -50,8 +50,8 @@ class RobotStep(NumberedStep, frozen=True, kw_only=True):
         needs: The inputs that have to be available, and where each comes from.
         makes: The outputs that were no inputs.
         acted_on: Inputs that are neither tools nor places.
-        tools: Utensils that nothing comes from or goes to; without a list of utensils, such inputs that are
-            the same after the step.
+        tools: Utensils that nothing comes from or goes to. Without a list of utensils, inputs that nothing
+            comes from or goes to, and that are the same after the step.
         origins: The places that the inputs are in, on or at; an object that the unit does not list has its
             label alone.
         destinations: The places that the outputs are in, on or at, as they are after the step.
@@ -86,7 +86,8 @@ def robot_steps(
         problem: The problem that the plan is for.
         plan: The ids of the units, in an order that executes.
         durations: How long motions take, by motion, as far as that is known.
-        clips: The clips of the annotated video, as far as they have times.
+        clips: The clips of the annotated video, as far as they have times; a step has the clip of its source
+            line.
     """
     clip_of = {
         (source.file, source.line): Clip(listed.clips[0][0], listed.clips[-1][1], listed.seconds)
@@ -128,7 +129,7 @@ def robot_steps(
 
 
 def _is_tool(problem: Problem, unit: FunctionalUnit, node: ObjectNode) -> bool:
-    """Whether an input, which is no place, is a tool: a utensil.
+    """Whether an input that is no place is a tool, that is, a utensil.
 
     If the problem has no utensils, a tool is an input that is also an output.
     """
@@ -138,8 +139,8 @@ def _is_tool(problem: Problem, unit: FunctionalUnit, node: ObjectNode) -> bool:
 def _places(network: Network, nodes: Sequence[ObjectNode], others: Iterable[ObjectNode]) -> tuple[Node, ...]:
     """Return the places that ``nodes``, one side of a unit, are in, on or at, in order of their labels.
 
-    A place is the node with this label among ``nodes``, or else among ``others``, the other side of the unit.
-    Without such a node, it has only the label.
+    A place is the node with its label among ``nodes``, or else among ``others``, the other side of the unit.
+    If there is no such node, the place has only the label.
     """
     by_label: dict[str, ObjectNode] = {}
     for node in (*nodes, *others):

@@ -24,8 +24,9 @@ class BestSchedule(NamedTuple):
     ``starts``: the starts of the steps in ticks; ``None`` without a schedule.
     ``bound``: a lower bound on the makespan, in ticks.
     ``proved``: whether it is proved that no schedule is shorter or, without ``starts``, that there is none.
-    ``lacking``: without ``starts``, numbers of copies by tool with which there is a schedule. They need the
-    fewest additional copies, unless a limit stopped this search.
+    ``lacking``: without ``starts``, maps each tool of which there are too few copies to the number that a
+    schedule needs; else empty. In total, these are the fewest additional copies, unless a limit stopped the
+    search for them.
     """
 
     starts: tuple[int, ...] | None
@@ -37,7 +38,9 @@ class BestSchedule(NamedTuple):
 def shortest_schedule(task: ScheduleTask, deadline: Deadline) -> BestSchedule:
     """Return the schedule of least makespan; at a limit or ctrl-C, the best one found so far.
 
-    CP-SAT searches for it in another process. Raises :class:`UserError` if OR-Tools is not installed.
+    CP-SAT searches for it in another process. If there are too few tools for a schedule, the result says
+    which are lacking. At a limit before an order of the steps is known, the steps follow one after the other
+    as listed, if the tools allow it. Raises :class:`UserError` if OR-Tools is not installed.
     """
     if find_spec("ortools") is None:
         raise UserError(_NOT_INSTALLED)
@@ -140,10 +143,10 @@ def timed_steps(task: ScheduleTask, starts: Sequence[int]) -> list[TimedStep]:
 
 
 def _color_intervals(spans: dict[int, tuple[int, int]]) -> dict[int, int]:
-    """Return a number from 1 for each span, such that overlapping spans have different numbers.
+    """Return a number from 1 for each span, by its key; overlapping spans have different numbers.
 
-    A span is a start and an end. Of the free numbers, it gets the one that has been free the longest. This
-    colors an interval graph with the fewest numbers.
+    A span is a start and an end. In order of their starts, each span gets the number that has been free the
+    longest. This colors an interval graph with the fewest numbers.
     """
     free_at: list[int] = []
     numbers: dict[int, int] = {}
@@ -166,7 +169,8 @@ def _followers(
 ) -> Iterator[tuple[int, int]]:
     """Yield pairs of steps that share an agent, a tool or a copy: an earlier step and a later one.
 
-    The earlier step has to end before the later one starts. ``spans`` are the start and end of each use.
+    Only steps and uses that follow each other directly are paired. The earlier step has to end before the
+    later one starts. ``spans`` are the start and end of each use.
     """
     uses = task.uses
     steps_of_agent: dict[int, list[int]] = {}

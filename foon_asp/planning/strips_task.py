@@ -41,7 +41,7 @@ class StripsTask:
 
     @property
     def objective(self) -> Objective:
-        """The objective by which a tree of :meth:`problem` costs as much as the plan.
+        """The objective by which a tree of :meth:`problem` costs as much as its actions.
 
         It is ``units`` if all actions cost 1, else ``price``.
         """
@@ -50,12 +50,12 @@ class StripsTask:
 
     @property
     def action_count(self) -> int:
-        """The number of actions; those that derive facts do not count."""
+        """The number of actions, without actions that derive facts."""
         return sum(action.name != DERIVED for action in self.actions)
 
     @property
     def unit_cost(self) -> bool:
-        """Whether each action costs 1; those that derive facts are not looked at."""
+        """Whether each action costs 1, except actions that derive facts."""
         return all(action.cost == 1 for action in self.actions if action.name != DERIVED)
 
     def problem(self) -> Problem:

@@ -24,8 +24,8 @@ class ToolOrder(NamedTuple):
 
     ``steps``: the steps in order; ``None`` without an order.
     ``proved``: whether it is proved that there is no order.
-    ``lacking``: without an order, the numbers of copies by tool that make one feasible, for those tools of
-    which more are needed. They need the fewest additional copies in total. Empty if they are not known.
+    ``lacking``: without an order, maps each tool of which there are too few copies to the number that an
+    order needs. In total, these are the fewest additional copies. Empty if they are not known.
     """
 
     steps: tuple[int, ...] | None
@@ -56,7 +56,7 @@ def tool_order(task: ScheduleTask, deadline: Deadline) -> ToolOrder:
 
 
 def _run(task: ScheduleTask, deadline: Deadline, may_lack: bool) -> Run:
-    """Run clingo on the order of the uses of tools; return the run.
+    """Run clingo for an order of the uses of tools; return the run.
 
     With ``may_lack``, clingo may add copies of tools, and minimizes their number.
     """

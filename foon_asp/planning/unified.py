@@ -28,6 +28,7 @@ def unified_problem(
 ) -> Any:
     """Return a problem of unified-planning: the task of :func:`planning_task`, with the names of its PDDL.
 
+    The parameters are those of :func:`planning_task`. The problem minimizes the sum of the costs of actions.
     Raises the errors of :func:`foon_asp.planning.planning_task.planning_task`, and :class:`UserError` if
     unified-planning is not installed.
     """

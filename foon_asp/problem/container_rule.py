@@ -58,9 +58,10 @@ def needed_inputs(
 ) -> tuple[ObjectNode, ...]:
     """Return the preconditions of a unit: the inputs that it needs under the rule, in the unit's order.
 
-    A unit of a ``network`` below level 3 stands for several level-3 units, whose nodes include their
-    contents. It needs an input if all of these level-3 units need it. Without a ``network``, only the unit
-    itself is looked at. A unit that the network lacks needs all its inputs.
+    ``utensils`` are the labels of utensils. Without a ``network``, and at level 3, only the unit itself is
+    looked at. A unit of a network below level 3 stands for several level-3 units, whose nodes include their
+    contents. It needs an input if all of these level-3 units need it. A unit that such a network lacks needs
+    all its inputs.
     """
     return _preconditions_and_add_effects(unit, rule, utensils, network)[0]
 
@@ -70,9 +71,10 @@ def given_outputs(
 ) -> tuple[ObjectNode, ...]:
     """Return the add effects of a unit: the outputs that it makes under the rule, in the unit's order.
 
-    These are all outputs except inputs that the rule skips. A unit of a ``network`` below level 3 stands for
-    several level-3 units. It makes an output if at least one of these level-3 units makes it. Without a
-    ``network``, only the unit itself is looked at. A unit that the network lacks makes all its outputs.
+    These are all outputs except inputs that the rule skips. Without a ``network``, and at level 3, only the
+    unit itself is looked at. A unit of a network below level 3 stands for several level-3 units. It makes an
+    output if at least one of these level-3 units makes it. A unit that such a network lacks makes all its
+    outputs.
     """
     return _preconditions_and_add_effects(unit, rule, utensils, network)[1]
 
@@ -80,7 +82,7 @@ def given_outputs(
 def _preconditions_and_add_effects(
     unit: FunctionalUnit, rule: ContainerRule, utensils: frozenset[str], network: Network | None
 ) -> tuple[tuple[ObjectNode, ...], tuple[ObjectNode, ...]]:
-    """Return what :func:`needed_inputs` and :func:`given_outputs` return for a unit."""
+    """Return as a pair what :func:`needed_inputs` and :func:`given_outputs` return for a unit."""
     if rule is ContainerRule.STRICT:
         return unit.inputs, unit.outputs
     if network is not None and network.detailed is not None:
@@ -139,8 +141,8 @@ def network_makers(network: Network, rule: ContainerRule, utensils: frozenset[st
     for unit, (outputs, added) in enumerate(zip(network.outputs, gives, strict=True)):
         if len(added) < len(outputs):
             for o in set(outputs).difference(added):
-                earlier = achievers.get(o, network.producers[o])
-                achievers[o] = tuple(other for other in earlier if other != unit)
+                remaining = achievers.get(o, network.producers[o])
+                achievers[o] = tuple(other for other in remaining if other != unit)
     if not achievers:
         return network.producers
     return tuple(achievers.get(o, producers) for o, producers in enumerate(network.producers))

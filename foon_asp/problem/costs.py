@@ -6,16 +6,16 @@ from fractions import Fraction
 
 from foon_asp.problem.objective import Measured, Objective, OptionalData, multiplies
 
-_MEASURED = tuple(Objective)
+_BUILT_IN_OBJECTIVES = tuple(Objective)
 
 
 class Costs:
     """The costs of one tree or plan: ``measures`` maps each objective to its exact value.
 
     Objectives whose data are missing, such as rates, have no value. ``inputs`` is the number of input object
-    nodes, summed over the units; inputs that a container rule skips count, too. ``kitchen`` is the number of
-    distinct kitchen items that the units need. Where items are used up, each copy of a consumable item
-    counts.
+    nodes, summed over the units. It includes inputs that a container rule skips. ``kitchen`` is the number of
+    distinct kitchen items that the units need. If items are used up, each copy of a consumable item counts as
+    one kitchen item.
 
     Example:
         >>> costs = foon_asp.solve(foon_asp.load().problem("ice")).costs
@@ -62,21 +62,22 @@ class Costs:
 
     @property
     def success(self) -> Fraction | None:
-        """The product of the success rates; ``None`` where no rates are known."""
+        """The product of the success rates; ``None`` if no rates are known."""
         success = self.measures.get(Objective.SUCCESS)
         return None if success is None else Fraction(success)
 
     def measure(self, objective: Objective) -> int | Fraction:
-        """Return the exact value by an objective; of ``success`` more is better, of the others less.
+        """Return the exact value by an objective.
 
+        A greater value of ``success`` is better; of the other objectives, a smaller value is.
         ``dissimilarity`` is 0 for a problem without stand-ins.
 
         Parameters:
             objective: The objective.
 
         Raises:
-            ValueError: if data are missing, as for ``success`` without rates, or for ``attempts`` with a
-                rate of 0.
+            ValueError: if data are missing, as for ``success`` without rates, or for ``attempts`` with a rate
+                of 0.
         """
         if objective not in self.measures and objective.row.needs is OptionalData.STAND_INS:
             return Fraction(0)  # there are none
@@ -93,6 +94,9 @@ class Costs:
 
         Parameters:
             objectives: The objectives, the most important first.
+
+        Raises:
+            ValueError: if data are missing; see :meth:`measure`.
         """
         return tuple(
             -self.measure(objective) if multiplies(objective) else self.measure(objective)
@@ -115,7 +119,7 @@ def tree_costs(
     ``user_objectives``: objectives to measure in addition to the built-in ones.
     """
     measures: dict[Objective, int | Fraction] = {}
-    for objective in (*_MEASURED, *user_objectives):
+    for objective in (*_BUILT_IN_OBJECTIVES, *user_objectives):
         row = objective.row
         if row.needs is not None and row.needs not in available:
             continue
@@ -144,7 +148,7 @@ def _product(figures: Collection[int | Fraction]) -> Fraction:
 def _sum(figures: Iterable[int | Fraction]) -> Fraction:
     """Return the sum of numbers as a fraction.
 
-    Numerators of equal denominators are added first, which is fast if there are few distinct denominators.
+    Numbers of equal denominators are added first, which is fast if there are few distinct denominators.
     """
     numerators: dict[int, int] = {}
     for figure in figures:

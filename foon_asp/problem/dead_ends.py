@@ -12,7 +12,7 @@ from foon_asp.problem.relevance import reach
 
 
 class Cause(StrEnum):
-    """The reason why an object node causes dead ends.
+    """The reason why an object node causes dead ends: goals that cannot be made.
 
     ``missing``: the node is not in the kitchen, and every unit that makes it also needs it.
     ``cycle``: the node is in a set of nodes that can only be made from each other.
@@ -23,12 +23,14 @@ class Cause(StrEnum):
 
 
 class RootCause(NamedTuple):
-    """An object node that causes dead ends.
+    """An object node that causes dead ends: goals that cannot be made.
 
-    ``object``: its id; of a cycle, the id of one of its nodes.
+    ``object``: its id. Of a cycle, it is the id of one of its nodes: if possible, of one on the cheapest path
+    to the goals.
     ``stops``: the ids of the units that need the node, or a node of its cycle, on some path to an unreachable
     goal.
-    ``on_the_way``: whether the cheapest path to the goals needs it; this path lacks the fewest nodes.
+    ``on_the_way``: whether the cheapest path to the goals needs the node, or a node of its cycle. By h_add,
+    this path needs the fewest missing nodes.
     ``cycle``: the set of nodes that can only be made from each other; ``None`` for the cause ``missing``.
     """
 
@@ -50,8 +52,8 @@ class DeadEnds(NamedTuple):
     """The unreachable part of a network that concerns some goals; all nodes are given by id.
 
     ``goals``: the unreachable goals.
-    ``makers``: the achievers of each unreachable node on some path to these goals. The achiever that lacks
-    the fewest nodes comes first.
+    ``makers``: the achievers of each unreachable node on some path to these goals. The achiever that is the
+    cheapest by h_add comes first. A unit that also needs the node is no achiever.
     ``roots``: the causes. Causes on the cheapest path to the goals come first.
     ``available``: for each node of the network, 1 if it is reachable, else 0.
     """
@@ -63,7 +65,7 @@ class DeadEnds(NamedTuple):
 
 
 def dead_ends(problem: Problem) -> DeadEnds:
-    """Return the goals that cannot be made from the kitchen, with the causes; constraints are ignored.
+    """Return the goals that cannot be made from the kitchen, with the causes; user rules are ignored.
 
     If all goals are reachable, ``goals``, ``makers`` and ``roots`` of the result are empty. The time is about
     linear in the size of the network.
@@ -116,7 +118,7 @@ def _unreachable_achievers(
 
 
 def _consumers(achievers: Mapping[int, Sequence[Blocked]]) -> dict[int, list[int]]:
-    """Return the ids of the blocked units that lack each node, by node id."""
+    """Return a mapping from the id of each node that some blocked unit lacks to the ids of these units."""
     consumers: dict[int, list[int]] = {}
     for blocked in {unit.unit: unit for units in achievers.values() for unit in units}.values():
         for lack in blocked.lacks:
@@ -158,7 +160,7 @@ def h_add(
     computed by Knuth's generalization of Dijkstra's algorithm (1977).
 
     A node that cannot be made from the sources is in neither mapping. A source has a cheapest achiever only
-    if this costs less than the source itself. The cheapest achievers have no cycle.
+    if the achiever costs less than the source itself. The cheapest achievers have no cycle.
     """
     lacking = {blocked.unit: len(blocked.lacks) for units in achievers.values() for blocked in units}
     made_by: dict[int, list[int]] = {}

@@ -37,18 +37,19 @@ class Shop:
     In a FOON, states say that something was done to a node. So these nodes are for sale:
 
     - a node that no unit makes out of other nodes;
-    - a vessel or tool: its states are only empty or clean, or it is an empty node of the starting kitchen and
-      no ingredient of another node;
-    - an unprocessed node: it has no state, is not on or at anything, contains at most one ingredient, and
-      this ingredient, or else its label, is no *product*. A product is a name that some unit makes out of
-      nodes without this name, such as whipped cream, dough or lemon juice.
+    - a vessel or tool: its states are only empty or clean; or it is a node of the starting kitchen that has
+      no contents, and its label is no ingredient of any node;
+    - an unprocessed node: it has no state, is not on or at anything, and contains at most one ingredient. The
+      name of this ingredient (without one, the label of the node) must not be a *product*. A product is a
+      name that some unit makes out of nodes without this name, such as whipped cream, dough or lemon juice.
 
-    The goals are not for sale, nor is a node that has or contains the name of the *dish*. This name is the
-    label of a goal or, for a utensil, its one ingredient, if the name is a product.
+    The goals are not for sale, nor is the *dish*: any node that has the name of a goal as its label or as an
+    ingredient. The name of a goal is its label or, for a utensil, its one ingredient. Only names that are
+    products count.
     """
 
     def __init__(self, problem: Problem) -> None:
-        """Compute the starting kitchen, the products and the names of the dishes of a problem."""
+        """Compute the starting kitchen, the products and the names of the dish of a problem."""
         self._problem = problem
         self._starting = starting_nodes(problem.network, problem.goals)
         self._products = _product_names(problem)
@@ -62,7 +63,7 @@ class Shop:
         The rule about goals and the dish is not applied; see :meth:`is_dish`.
         """
         node = self._problem.network.objects[o]
-        if self._is_plain(o):
+        if self._is_raw_or_vessel(o):
             return True
         return (
             not node.states
@@ -73,7 +74,7 @@ class Shop:
         )
 
     def offers(self, roots: Sequence[RootCause]) -> Iterator[tuple[Offer, list[int]]]:
-        """Yield the offers without prices, from the smallest set to the largest, each with its node ids.
+        """Yield all offers except ``priced``, from the smallest set to the largest, each with its node ids.
 
         Kitchen items are in no offer. ``roots`` are the causes of the problem's dead ends; the nodes of their
         cycles are in the offer ``cycle``.
@@ -94,8 +95,8 @@ class Shop:
 
         The nodes come from the first offer from which the goals can be made. They are the nodes that the
         relaxed plan of ``h_add`` buys; a node that units of this plan can make is left out. The plan buys few
-        nodes and, among equally many, few second choices (:meth:`is_second_choice`). A shorter list may
-        exist. If all goals are reachable, the list is empty.
+        nodes. With equally many nodes, it buys few second choices (:meth:`is_second_choice`). A shorter list
+        may exist. If all goals are reachable, the list is empty.
         """
         for _, offer in self.offers(ends.roots):
             # an item costs more than all second choices of a list
@@ -125,34 +126,38 @@ class Shop:
         return all(o in needs[unit] for unit in self._problem.makers[o])
 
     def is_dish(self, o: int) -> bool:
-        """Whether a node is a goal, or has or contains the name of the dish."""
+        """Whether a node is a goal or the dish; see the class."""
         node = self._problem.network.objects[o]
         names = {node.label, *node.ingredients}
         return o in self._problem.goals or not names.isdisjoint(self._dishes)
 
     def is_second_choice(self, o: int) -> bool:
-        """Whether a shopping list should avoid a node: it has several ingredients, or a unit makes it.
+        """Whether a shopping list should avoid a node: it has several ingredients, or it can be made.
 
-        Vessels and tools with at most one ingredient are no second choice, even if a unit makes them.
+        It can be made if some unit makes it out of other nodes. Vessels and tools with at most one ingredient
+        are no second choice, even if they can be made.
         """
-        return not self._is_plain(o) or len(self._problem.network.objects[o].ingredients) > 1
+        return not self._is_raw_or_vessel(o) or len(self._problem.network.objects[o].ingredients) > 1
 
-    def _is_plain(self, o: int) -> bool:
-        """Whether a node is raw, or is a vessel or tool: empty, clean, or of the starting kitchen."""
+    def _is_raw_or_vessel(self, o: int) -> bool:
+        """Whether a node is raw, or a vessel or tool, by the first two rules of the class."""
         node = self._problem.network.objects[o]
         is_starting_vessel = o in self._starting and not node.contents and node.label not in self._ingredients
         return self.is_raw(o) or _is_clean_vessel(node) or is_starting_vessel
 
 
 def _is_clean_vessel(node: ObjectNode) -> bool:
-    """Whether a node is an empty or clean vessel or tool, by its states, without contents or relations."""
+    """Whether a node is a vessel or tool by its states: it has states, and only empty or clean.
+
+    A node with contents or relations is none.
+    """
     return bool(node.states) and node.states <= _FRESH_STATES and not node.contents and not node.relations
 
 
 def _substance(node: ObjectNode, utensils: Collection[str]) -> str | None:
     """Return the name of what a node consists of: its label or, for a utensil, its one ingredient.
 
-    ``None`` for a utensil with no ingredient or several.
+    Return ``None`` for a utensil with no ingredient or several.
     """
     if node.label not in utensils:
         return node.label

@@ -18,7 +18,7 @@ Named = str | ObjectNode
 
 
 class Fate(StrEnum):
-    """The reason why an input of a unit stays available, or that it is used up.
+    """The reason why an input of a unit stays available, or why it is used up.
 
     ``OUTPUT``: stays, since the same node is also an output.
     ``TOOL``: stays, since it is a utensil with no ingredients.
@@ -27,7 +27,8 @@ class Fate(StrEnum):
     ingredient. That is, an input and an output have the label of the item, and the output contains the
     ingredient.
     ``USED_UP``: is used up, since no reason applies.
-    ``TOLD_STAYS``, ``TOLD_GOES``: stays, or is used up, since a file of the user says so.
+    ``TOLD_STAYS``: stays, since a file of the user says so.
+    ``TOLD_GOES``: is used up, since a file of the user says so.
 
     Example:
         >>> str(foon_asp.Fate.TOOL)
@@ -92,7 +93,7 @@ class Flow(NamedTuple):
 
 
 class UnitFlows(Sequence[Flow]):
-    """The flows of all units of a network; the flow of a unit is computed at the first access to it.
+    """The flows of all units of a network; each is computed at the first access to it, and kept.
 
     So a question about few units of a large network computes few flows. ``units`` is the number of units, and
     the function ``flow`` computes the flow of a unit by id.
@@ -123,7 +124,7 @@ class UnitFlows(Sequence[Flow]):
 
 @dataclass(frozen=True)
 class UsedUp:
-    """The model in which items are used up: what the user declared, the stock, and wanted copies.
+    """The model in which items are used up: declarations of the user, the stock, and wanted copies.
 
     ``told`` maps labels and object nodes to whether they stay. This overrides the reasons of :class:`Fate`.
     ``stock`` has the number of copies of kitchen nodes. Kitchen nodes that are not in it never run out.
@@ -171,7 +172,7 @@ class UsedUp:
             network: The network of the unit.
             unit: The id of the unit.
             needs: The inputs that the unit needs under the container rule, by id.
-            gives: The outputs that the unit makes under it, by id.
+            gives: The outputs that the unit makes under the rule, by id.
             utensils: The labels of utensils.
             amounts: How many of each node the unit takes and makes.
         """

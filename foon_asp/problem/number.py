@@ -19,8 +19,8 @@ _EXPONENT = re.compile(r"e([+-]?[\d_]+)\s*", re.IGNORECASE)
 def exact_number(number: Number, quantity: str) -> Fraction:
     """Return a number as an exact fraction: ``Fraction(9, 10)`` for ``0.9`` and for ``"0.9"``.
 
-    Raises :class:`UserError` for a text that is no number and for an exponent beyond 1,000. Its message names
-    the ``quantity``, such as ``the duration of 'stir'``.
+    Raises :class:`UserError` for a value that is no finite number, and for an exponent beyond 1,000. Its
+    message names the ``quantity``, such as ``the duration of 'stir'``.
     """
     try:
         power = _EXPONENT.search(str(number)) if isinstance(number, str | Decimal) else None
@@ -36,8 +36,8 @@ def exact_number(number: Number, quantity: str) -> Fraction:
 def unit_price(number: Number, quantity: str) -> Fraction:
     """Return a price as an exact fraction.
 
-    Raises :class:`UserError` for a text that is no number, and for a price below 0 or of more than 1,000
-    digits. Its message names the ``quantity``.
+    Raises :class:`UserError` for a value that is no finite number, for a price below 0, and for a fraction
+    whose numerator or denominator has more than 1,000 digits. Its message names the ``quantity``.
     """
     price = exact_number(number, quantity)
     if price < 0 or max(price.numerator, price.denominator) >= 10**_MAX_DIGITS:
@@ -51,8 +51,8 @@ def unit_price(number: Number, quantity: str) -> Fraction:
 def success_rate(number: Number, quantity: str) -> Fraction:
     """Return a success rate as an exact fraction, above 0 and at most 1.
 
-    Raises :class:`UserError` for a text that is no number, and for a rate outside this range. Its message
-    names the ``quantity``.
+    Raises :class:`UserError` for a value that is no finite number, and for a rate outside this range. Its
+    message names the ``quantity``.
     """
     rate = exact_number(number, quantity)
     if not 0 < rate <= 1:

@@ -52,11 +52,12 @@ class Row(NamedTuple):
     ``words``: its name on the axis of a chart.
     ``unit``: a function that returns the cost of a unit, an exact number.
     ``item``: the cost of each distinct kitchen item that the units need.
-    ``multiplies``: the values of units are multiplied, and more is better. Otherwise they are added up, and
-    less is better.
+    ``multiplies``: whether the values of units are multiplied, and more is better. Otherwise they are added
+    up, and less is better.
     ``needs``: the kind of optional data that the objective needs; ``None`` if it needs none.
-    ``is_fact``: the encodings read the costs of units from facts ``cost/3``, since no other fact states them.
-    ``whole``: all costs are integers.
+    ``is_fact``: whether the encodings read the costs of units from facts ``cost/3``. No other facts state
+    these costs.
+    ``whole``: whether all costs are integers.
     """
 
     term: str
@@ -96,7 +97,7 @@ class Objective(str, metaclass=_IterableOverBuiltIns):
     ``DISSIMILARITY``: least sum of the dissimilarities of stand-ins.
 
     Iteration over the class yields these built-in objectives. :meth:`of_measure` returns the objective of a
-    user measure. Each objective is a single object.
+    user measure. Each of these objectives is a single object, so they can be compared by ``is``.
 
     Example:
         >>> [str(objective) for objective in foon_asp.Objective][:3]
@@ -156,7 +157,10 @@ class Objective(str, metaclass=_IterableOverBuiltIns):
         raise AttributeError(f"an objective does not change, and cannot be given {name!r}")
 
     def __reduce__(self) -> tuple[Callable[[str], "Objective"], tuple[str]]:
-        """Pickle an objective as its name: unpickling returns the single object of that name."""
+        """Pickle an objective as its name: unpickling returns the single object of that name.
+
+        Unpickling raises ``ValueError`` for an objective of :meth:`of_row`.
+        """
         return Objective.of_measure if self.row.needs is OptionalData.MEASURES else Objective, (str(self),)
 
     def __repr__(self) -> str:
@@ -235,7 +239,10 @@ for _objective in _BUILT_IN.values():
 
 
 def multiplies(objective: Objective) -> bool:
-    """Whether an objective is a product, of which more is better; others are sums: less is better."""
+    """Whether an objective is a product, of which more is better.
+
+    Others are sums, of which less is better.
+    """
     return objective.row.multiplies
 
 
@@ -262,12 +269,12 @@ def parse_objectives(names: Iterable[str], measures: Collection[str] = ()) -> tu
 
 
 def with_dissimilarity(objectives: tuple[Objective, ...]) -> tuple[Objective, ...]:
-    """Return a list of objectives with ``dissimilarity``, which is put first unless it is listed."""
+    """Return a list of objectives with ``dissimilarity``: put first if the list does not have it."""
     return objectives if Objective.DISSIMILARITY in objectives else (Objective.DISSIMILARITY, *objectives)
 
 
 def levels(objectives: tuple[Objective, ...]) -> tuple[Objective, ...]:
-    """Return the list by which trees are optimized: ``units`` is put last unless it is listed.
+    """Return the list by which trees are optimized: ``units`` is put last if the list does not have it.
 
     With ``units`` in the list, optimal trees are irredundant.
     """

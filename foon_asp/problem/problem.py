@@ -109,7 +109,7 @@ class Origin(Protocol):
         """The whole network; of a store, units and nodes are read at their first access."""
 
     def unpriced(self) -> Sequence[Unpriced]:
-        """Return the units of the whole network that have no price, one entry for each motion."""
+        """Return one entry for each motion of the whole network with units that have no price."""
 
     def extend_to_whole(self, problem: "Problem") -> "Problem":
         """Return the same problem over the whole network."""
@@ -129,13 +129,14 @@ class Problem:
     ``rates``: the success rate of every motion; ``None`` if rates are not known for all motions of the
     network.
     ``own_rates``: the rates of units, by id, that differ from the rate of their motion; see :meth:`rate`.
-    ``unrated``: the error that lists the motions without a rate, if ``rates`` were ignored for this reason.
+    ``unrated``: the error that lists the motions without a rate, if ``rates`` were ignored for this reason;
+    else empty.
     ``utensils``: the labels of utensils, for the rule ``implied`` of ``containers``.
     ``unit_prices``: the prices of units, or ``None``; see :meth:`price`.
     ``measures``: the user measures by name; see :meth:`measure`.
     ``origin``: the data from which the problem was made; ``None`` for a problem made by hand.
     ``as_seen``: the problem whose rates and kitchen the user's rules see, if this problem has other rates or
-    a larger kitchen.
+    a larger kitchen; ``None`` if the rules see this problem.
     ``restriction``: the effect of rules on the network, for this question only; each variation needs its own.
     ``items``: the model in which items are used up; ``None`` if items last.
     ``starting``: whether no kitchen is named. Then the nodes that no unit makes out of others are available.
@@ -207,9 +208,9 @@ class Problem:
 
     @cached_property
     def whole(self) -> "Problem":
-        """The same problem over the whole network; of a store, all of it is read.
+        """The same problem over the whole network, with all stand-ins; of a store, all of it is read.
 
-        The problem itself, if its network is whole already or if it was made by hand.
+        It is the problem itself if its network is whole already, or if the problem was made by hand.
         """
         nearest = self.stand_ins is not None and self.stand_ins.nearest
         is_part = self.network.object_numbers or nearest
@@ -225,8 +226,8 @@ class Problem:
     def about(self, units: Iterable[FunctionalUnit]) -> "Problem":
         """Return this problem over a network that also has the given units.
 
-        If the network is part of a store, the units are read from there, unless the store does not have them.
-        Otherwise this problem itself is returned.
+        If the network is part of a store, those of the units that the store has are read from it. Otherwise
+        this problem itself is returned.
 
         Parameters:
             units: The units.
@@ -264,7 +265,7 @@ class Problem:
 
         Raises:
             UserError: for a name that means no object node or several, a value out of range, or a problem
-                made by hand, which :func:`dataclasses.replace` varies.
+                made by hand. Use :func:`dataclasses.replace` to vary such a problem.
         """
         if self.origin is None:
             raise UserError("this problem was put together by hand: dataclasses.replace makes another of it")
@@ -368,7 +369,10 @@ class Problem:
 
     @cached_property
     def kitchen_seen(self) -> frozenset[int]:
-        """The ids of the kitchen items that the user's rules see: without items that a relaxation adds."""
+        """The ids of the kitchen items that the user's rules see.
+
+        If ``as_seen`` is set, items outside its kitchen are left out.
+        """
         return self.kitchen if self.as_seen is None else self.kitchen & self.as_seen.kitchen
 
     @cached_property
@@ -379,9 +383,10 @@ class Problem:
         return frozenset(o for o in self.kitchen if self.stock_of(o) is None)
 
     def copies_taken(self, plan: Iterable[int]) -> dict[int, int]:
-        """Return the fewest copies of each consumable kitchen item with which a plan can be executed, by id.
+        """Return the fewest copies of each consumable kitchen item with which a plan can be executed.
 
-        If the item is a goal, the copies that are wanted in the end count, too.
+        The numbers are by object node id; there are none if items last. If the item is a goal, the copies
+        that are wanted in the end count, too.
 
         Parameters:
             plan: The ids of the units, in the order of execution.
@@ -555,11 +560,11 @@ class Problem:
 
     @cached_property
     def _known_costs(self) -> dict[str, Sequence[int | Fraction]]:
-        """The costs of the units by measure, which :meth:`apply_measures` fills in."""
+        """The costs of the units, by name of measure; :meth:`apply_measures` fills them in."""
         return {}  # by measure
 
     def _costs_by(self, name: str) -> Sequence[int | Fraction]:
-        """Return the cost of each unit by a measure, computed at the first access.
+        """Return the cost of each unit by a measure; at the first access, all measures are computed.
 
         Raises ``ValueError`` for an unknown measure.
         """
@@ -569,10 +574,10 @@ class Problem:
         return self._known_costs[name]
 
     def apply_measures(self, deadline: Deadline | None = None) -> None:
-        """Compute and keep the costs of all units by each measure; skip measures that are computed.
+        """Compute the costs of all units by each measure that has not been computed yet, and keep them.
 
         Parameters:
-            deadline: The limits.
+            deadline: The limits; ``None`` for no limits.
 
         Raises:
             UserError: if rules are wrong.
@@ -583,7 +588,7 @@ class Problem:
 
     @cached_property
     def unpriced(self) -> Sequence[Unpriced]:
-        """The units that have no price, one entry for each motion; for a store, of its whole network."""
+        """One entry for each motion with units that have no price; of a store, the whole network counts."""
         network = self.network
         lacking = (unit for unit, price in enumerate(self.prices) if price is None)
         in_network = count_unpriced((network.motions[unit], network.sources[unit]) for unit in lacking)
@@ -716,7 +721,7 @@ def for_each_goal(problem: Problem) -> list[Problem]:
 
 
 def count_unpriced(units: Iterable[tuple[str, Sequence[Source]]]) -> list[Unpriced]:
-    """Return the units without a price, counted by motion, each with the source of the first unit.
+    """Return the number of units without a price for each motion, with the source of the first of them.
 
     ``units`` has the motion and the sources of each unit without a price.
     """
@@ -776,7 +781,10 @@ def unrated_text(
 
 
 def unrated_remarks(motions: Iterable[tuple[str, Source]], rates: Mapping[str, Fraction]) -> list[str]:
-    """Return a list with one warning, which names motions without a success rate; empty if all have one."""
+    """Return a list with one warning, which names up to four motions without a success rate.
+
+    The list is empty if all motions have a rate. ``motions`` are pairs of a motion and the source of a unit.
+    """
     lacking = [
         repr(motion) for motion in dict.fromkeys(motion for motion, _ in motions) if motion not in rates
     ]

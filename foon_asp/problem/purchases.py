@@ -37,7 +37,8 @@ class Purchases:
 
     A *ware* is an object node that can be bought. Its unit has no inputs, and makes a copy of the ware. The
     best tree or plan of ``problem`` by ``objectives`` has the cheapest purchases. Ties are broken by fewer
-    purchases, then by fewer purchases of wares to avoid, then by the objectives of the question.
+    purchases, then by fewer purchases of wares to avoid, then by the objectives of the question. In these
+    objectives, a purchase is a unit that always succeeds, and costs nothing by price and by user measures.
     """
 
     def __init__(
@@ -84,8 +85,8 @@ class Purchases:
     def without(self, wares: Collection[int]) -> Self:
         """Return a copy in which some wares, given by object node id, cannot be bought.
 
-        If none of them is a ware of the question, the question itself is returned. The copy replaces any
-        restriction of the problem, so it is for problems whose items last.
+        If none of them is a ware of the question, the question itself is returned. The problem of the copy
+        has a restriction that removes the purchases of these wares. It replaces any other restriction.
         """
         removed = {unit for unit in self._purchases if self._wares[unit - self._first_purchase] in wares}
         if not removed:
@@ -97,7 +98,7 @@ class Purchases:
     def split(self, units: Sequence[int]) -> tuple[dict[int, int], tuple[int, ...]]:
         """Return the purchases in a tree or plan, and its other units in their order.
 
-        The purchases are numbers of copies by object node id, in ascending order of id.
+        The purchases map the ids of the object nodes bought, ascending, to numbers of copies.
         """
         bought = Counter(
             self._wares[unit - self._first_purchase] for unit in units if unit >= self._first_purchase
@@ -106,7 +107,7 @@ class Purchases:
 
 
 def _add_purchases(network: Network, wares: Sequence[int]) -> Network:
-    """Return a network with one more unit for each ware, at the end, which makes the ware out of nothing."""
+    """Return a network with an additional last unit for each ware, which makes the ware out of nothing."""
     count, numbers = len(wares), network.unit_numbers
     if numbers:
         numbers += tuple(range(numbers[-1] + 1, numbers[-1] + 1 + count))

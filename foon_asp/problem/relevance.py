@@ -16,9 +16,9 @@ class Reached(NamedTuple):
 
     ``units``: the ids of all reachable units in an executable order, without units that a restriction
     removes.
-    ``makers``: the first unit in this order that makes each object, by object id, so that these units have no
-    cycle. Kitchen items have none. A required set of a restriction has one, like an object
-    (:attr:`Problem.targets`).
+    ``makers``: maps the id of each object to the first unit in this order that makes it. So these achievers
+    have no cycle. Kitchen items are left out. Required sets of a restriction are included, under their ids in
+    :attr:`Problem.targets`.
     ``available``: for each object of the network, 1 if it is reachable, else 0.
     """
 
@@ -49,7 +49,11 @@ def unrestricted_reach(
 def _closure(
     network: Network, needs: Ids, gives: Ids, kitchen: frozenset[int], restriction: Restriction | None
 ) -> Reached:
-    """Return the forward closure of a kitchen; ``needs`` and ``gives`` are preconditions and add effects."""
+    """Return the forward closure of a kitchen, without units that the restriction removes.
+
+    ``needs`` and ``gives`` are the preconditions and add effects of each unit. With ``None`` for
+    ``restriction``, no units are removed.
+    """
     removed = restriction.removed if restriction else None
     available = bytearray(len(network.objects))
     missing = [len(needed) for needed in needs]
@@ -133,7 +137,7 @@ def search_backward(
 def units_relevant_to_plans(problem: Problem, reached: Reached) -> set[int]:
     """Return the reached units that some irredundant plan can contain, where items are used up.
 
-    They are found backward from the goals through achievers, down to items that are not consumable. A unit
+    They are found backward from the goals through achievers, down to kitchen items that never run out. A unit
     that puts out no more copies of a node than it takes is no achiever of the node.
     """
     flows, endless, allowed = problem.flows, problem.endless, frozenset(reached.units)
@@ -178,7 +182,7 @@ def follow_achievers(
 ) -> set[int] | None:
     """Return the units that make objects out of ``start``; ``maker`` has one achiever for each object.
 
-    ``None`` if an object that is needed has no achiever.
+    Return ``None`` if an object that is needed has no achiever.
     """
     units: set[int] = set()
     stack = list(objects)

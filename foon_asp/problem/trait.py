@@ -9,7 +9,8 @@ class Role(Enum):
     """The role that a name can have in a unit.
 
     ``MOTION``: the name is its motion.
-    ``INPUT``, ``OUTPUT``: the name is the label or an ingredient of one of its inputs, or outputs.
+    ``INPUT``: the name is the label or an ingredient of one of its inputs.
+    ``OUTPUT``: the name is the label or an ingredient of one of its outputs.
     ``MADE``: as ``INPUT``, for an input that is not in the kitchen.
     """
 

@@ -55,7 +55,7 @@ NEW = {
 
 def known(objective: Objective, monkeypatch: pytest.MonkeyPatch) -> None:
     """Have trees measured by a made-up objective, too."""
-    monkeypatch.setattr("foon_asp.problem.costs._MEASURED", (*Objective, objective))
+    monkeypatch.setattr("foon_asp.problem.costs._BUILT_IN_OBJECTIVES", (*Objective, objective))
 
 
 def best_by_hand(problem: Problem, objectives: tuple[Objective, ...]) -> tuple[Fraction | int, ...] | None:
