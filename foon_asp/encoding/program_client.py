@@ -42,7 +42,7 @@ class WorkerProgram:
         """
         self._worker = take_worker(_KEY, _start)
         self._give_back = weakref.finalize(self, _forget, self._worker)
-        command = "ground", _folder(), list(files), text, list(arguments), products, _memory_left(deadline)
+        command = "ground", _current_folder(), list(files), text, list(arguments), products, _memory_left(deadline)
         self.deadline = deadline
         _ask(self._worker, deadline, *command)
 
@@ -75,7 +75,10 @@ class WorkerProgram:
 
 
 def derive(text: str, name: str, arity: int, deadline: Deadline) -> list[tuple[Value, ...]]:
-    """Run :func:`foon_asp.encoding.derived.derive` in another process, which is killed at the limits."""
+    """Run :func:`foon_asp.encoding.derived.derive` in another process.
+
+    The process is killed at the limits and at ctrl-C; then :class:`LimitError` is raised.
+    """
     worker = take_worker(_KEY, _start)
     try:
         rows: list[tuple[Value, ...]] = _ask(
@@ -87,11 +90,11 @@ def derive(text: str, name: str, arity: int, deadline: Deadline) -> list[tuple[V
 
 
 def _memory_left(deadline: Deadline) -> int | None:
-    """Return the number of bytes that another process may use, ``None`` without a limit."""
+    """Return how many bytes another process may use, at least 1; ``None`` if memory is not limited."""
     return None if deadline.memory is None else max(1, deadline.memory - deadline.memory_in_use())
 
 
-def _folder() -> str | None:
+def _current_folder() -> str | None:
     """Return the current folder, which may change between programs; ``None`` if it was removed."""
     try:
         return os.getcwd()
@@ -110,17 +113,20 @@ def _start() -> Worker:
 
 
 def _forget(worker: Worker) -> None:
-    """Make the process drop its program, and return it to the pool."""
+    """Make a process drop its program, unless it is busy or dead, and return it to the pool."""
     if worker.is_ready:
         worker.tell(pack_message(("forget",)))
     give_back_worker(_KEY, worker)
 
 
 def _ask(worker: Worker, deadline: Deadline, *command: object, handlers: _Handlers | None = None) -> Any:
-    """Send a command to a worker, and return its answer; ``handlers`` are called with reports on the way.
+    """Send a command to a worker, and return its answer.
 
-    Raises the :class:`ProgramError` or :class:`UserError` that the worker reports, and :class:`LimitError` at
-    a limit. Raises :class:`BugError` for any other error in the worker.
+    Reports that arrive before the answer are passed to ``handlers``, by their kind (``tree`` or ``bound``).
+
+    Raises the :class:`ProgramError` or :class:`UserError` that the worker reports, and :class:`BugError` for
+    any other error that it reports. Raises :class:`LimitError` at a limit. If the worker dies, raises the
+    error of :func:`_error_of_death`.
     """
     try:
         kind, value = worker.ask(pack_message(command), deadline, handlers)
@@ -138,7 +144,8 @@ def _ask(worker: Worker, deadline: Deadline, *command: object, handlers: _Handle
 def _error_of_death(code: int, has_spoken: bool, deadline: Deadline) -> UserError | LimitError:
     """Return the error for a process that died with an exit code.
 
-    It is :class:`LimitError` if memory ran out; else the rules, or the start of Python, are to blame.
+    If memory ran out, it is :class:`LimitError`, and this is recorded in the deadline. Otherwise it is a
+    :class:`UserError` that blames a division, the start of Python, or the rules.
     """
     if code in _OF_MEMORY or (deadline.memory is not None and code == -signal.SIGSEGV):
         deadline.stop_out_of_memory()

@@ -17,13 +17,14 @@ def serve() -> None:
     """Execute the commands on standard input, and write answers to the original standard output.
 
     A command is a tuple of its name and parameters. An answer is a pair: ``done`` with the result, or
-    ``refused``, ``fault`` or ``bug`` with the error. The process exits if memory runs out.
+    ``refused``, ``fault`` or ``bug`` with the error. The command ``forget`` drops the program, without an
+    answer. The process exits if memory runs out or its input ends.
     """
     commands, answers = become_worker(receive)
     program: GroundProgram | None = None
 
     def obey(command: str, *parameters: Any) -> object:
-        """Execute a command, and return its result; a search sends trees and bounds before."""
+        """Execute a command, and return its result; a search first sends its trees and bounds."""
         nonlocal program
         if command == "ground":
             program = None  # frees the memory before the next one

@@ -36,7 +36,7 @@ class RateScale(NamedTuple):
     exponents: Mapping[Fraction, Mapping[int, int]]
 
     def product_exponents(self, rates: Iterable[Fraction]) -> dict[int, int]:
-        """Return the exponents of a product of rates, by factor number; every factor is listed."""
+        """Return the exponents of a product of rates, by factor number, including exponents of 0."""
         total = {factor: 0 for rate in self.exponents.values() for factor in rate}
         for rate in rates:
             for factor, exponent in self.exponents[rate].items():
@@ -60,10 +60,10 @@ class RateScale(NamedTuple):
 
 
 def rate_scale(rates: Collection[Fraction]) -> RateScale:
-    """Return the finest useful scale of rates in (0, 1] within clingo's 32-bit integers.
+    """Return the weights and exponents of rates in (0, 1], with the finest useful scale.
 
-    The scale is at most 10^8, except where a rate next to 1 would weigh almost 0. Raises ``ValueError`` for a
-    rate outside of (0, 1].
+    The scale is a power of ten by which all weights fit into 32 bits. It is at most 10^8, except where a rate
+    next to 1 would weigh almost 0. Raises ``ValueError`` for a rate outside of (0, 1].
     """
     if not all(0 < rate <= 1 for rate in rates):
         raise ValueError("expected success rates above 0 and at most 1")
@@ -74,7 +74,11 @@ def rate_scale(rates: Collection[Fraction]) -> RateScale:
 
 
 def _scale(logarithms: Collection[Decimal]) -> int:
-    """Return the power of ten by which logarithms above 0 are multiplied to become weights."""
+    """Return the power of ten by which logarithms above 0 are multiplied to become weights.
+
+    It is 10^8 if there are no logarithms. If the greatest weight would exceed 32 bits, it is smaller. If the
+    least weight would be below 1000, it is greater, as far as 32 bits allow.
+    """
     if not logarithms:
         return USUAL_SCALE
     fitting: int = 10 ** (INT32_MAX / max(logarithms)).adjusted()
@@ -84,9 +88,9 @@ def _scale(logarithms: Collection[Decimal]) -> int:
 
 
 def problem_scale(problem: Problem, units: Iterable[int]) -> RateScale:
-    """Return the scale of the rates of units of a problem.
+    """Return the weights and exponents of the success rates of units of a problem.
 
-    Raises :class:`UserError` where a sum of exponents of the units could overflow.
+    Raises :class:`UserError` if a sum of exponents of the units could exceed 32 bits.
     """
     units = list(units)
     scale = rate_scale(problem.different_rates(units))
@@ -124,7 +128,7 @@ def _weight(rate: Fraction, scale: int) -> int:
 
 
 def _exponents(rates: Collection[Fraction]) -> dict[Fraction, dict[int, int]]:
-    """Return for each rate its exponents in a coprime base of all rates, by factor number."""
+    """Return for each rate its exponents in a coprime base of all rates, by factor number, without zeros."""
     base = coprime_base(number for rate in rates for number in rate.as_integer_ratio())
     numbers = {factor: number for number, factor in enumerate(base)}
     exponents: dict[Fraction, dict[int, int]] = {}

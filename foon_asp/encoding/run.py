@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 
 class ProgramError(Exception):
-    """An error of clingo, which refused a program or an option.
+    """The refusal of a program or an option: by clingo, or because clingo would drop an instance of a rule.
 
-    ``messages`` are its reasons; ``otherwise`` is the text of its exception.
+    ``messages`` are clingo's reasons; ``otherwise`` is the text of its exception, empty if it raised none.
     """
 
     def __init__(self, messages: Sequence[str], otherwise: str) -> None:
@@ -50,15 +50,15 @@ class Run:
     """The result of a run of clingo.
 
     Attributes:
-        units: The last (best) answer; ``None`` without one.
+        units: The numbers of the units of the last answer, which is the best; ``None`` if there is no answer.
         cost: The cost vector of the answer as clingo reports it; its numbers wrap at 32 bits.
-        exhausted: Whether the whole search space was searched, so that the answer is optimal, or none exists.
-        lower: The proved lower bound of each priority, highest first, as far as known.
+        exhausted: Whether the whole search space was searched. Then the answer is optimal, or none exists.
+        lower: The proved lower bound of each priority, highest first; empty if none is proved.
         atoms: By requested predicate, the number of its atoms in the answer for each first argument.
         rows: By requested predicate, the arguments of its atoms whose arguments are all numbers.
         ground_seconds: The time of grounding.
         solve_seconds: The time of the search.
-        statistics: Statistics of clingo as text, where an option requests them.
+        statistics: Statistics of clingo as text; empty unless an option requests them.
     """
 
     units: frozenset[int] | None = None
