@@ -71,7 +71,7 @@ class Locality:
     def _find_leads_to(self) -> dict[Signature, dict[int, set[Subject]]]:
         """Find the arguments of auxiliary predicates that are in the tree whenever an atom holds.
 
-        Return the subjects that each argument stands for then, by predicate and position. They are the
+        Return the subjects that an argument stands for in the tree, by predicate and position. They are the
         greatest fixpoint over the rules. The result is also set as ``_leads_to``.
         """
         leads = {
@@ -97,8 +97,8 @@ class Locality:
     def _find_about_arguments(self, program: Sequence[Clause]) -> None:
         """Fill ``_about`` and ``_nonlocal`` for all auxiliary predicates, as a fixpoint.
 
-        ``_about`` gets the arguments that have to be in the tree, so that the rules for a predicate are
-        local. ``_nonlocal`` gets the predicates with a rule that is not local whatever their arguments are.
+        ``_about`` gets the arguments that have to be in the tree for the rules of a predicate to be local.
+        ``_nonlocal`` gets the predicates that have a rule which is not local, whatever their arguments are.
         """
         changed = True
         while changed:
@@ -147,21 +147,22 @@ class Locality:
         return changed
 
     def _mark_nonlocal(self, signature: Signature, nonlocality: Nonlocality) -> bool:
-        """Record why a predicate is not local, unless a reason is known; return whether it is the first."""
+        """Record why a predicate is not local, unless a reason is known; return whether it was recorded."""
         if signature in self._nonlocal:
             return False
         self._nonlocal[signature] = nonlocality
         return True
 
     def _tree_terms(
-        self, conjuncts: Iterable[Conjunct], before: Mapping[str, set[Subject]] | None = None
+        self, conjuncts: Iterable[Conjunct], known: Mapping[str, set[Subject]] | None = None
     ) -> _TreeTerms:
-        """Return what terms stand for in the tree wherever the conjuncts hold: subjects by term, as text.
+        """Return the terms that are known to be in the tree wherever the conjuncts hold.
 
-        ``before`` has terms that are known to be in the tree; they are in the result, too.
+        They are given as text, each with the subjects that it stands for. ``known`` has terms that are known
+        to be in the tree already; they are in the result, too.
         """
         positive = [literal for literal in conjuncts if isinstance(literal, Literal) and literal.positive]
-        tree_terms = {term: set(subjects) for term, subjects in (before or {}).items()}
+        tree_terms = {term: set(subjects) for term, subjects in (known or {}).items()}
         changed = True
         while changed:
             changed = False
@@ -174,7 +175,7 @@ class Locality:
         return tree_terms
 
     def _led_arguments(self, literal: Literal, tree_terms: _TreeTerms) -> list[tuple[int, Subject]]:
-        """Return the arguments of a literal that are in the tree if it holds: positions with subjects.
+        """Return the arguments that are in the tree if a literal holds: pairs of a position and a subject.
 
         ``tree_terms`` has the terms that are known to be in the tree.
         """
@@ -192,9 +193,9 @@ class Locality:
     def _lacking_term(
         self, conjuncts: Iterable[Conjunct], tree_terms: _TreeTerms, source: Source
     ) -> "_LackingTerm | None":
-        """Return the first term that has to be in the tree but may be outside; ``None`` if there is none.
+        """Return the first term in conjuncts that has to be in the tree but may be outside, else ``None``.
 
-        ``tree_terms`` has the terms that are known to be in the tree.
+        ``tree_terms`` has the terms that are known to be in the tree. ``source`` is the place of the rule.
         """
         for conjunct in conjuncts:
             lacking = self._lacking_term_in_conjunct(conjunct, tree_terms, source)
@@ -234,7 +235,7 @@ class Locality:
     ) -> "_LackingTerm | None":
         """Return the first argument that has to be in the tree but may be outside, else ``None``.
 
-        The literal may also be not local whatever its arguments are; then the result has an empty term.
+        If the predicate is not local whatever its arguments are, return an empty term with the reason.
         """
         signature = literal.signature
         if signature in self._nonlocal:
