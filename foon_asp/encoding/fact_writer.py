@@ -473,7 +473,10 @@ def write_assisted(twins: Mapping[int, int], max_assisted: int) -> str:
     ``twins`` maps the number P of a person's unit to the number U of the same unit done by the robot. A tree
     may have at most N units of the person (``max_assisted``).
     """
-    facts = [f"_takes_over({_check_int32(person_unit)},{robot_unit}).\n" for person_unit, robot_unit in twins.items()]
+    facts = [
+        f"_takes_over({_check_int32(person_unit)},{robot_unit}).\n"
+        for person_unit, robot_unit in twins.items()
+    ]
     return "".join([*facts, f"_at_most_assisted({_check_int32(max_assisted)}).\n"])
 
 

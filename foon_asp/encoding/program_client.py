@@ -42,7 +42,15 @@ class WorkerProgram:
         """
         self._worker = take_worker(_KEY, _start)
         self._give_back = weakref.finalize(self, _forget, self._worker)
-        command = "ground", _current_folder(), list(files), text, list(arguments), products, _memory_left(deadline)
+        command = (
+            "ground",
+            _current_folder(),
+            list(files),
+            text,
+            list(arguments),
+            products,
+            _memory_left(deadline),
+        )
         self.deadline = deadline
         _ask(self._worker, deadline, *command)
 

@@ -16,9 +16,9 @@ from foon_asp.rules.passed_constraint import Constraint, LibraryUse, RuleText
 def load_constraints(constraints: Sequence[Constraint]) -> dict[Constraint, Loaded]:
     """Return what clingo loads for each constraint: a file or a text.
 
-    Rules given as text are called ``rule 1``, ``rule 2`` and so on; ready-made constraints with constants of
-    their own ``use 1``, ``use 2``. Raises :class:`UserError` for constants that a ready-made constraint does
-    not have, and for wrong values.
+    A path is returned as it is. Rules given as text are called ``rule 1``, ``rule 2`` and so on; ready-made
+    constraints with constants of their own are called ``use 1``, ``use 2``. Raises :class:`UserError` for
+    constants that a ready-made constraint does not have, and for wrong values.
     """
     loaded_by_constraint: dict[Constraint, Loaded] = {}
     rules = uses = 0
@@ -39,8 +39,9 @@ def load_constraints(constraints: Sequence[Constraint]) -> dict[Constraint, Load
 def _renamed_constraint(use: LibraryUse, number: int) -> Stated:
     """Return a ready-made constraint with its constants set, as text in which names end in a number.
 
-    Constants and predicates of its own are renamed, so that a constraint can be used twice. Each statement is
-    on the same line as its beginning in the file. ``number`` is that of the use.
+    The constraint's own constants and predicates are renamed, so that it can be used twice. Each statement is
+    on the same line as its beginning in the file. ``number`` is that of the use. Raises :class:`UserError`
+    for an unknown constant or a wrong value.
     """
     encoding = read_encoding(use.file)
     values = use.constants

@@ -41,8 +41,10 @@ _Values = Mapping[str, Sequence[Symbol]]  # by variable, where all values are kn
 class _Unmatched(NamedTuple):
     """A literal that matches no fact, with the warning about it and its place.
 
-    ``clause``: the index of its rule in the file. ``head``: the predicate that the rule derives.
+    ``clause``: the index of its rule in the file.
+    ``head``: the predicate that the rule derives; ``None`` if it derives none.
     ``constants``: the values in the literal.
+    ``message``: the text of the warning.
     """
 
     clause: int
@@ -94,9 +96,10 @@ class _Search:
         self._listed_values = self._find_listed_values(program)
 
     def unmatched(self, program: Sequence[Clause]) -> Iterator[_Unmatched]:
-        """Return the literals of the rules of one file that match no fact.
+        """Return the literals of the rules of one file that match no fact, each with a warning.
 
-        A literal is left out if another rule with the same head matches with the same constants.
+        A literal is left out if another rule with the same head has a literal that matches and has the same
+        constants.
         """
         candidates: list[_Unmatched] = []
         matched: defaultdict[tuple[Signature | None, frozenset[Symbol]], set[int]] = defaultdict(set)
@@ -126,9 +129,10 @@ class _Search:
     def _value_combinations(
         self, literal: Literal, conjuncts: Iterable[Conjunct]
     ) -> Sequence[Mapping[int, Symbol]]:
-        """Return the combinations of values that a literal over a fact requires, by position.
+        """Return the combinations of values that a literal over a fact requires, by argument position.
 
-        Empty where there are more than 10,000: then the literal counts as matched.
+        Arguments whose values are unknown are left out. The result is empty if no value is known, and if
+        there are more than 10,000 combinations; then the literal counts as matched.
         """
         max_combinations = 10_000
         values_by_position = (
@@ -151,9 +155,10 @@ class _Search:
         return self._values.matches(literal.signature[0], COLUMNS[literal.signature], wanted)
 
     def _argument_values(self, literal: Literal, bound: _Values) -> dict[int, Sequence[Symbol]]:
-        """Return the possible values of arguments, by position, without arguments of unknown values.
+        """Return the possible values of arguments, by position; arguments of unknown values are left out.
 
-        ``bound`` has the possible values of variables.
+        ``bound`` has the possible values of variables. An argument that may be an unset constant is left out,
+        too.
         """
         values_by_position: dict[int, Sequence[Symbol]] = {}
         for position, argument in enumerate(literal.arguments):
@@ -206,9 +211,10 @@ class _Search:
         return columns
 
     def _warning_text(self, literal: Literal, rows: Sequence[Mapping[int, Symbol]]) -> str:
-        """Return the warning about a literal that matches no fact, with similar names.
+        """Return the warning about a literal that matches no fact.
 
-        ``rows`` are its combinations of values.
+        ``rows`` are its combinations of values. The warning says that an argument has the wrong type, that no
+        unit or node has a number, or which similar texts a fact has.
         """
         name, columns = literal.signature[0], COLUMNS[literal.signature]
         variables = {
@@ -294,7 +300,7 @@ def _literals_with_scope(
 ) -> Iterator[tuple[Literal, tuple[Conjunct, ...]]]:
     """Yield the literals in conjuncts of a body, each with the conjuncts of the condition around it.
 
-    A literal outside conditions comes with ``scope``.
+    A literal outside conditions comes with ``scope`` instead.
     """
     for conjunct in conjuncts:
         if isinstance(conjunct, Literal):
@@ -329,7 +335,7 @@ def _symbol_text(symbol: Symbol) -> str:
 
 
 def _literal_text(literal: Literal, arguments: Mapping[int, str]) -> str:
-    """Return a literal without its ``not``, with arguments replaced by position."""
+    """Return a literal without its ``not``; ``arguments`` replace those at the same positions."""
     shown = [arguments.get(position, str(argument)) for position, argument in enumerate(literal.arguments)]
     return f"{literal.signature[0]}({','.join(shown)})"
 

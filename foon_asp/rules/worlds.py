@@ -11,7 +11,7 @@ class Worlds(Transformer):
     """Rewriter that adds a world as first argument to predicates that differ from world to world.
 
     ``dependent`` are these predicates; their names get a ``prefix``. ``world`` is a variable that no rule
-    has.
+    has. Atoms with a minus are not changed.
     """
 
     def __init__(self, dependent: Collection[Signature], world: str, prefix: str = "_") -> None:
