@@ -35,13 +35,13 @@ def cost_scale(costs: Iterable[Fraction]) -> CostScale:
     weights are rounded down, and the scale is the greatest by which they fit into 32 bits, but at most 10^8.
     """
     costs = list(costs)
-    different = sorted(set(costs))
-    greatest = max(different, default=Fraction(0))
-    common = math.lcm(*(cost.denominator for cost in different))
-    exact = common * greatest <= INT32_MAX
-    scale = Fraction(common) if exact else min(Fraction(USUAL_SCALE), INT32_MAX / greatest)
-    weights = {cost: math.floor(scale * cost) for cost in different}
-    places = {cost: index for index, cost in enumerate(different)}
+    distinct_costs = sorted(set(costs))
+    greatest = max(distinct_costs, default=Fraction(0))
+    common_denominator = math.lcm(*(cost.denominator for cost in distinct_costs))
+    exact = common_denominator * greatest <= INT32_MAX
+    scale = Fraction(common_denominator) if exact else min(Fraction(USUAL_SCALE), INT32_MAX / greatest)
+    weights = {cost: math.floor(scale * cost) for cost in distinct_costs}
+    places = {cost: index for index, cost in enumerate(distinct_costs)}
     return CostScale(scale, exact, weights, places, sum(weights[cost] for cost in costs))
 
 

@@ -527,10 +527,10 @@ def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) 
         if not equals:
             raise UserError(f"found the constant {setting!r}, expected NAME=VALUE")
         if name not in defaults:
-            for use in (encoding.rules for encoding in encodings):
-                if isinstance(use, Stated) and name in dict(use.renamed).values():
+            for rules in (encoding.rules for encoding in encodings):
+                if isinstance(rules, Stated) and name in dict(rules.renamed).values():
                     raise UserError(
-                        f"found a value of the constant {name!r}, but {use.written} has values of its own: "
+                        f"found a value of the constant {name!r}, but {rules.written} has values of its own: "
                         "set it there"
                     )
             listed = ", ".join(sorted(defaults)) or "none: add a constraint with #const"

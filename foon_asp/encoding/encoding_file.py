@@ -157,9 +157,9 @@ def _check_content(text: str, origin: str, file: Path | None, errors: list[Diagn
                 target = _ESCAPED.sub(
                     lambda match: "\n" if match[1] == "n" else match[1], target_token.text[1:-1]
                 )
-                problem = _include_refusal(file, target)
-                if problem:
-                    error("include", f"found #include of {target_token.text}, {problem}", token.start)
+                refusal = _include_refusal(file, target)
+                if refusal:
+                    error("include", f"found #include of {target_token.text}, {refusal}", token.start)
                 else:
                     included.append(file.parent / target)
             elif target_token is not None and target_token.text == "<":

@@ -282,17 +282,17 @@ def prices_in_hundredths(
         return {}
     prices = [(unit, price) for unit in units if (price := problem.prices[unit]) is not None]
     by_unit = {unit: price.numerator * 100 // price.denominator for unit, price in prices}
-    broken = next((pair for pair in prices if pair[1].numerator * 100 % pair[1].denominator), None)
-    if broken is None and sum(by_unit.values()) <= LARGEST:
+    inexact = next((pair for pair in prices if pair[1].numerator * 100 % pair[1].denominator), None)
+    if inexact is None and sum(by_unit.values()) <= LARGEST:
         return by_unit
     if _PRICE not in looked_at:
         return {}
-    if broken is None:
+    if inexact is None:
         raise UserError(
             f"a rule looks at price/2, and the prices of all units together are more than {LARGEST // 100}, "
             "which is more than clingo's numbers of 32 bits can tell in hundredths: divide all prices by 10"
         )
-    unit, price = broken
+    unit, price = inexact
     text = decimal_text(price) if 10**18 % price.denominator == 0 else f"{price}"
     raise UserError(
         f"a rule looks at price/2, and the price {text} of the unit "

@@ -110,7 +110,7 @@ class GroundProgram:
             raise UserError(str(error)) from None
         faults: list[Exception] = []  # raised in clingo's thread, to be raised again in this one
 
-        def model(model: Model) -> bool:
+        def report_answer(model: Model) -> bool:
             """Report an answer; return whether to continue, which is ``False`` after an error."""
             try:
                 atoms = {name: _count_by_first_argument(model, name, arity) for name, arity in predicates}
@@ -121,7 +121,7 @@ class GroundProgram:
             return not faults
 
         with self._control.solve(
-            async_=True, on_model=model, on_unsat=lambda lower: on_bound(list(lower))
+            async_=True, on_model=report_answer, on_unsat=lambda lower: on_bound(list(lower))
         ) as handle:
             if self.deadline:
                 _wait(handle, self.deadline)

@@ -79,13 +79,13 @@ class Grounded:
         result = Run()
         began = time.perf_counter()
 
-        def tree(answer: FoundAnswer) -> None:
+        def record_answer(answer: FoundAnswer) -> None:
             """Record an answer in the run, and report its units."""
             result.units, result.cost, result.atoms, result.rows = answer
             if on_tree:
                 on_tree(answer.units)
 
-        def bound(lower: list[int]) -> None:
+        def record_bound(lower: list[int]) -> None:
             """Record a lower bound in the run if it is the greatest, and report the greatest so far."""
             result.lower = max(result.lower, lower)  # a lesser bound may arrive later; all are valid
             if on_bound:
@@ -93,7 +93,9 @@ class Grounded:
 
         try:
             self._begin_phase("searching", deadline)
-            result.exhausted, result.statistics = self._program.search(opt_mode, predicates, tree, bound)
+            result.exhausted, result.statistics = self._program.search(
+                opt_mode, predicates, record_answer, record_bound
+            )
         except LimitError:  # the last answer remains
             pass
         result.solve_seconds = time.perf_counter() - began

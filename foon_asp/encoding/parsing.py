@@ -21,16 +21,16 @@ def parse(rules: Loaded, add: Callable[[AST], None], logger: Callable[[MessageCo
         return
     place = rules.place
 
-    def placed(statement: AST) -> None:
+    def add_placed(statement: AST) -> None:
         """Set the name of the rules as file name in a statement, and add the statement."""
         _replace_file_name(statement, place)
         add(statement)
 
-    def logged(code: MessageCode, message: str) -> None:
+    def log_placed(code: MessageCode, message: str) -> None:
         """Put the name of the rules as file name into a message, and log the message."""
         logger(code, place + message.removeprefix(_TEXT) if message.startswith(_TEXT) else message)
 
-    parse_string(rules.text, placed, logger=logged)
+    parse_string(rules.text, add_placed, logger=log_placed)
 
 
 def load(control: Control, rules: Stated, logger: Callable[[MessageCode, str], None]) -> None:

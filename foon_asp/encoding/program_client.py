@@ -40,19 +40,11 @@ class WorkerProgram:
 
         ``products`` is the number of products of rates in the text.
         """
-        self._worker = take_worker(_KEY, _start)
-        self._give_back = weakref.finalize(self, _forget, self._worker)
-        command = (
-            "ground",
-            _current_folder(),
-            list(files),
-            text,
-            list(arguments),
-            products,
-            _memory_left(deadline),
-        )
+        self._worker = take_worker(_KEY, _start_worker)
+        self._give_back = weakref.finalize(self, _release_worker, self._worker)
         self.deadline = deadline
-        _ask(self._worker, deadline, *command)
+        parameters = list(files), text, list(arguments), products, _memory_left(deadline)
+        _ask(self._worker, deadline, "ground", _current_folder(), *parameters)
 
     def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
         """Return the arguments of all atoms of each predicate, given by name and arity."""
@@ -87,14 +79,14 @@ def derive(text: str, name: str, arity: int, deadline: Deadline) -> list[tuple[V
 
     The process is killed at the limits and at ctrl-C; then :class:`LimitError` is raised.
     """
-    worker = take_worker(_KEY, _start)
+    worker = take_worker(_KEY, _start_worker)
     try:
         rows: list[tuple[Value, ...]] = _ask(
             worker, deadline, "derive", text, name, arity, _memory_left(deadline)
         )
         return rows
     finally:
-        _forget(worker)
+        _release_worker(worker)
 
 
 def _memory_left(deadline: Deadline) -> int | None:
@@ -112,15 +104,15 @@ def _current_folder() -> str | None:
 
 def start_in_advance() -> None:
     """Start a worker process for a later program, unless one is waiting."""
-    give_back_worker(_KEY, take_worker(_KEY, _start))
+    give_back_worker(_KEY, take_worker(_KEY, _start_worker))
 
 
-def _start() -> Worker:
+def _start_worker() -> Worker:
     """Start a worker process."""
     return Worker(_KEY, "rules of yours are grounded", "-S", stderr=subprocess.DEVNULL)
 
 
-def _forget(worker: Worker) -> None:
+def _release_worker(worker: Worker) -> None:
     """Make a process drop its program, unless it is busy or dead, and return it to the pool."""
     if worker.is_ready:
         worker.tell(pack_message(("forget",)))

@@ -23,7 +23,7 @@ def serve() -> None:
     commands, answers = become_worker(receive)
     program: GroundProgram | None = None
 
-    def obey(command: str, *parameters: Any) -> object:
+    def execute(command: str, *parameters: Any) -> object:
         """Execute a command, and return its result; a search first sends its trees and bounds."""
         nonlocal program
         if command == "ground":
@@ -54,7 +54,7 @@ def serve() -> None:
             program = None
             continue
         try:
-            answer: tuple[str, object] = "done", obey(*command)
+            answer: tuple[str, object] = "done", execute(*command)
         except ProgramError as error:
             answer = "refused", (error.messages, error.otherwise)
         except UserError as error:

@@ -81,10 +81,10 @@ def _scale(logarithms: Collection[Decimal]) -> int:
     """
     if not logarithms:
         return USUAL_SCALE
-    fitting: int = 10 ** (INT32_MAX / max(logarithms)).adjusted()
+    fitting_scale: int = 10 ** (INT32_MAX / max(logarithms)).adjusted()
     # A rate next to 1 weighs 1000 or more, where that fits.
-    useful: int = 10 ** ((1000 / min(logarithms)).adjusted() + 1)
-    return min(fitting, max(USUAL_SCALE, useful))
+    useful_scale: int = 10 ** ((1000 / min(logarithms)).adjusted() + 1)
+    return min(fitting_scale, max(USUAL_SCALE, useful_scale))
 
 
 def problem_scale(problem: Problem, units: Iterable[int]) -> RateScale:
@@ -104,8 +104,8 @@ def problem_scale(problem: Problem, units: Iterable[int]) -> RateScale:
 
 def _minus_log(rate: Fraction, digits: int) -> Decimal:
     """Return ``-ln`` of a rate with ``digits`` digits: the relative error is below 10^-digits."""
-    lost = 1 - rate
-    zeros = -_CONTEXT.divide(Decimal(lost.numerator), Decimal(lost.denominator)).adjusted()
+    failure_rate = 1 - rate
+    zeros = -_CONTEXT.divide(Decimal(failure_rate.numerator), Decimal(failure_rate.denominator)).adjusted()
     # The logarithm of 1 + x has as many digits fewer than 1 + x as x begins with zeros.
     context = Context(prec=digits + zeros + 2, Emax=MAX_EMAX, Emin=MIN_EMIN)
     return context.ln(context.divide(Decimal(rate.denominator), Decimal(rate.numerator)))
@@ -116,8 +116,11 @@ def _weight(rate: Fraction, scale: int) -> int:
 
     The logarithm of a rational number other than 1 is irrational, so with enough digits the floor is certain.
     """
-    lost = scale * (1 - rate)
-    low, high = lost, lost / rate  # bounds of -ln rate, precise enough next to 1
+    scaled_failure_rate = scale * (1 - rate)
+    low, high = (
+        scaled_failure_rate,
+        scaled_failure_rate / rate,
+    )  # bounds of -ln rate, precise enough next to 1
     digits = 40  # doubled until the floor is settled
     while math.floor(low) < math.floor(high):
         value = scale * Fraction(_minus_log(rate, digits))

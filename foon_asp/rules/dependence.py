@@ -75,7 +75,8 @@ class Doubt(NamedTuple):
 class Dependence:
     """Monotonicity of each predicate of a program, computed as a fixpoint over its rules.
 
-    ``varied`` are the predicates whose facts vary within the question; their monotonicity is unknown.
+    ``varied`` are predicates whose atoms the question itself changes, such as ``available/1`` in the search
+    for a shopping list; their monotonicity is unknown.
     ``doubts``: by predicate that rules derive, why its monotonicity is unknown.
     ``loops``: the predicates that are derived from themselves through ``not``, an aggregate, a condition or a
     choice, each with the place of such a rule.
@@ -142,11 +143,15 @@ class Dependence:
             reason = self.doubts.get(literal.signature) or self._doubt_of_predicate(literal.signature)
             if reason:
                 return reason
-        strange = next((conjunct for conjunct in conjuncts if isinstance(conjunct, UnknownConjunct)), None)
-        return Doubt(f"{strange.text} is nothing that is looked into") if strange else None
+        unknown = next((conjunct for conjunct in conjuncts if isinstance(conjunct, UnknownConjunct)), None)
+        return Doubt(f"{unknown.text} is nothing that is looked into") if unknown else None
 
     def _doubt_of_predicate(self, signature: Signature) -> Doubt | None:
-        """Return why a predicate's monotonicity is unknown whatever its rules are, else ``None``."""
+        """Return why a predicate's monotonicity is unknown whatever its rules are, else ``None``.
+
+        It is unknown if the predicate has a minus, varies, belongs to a question, or is one of a few facts
+        that are not the same in each search.
+        """
         name, arity = signature
         if name.startswith("-"):
             return Doubt(f"{name}/{arity} is negated with a minus")
@@ -275,7 +280,8 @@ class Dependence:
     def _of_guard(self, aggregate: Aggregate, guard: Guard, conditions: Monotonicity) -> Monotonicity:
         """Return the monotonicity that an aggregate would have with only the given guard.
 
-        ``conditions`` is the monotonicity of the conditions of its elements.
+        It is ``BOTH`` for ``=`` and ``!=``, except for a count of 0, and for a sum whose weights may be
+        negative. ``conditions`` is the monotonicity of the conditions of the aggregate's elements.
         """
         operator, function = guard.comparison, aggregate.function
         if operator in {ComparisonOperator.Equal, ComparisonOperator.NotEqual}:

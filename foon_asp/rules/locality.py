@@ -39,7 +39,10 @@ class Nonlocality(NamedTuple):
 
 
 class Locality:
-    """Locality of each rule of a program, computed as a fixpoint over its auxiliary predicates."""
+    """Locality of each rule of a program: whether its truth for a tree depends on facts about the tree alone.
+
+    It is computed as a fixpoint over the auxiliary predicates.
+    """
 
     def __init__(self, program: Sequence[Clause], dependence: Dependence) -> None:
         """Find the locality of all predicates that the clauses of a program derive."""
@@ -74,11 +77,11 @@ class Locality:
         Return the subjects that an argument stands for in the tree, by predicate and position. They are the
         greatest fixpoint over the rules. The result is also set as ``_leads_to``.
         """
-        leads = {
+        leads_to = {
             signature: {position: set(Subject) for position in range(signature[1])}
             for signature in self._rules
         }
-        self._leads_to = leads
+        self._leads_to = leads_to
         changed = True
         while changed:
             changed = False
@@ -89,10 +92,10 @@ class Locality:
                             continue
                         tree_terms = self._tree_terms(condition, self._tree_terms(clause.body))
                         for position, term in enumerate(atom.arguments):
-                            subjects = leads[signature][position] & tree_terms.get(str(term), set())
-                            changed |= subjects != leads[signature][position]
-                            leads[signature][position] = subjects
-        return leads
+                            subjects = leads_to[signature][position] & tree_terms.get(str(term), set())
+                            changed |= subjects != leads_to[signature][position]
+                            leads_to[signature][position] = subjects
+        return leads_to
 
     def _find_about_arguments(self, program: Sequence[Clause]) -> None:
         """Fill ``_about`` and ``_nonlocal`` for all auxiliary predicates, as a fixpoint.
@@ -167,21 +170,21 @@ class Locality:
         while changed:
             changed = False
             for literal in positive:
-                for position, subject in self._led_arguments(literal, tree_terms):
+                for position, subject in self._arguments_in_tree(literal, tree_terms):
                     term = literal.arguments[position]
                     if _has_one_value(term) and subject not in tree_terms.setdefault(str(term), set()):
                         tree_terms[str(term)].add(subject)
                         changed = True
         return tree_terms
 
-    def _led_arguments(self, literal: Literal, tree_terms: _TreeTerms) -> list[tuple[int, Subject]]:
+    def _arguments_in_tree(self, literal: Literal, tree_terms: _TreeTerms) -> list[tuple[int, Subject]]:
         """Return the arguments that are in the tree if a literal holds: pairs of a position and a subject.
 
         ``tree_terms`` has the terms that are known to be in the tree.
         """
         if literal.signature in self._leads_to:
-            leads = self._leads_to[literal.signature]
-            return [(position, subject) for position, subjects in leads.items() for subject in subjects]
+            leads_to = self._leads_to[literal.signature]
+            return [(position, subject) for position, subjects in leads_to.items() for subject in subjects]
         facts = _FACTS.get(literal.signature)
         if facts is None or not all(
             subject in tree_terms.get(str(literal.arguments[position]), ())

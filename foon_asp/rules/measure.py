@@ -107,7 +107,7 @@ class _Evaluation:
     def __init__(self, measure: Measure, rules: "MeasureRules", problem: Problem, deadline: Deadline) -> None:
         """Prepare the evaluation of a measure; ``rules`` are its parsed rules."""
         self._measure, self._rules, self._problem, self._deadline = measure, rules, problem, deadline
-        self._number = problem.network.unit_number
+        self._unit_number = problem.network.unit_number
 
     def costs(self) -> Sequence[Cost]:
         """Return the cost of each unit, by id; of units with the same facts, only one is evaluated."""
@@ -115,12 +115,12 @@ class _Evaluation:
         fact_keys = self._fact_keys()
         if fact_keys is None:
             cost_by_number = self.cost_by_number(units)
-            return [cost_by_number.get(self._number(unit), 0) for unit in units]
+            return [cost_by_number.get(self._unit_number(unit), 0) for unit in units]
         first_unit: dict[Hashable, int] = {}
         for unit, key in enumerate(fact_keys):
             first_unit.setdefault(key, unit)
         cost_by_number = self.cost_by_number(first_unit.values())
-        by_key = {key: cost_by_number.get(self._number(unit), 0) for key, unit in first_unit.items()}
+        by_key = {key: cost_by_number.get(self._unit_number(unit), 0) for key, unit in first_unit.items()}
         return list(map(by_key.__getitem__, fact_keys))
 
     def _fact_keys(self) -> Sequence[Hashable] | None:
@@ -170,7 +170,7 @@ class _Evaluation:
 
         ``units`` are ids. Raises :class:`InputError` for an invalid cost, and for a unit with two costs.
         """
-        by_number = {self._number(unit): unit for unit in units}
+        by_number = {self._unit_number(unit): unit for unit in units}
         values: dict[int, Cost] = {}
         for world, name, number, value in self._derive_costs(by_number.values(), self._rules.statements):
             if name != (self._measure.name,):
@@ -240,7 +240,7 @@ class _Evaluation:
         """
         from foon_asp.rules.measure_rules import BEYOND  # noqa: PLC0415 (takes clingo along)
 
-        network, number = self._problem.network, self._number(unit)
+        network, number = self._problem.network, self._unit_number(unit)
         unit_text = f"the unit {network.motions[unit]!r} ({number}, {network.sources[unit][0]})"
         source_by_cost: dict[tuple[Value, Value], Source] = {}
         statements = self._rules.statements

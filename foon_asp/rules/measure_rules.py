@@ -245,9 +245,10 @@ class _MeasureReader:
                 self._add_error_at("undefined-atom", undefined_message(signature, defined | readable), atom)
 
     def _check_names(self, names: dict[str, Source]) -> None:
-        """Add errors for names of measures and constants that have another meaning in the facts.
+        """Add errors for names of measures and constants that are reserved, or have a meaning in the facts.
 
-        Raises :class:`UserError` if the rules define no measure and have no other error.
+        Also add one for a constant with the name of a measure. Raises :class:`UserError` if the rules define
+        no measure and have no other error.
         """
         for name, source in names.items():
             if name in PUBLIC_NAMES or name.startswith("_"):
@@ -319,7 +320,8 @@ class _MeasureReader:
     def _has_small_grounding(self, atoms: "_Atoms", dependent: frozenset[Signature]) -> bool:
         """Whether a rule, given by its atoms, can have only few ground instances for each unit.
 
-        Such a rule has no interval, no division, at most one table, and few atoms.
+        Such a rule has no interval, no division and few atoms. At most one of these is over a table, a
+        predicate that depends on no facts.
         """
         tables = [atom for atom in atoms.used if _signature(atom) not in dependent]
         return (

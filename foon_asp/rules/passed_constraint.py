@@ -30,7 +30,7 @@ class RuleText(NamedTuple):
 class LibraryUse(NamedTuple):
     """A ready-made constraint with constants of its own, as ``forbid_motion:forbidden_motion=fry``.
 
-    ``file`` is the file of the constraint, and ``written`` this text of the option.
+    ``file`` is the file of the constraint. ``written`` is the text of the option, such as this example.
     """
 
     file: Path

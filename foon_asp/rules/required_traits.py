@@ -12,7 +12,7 @@ from foon_asp.rules.dependence import AVAILABLE, TIMES, USE
 from foon_asp.rules.fact_subject import SUBJECTS
 
 _KITCHEN = ("kitchen", 1)
-_HAVING = {
+_ROLES = {
     "motion": Role.MOTION,
     **dict.fromkeys(("input", "needs"), Role.INPUT),
     **dict.fromkeys(("output", "gives"), Role.OUTPUT),
@@ -100,9 +100,9 @@ def _traits(atoms: Sequence[_Atom]) -> Iterator[Trait]:
     facts = [(signature[0], terms) for signature, negations, terms in atoms if not negations]
     outside = {terms[0] for signature, negations, terms in atoms if signature == _KITCHEN and negations == 1}
     for name, terms in facts:
-        if name not in _HAVING or terms[0] not in units:
+        if name not in _ROLES or terms[0] not in units:
             continue
-        role, words = _HAVING[name], [terms[-1]]
+        role, words = _ROLES[name], [terms[-1]]
         if role is not Role.MOTION:
             words = [
                 fact_terms[-1]

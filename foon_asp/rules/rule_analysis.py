@@ -120,7 +120,7 @@ class Analysis:
         """Analyse parsed statements.
 
         ``settings`` are the constants that are set, as ``name=value`` for clingo. ``varied`` are predicates
-        whose facts vary within the question.
+        whose atoms the question itself changes (:class:`Dependence`).
         """
         statements = tuple(statements)
         self.definitions = [statement for statement in statements if statement.ast_type == ASTType.Definition]

@@ -141,8 +141,8 @@ class Translator:
     def at_least_one(self, clause: Clause) -> AtLeastOne | None:
         """Return the at-least-one constraint that a requiring rule stands for.
 
-        Return ``None`` if the rule calculates, or has a condition on the tree that is not the absence of one
-        unit.
+        Return ``None`` if the rule calculates, or if one of its conditions on the tree is not the absence of
+        a unit.
         """
         unit_positions = [n for n, conjunct in enumerate(clause.body) if self._count_units_read([conjunct])]
         set_positions = [n for n in range(len(clause.body)) if n not in unit_positions]
@@ -287,8 +287,9 @@ class Translator:
     def _alternatives(self, clause: Clause, position: int) -> "list[_Alternative] | None":
         """Return the conditions under which a unit makes a conjunct of a requiring rule false.
 
-        Each condition is a pair: its parts as texts for clingo, and as conjuncts. Return ``None`` if the
-        conjunct is not the absence of one unit: a literal or conditional with ``not``, or a count of 0.
+        Each condition is a pair: its parts as texts for clingo, and as conjuncts. The conjunct states that
+        units are absent: it is a literal or a conditional with ``not``, or a count of 0. Return ``None`` for
+        any other conjunct.
         """
         conjunct, node = clause.body[position], clause.ast.body[position]
         if isinstance(conjunct, Aggregate):

@@ -72,8 +72,8 @@ class Rules:
     ) -> None:
         """Analyse encodings, under constants that are set as ``name=value`` for clingo.
 
-        ``varied`` are predicates of facts that the question derives or varies. ``endless`` says that
-        grounding the rules may not terminate; then they are evaluated in another process.
+        ``varied`` are predicates that the question itself derives or changes. ``endless`` says that grounding
+        the rules may not terminate; then they are evaluated in another process.
         """
         self._encodings, self._constants, self._endless = tuple(encodings), tuple(constants), endless
         self._last: tuple[Problem, Collection[int] | None, UnitAnswers | None] | None = None
@@ -171,11 +171,11 @@ class Rules:
     @property
     def only_limits(self) -> bool:
         """Whether rules read numbers of executions only to bound these numbers from above."""
-        at_most = {number for number, bound in self._analysis.rows.items() if not bound.at_least}
+        upper_rows = {number for number, row in self._analysis.rows.items() if not row.at_least}
         others = (
             clause
             for number, rule_clauses in enumerate(self._analysis.clauses_of_rule)
-            if number not in at_most
+            if number not in upper_rows
             for clause in rule_clauses
         )
         return all(literal.signature != TIMES for clause in others for literal in literals(clause.body))
@@ -241,11 +241,13 @@ class Rules:
                 clauses = [clause for number in numbers for clause in analysis.clauses_of_rule[number]]
                 programs = [line for rule in understood for line in rule.program]
                 rules, read = analysis.translator.complete_program(programs, clauses)
-                plain = problem if problem.restriction is None else replace(problem, restriction=None)
-                among = self._evaluated_units(plain) if units is None else units
+                unrestricted_problem = (
+                    problem if problem.restriction is None else replace(problem, restriction=None)
+                )
+                evaluated_units = self._evaluated_units(unrestricted_problem) if units is None else units
                 answers = ask_units(
-                    plain,
-                    among,
+                    unrestricted_problem,
+                    evaluated_units,
                     [*analysis.constant_texts, *rules],
                     read,
                     deadline if self._endless else None,

@@ -55,18 +55,23 @@ class _Unmatched(NamedTuple):
 
 
 def unmatched_warnings(
-    theirs: Sequence[Encoding], ours: Sequence[Encoding], settings: Sequence[str], values: FactValues
+    user_files: Sequence[Encoding],
+    ready_made_files: Sequence[Encoding],
+    settings: Sequence[str],
+    values: FactValues,
 ) -> Iterator[Diagnostic]:
     """Yield a warning for each literal over a fact whose constants match nothing in the network.
 
-    ``theirs`` are user files, ``ours`` ready-made constraints used with them, and ``settings`` the constants
-    that are set. There is no warning if another rule with the same head has a literal that matches and has
-    the same constants: one rule may look for a label, the other for an ingredient, of the same name.
+    Only literals in ``user_files`` get warnings. ``ready_made_files`` are constraints used with them, and
+    ``settings`` the constants that are set, as ``NAME=VALUE``.
+
+    There is no warning if another rule in the same file with the same head has a literal that matches and has
+    the same constants. For example, one rule looks for a label, the other for an ingredient of this name.
 
     There are also warnings for facts in user files, such as ``allergen("milk").``, that name nothing in the
     network.
     """
-    encodings = (*theirs, *ours)
+    encodings = (*user_files, *ready_made_files)
     definitions = [statement for encoding in encodings for statement in encoding.definitions]
     constants = constant_values(definitions, settings)
     rules = [
@@ -75,11 +80,11 @@ def unmatched_warnings(
     ]
     programs = [list(chain.from_iterable(of_file)) for of_file in rules]
     search = _Search(list(chain.from_iterable(programs)), constants, values)
-    unlisted = _unlisted_warnings(list(chain.from_iterable(programs[: len(theirs)])), constants, values)
-    for encoding, program in zip(theirs, programs, strict=False):
+    unlisted = _unlisted_warnings(list(chain.from_iterable(programs[: len(user_files)])), constants, values)
+    for encoding, program in zip(user_files, programs, strict=False):
         warnings = [(literal.source, literal.message) for literal in search.unmatched(program)]
-        own = set(map(id, program))
-        warnings += [(clause.source, text) for clause, text in unlisted if id(clause) in own]
+        clause_ids = set(map(id, program))
+        warnings += [(clause.source, text) for clause, text in unlisted if id(clause) in clause_ids]
         for source, message in dict.fromkeys(warnings):
             yield encoding.remark(Severity.WARNING, "unmatched", message, source)
 
