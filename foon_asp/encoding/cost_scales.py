@@ -78,11 +78,13 @@ def too_many_rounded(objectives: Iterable[Objective]) -> UserError:
 class Scales:
     """Integer weights of the units of a question for clingo, by objective.
 
+    An objective is *rounded* if some cost by it has to be rounded down to become a weight.
+
     Attributes:
         rates: The scale of success rates; ``None`` if no rates are known.
         costs: The scales of objectives whose costs are fractions and add up.
         facts: The objectives whose costs clingo reads from facts ``cost/3``.
-        rounded: The only objective whose weights are rounded; ``None`` if there is none.
+        rounded: The only objective that is rounded; ``None`` if there is none.
     """
 
     def __init__(self, problem: Problem, units: Iterable[int], objectives: Iterable[Objective] = ()) -> None:
@@ -123,10 +125,10 @@ class Scales:
         return int(sum(problem.figure(objective, unit) for unit in units)) + objective.row.item * len(items)
 
     def cost_weight(self, objective: Objective, cost: int | Fraction) -> int:
-        """Return an upper bound on costs by an objective as a bound on weights, rounded down.
+        """Return the upper bound on weights that follows from an upper bound on costs by an objective.
 
-        ``cost`` is the upper bound. Raises :class:`UserError` if weights by the objective are rounded. Also
-        raises it if the weight of all units exceeds 32 bits, since clingo then ignores the bound.
+        ``cost`` is the bound on costs. Raises :class:`UserError` if the objective is rounded. Also raises it
+        if the weight of all units exceeds 32 bits, since clingo then ignores the bound.
         """
         if objective.row.whole:
             return int(cost)

@@ -555,7 +555,7 @@ def constant_value(name: str, default: str, value: str) -> str:
 
 
 def unset_constant_warnings(added: Sequence[Encoding], constants: Sequence[str]) -> list[str]:
-    """Return a warning for each constant without which a constraint in ``added`` has no effect.
+    """Return a warning for each constant that is not set, so that its constraint in ``added`` has no effect.
 
     Such a constant has the default ``""``, ``#sup`` or ``#inf``, and is not set by ``constants``, which are
     settings ``NAME=VALUE``.
@@ -647,7 +647,7 @@ def program_fault(
 
 
 def _dropped_message(message: str, term: str) -> str:
-    """Return the message that clingo would drop an instance of a rule or element, with its reason.
+    """Return a message for the user: clingo would drop an instance of a rule or aggregate element, and why.
 
     ``message`` is the reason as clingo states it, and ``term`` the term that it names.
     """

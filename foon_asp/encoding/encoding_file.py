@@ -57,7 +57,10 @@ def included_files(path: Path) -> list[Path]:
 
 
 def source_line(source: Source) -> str:
-    """Return the line of an encoding at a place; empty if there is none, and for files of other kinds."""
+    """Return the line of an encoding at a place.
+
+    It is empty if there is no such line, and for files whose names do not end in ``.lp``.
+    """
     path = Path(source.file)
     if path.suffix != _SUFFIX or not path.is_file():
         return ""

@@ -1,4 +1,10 @@
-"""Writer of facts for clingo, as text."""
+"""Writer of facts for clingo, as text.
+
+If totals by a rounded objective are compared exactly, some facts are about products of rates. Product number
+K is the exact total of a known tree, as a vector (:meth:`foon_asp.encoding.cost_scales.Scales.vector`). For
+success, it has the exponents of the product of the tree's rates. For other objectives, the same predicates
+are used with counts of costs.
+"""
 
 from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
@@ -270,8 +276,8 @@ def prices_in_hundredths(
     """Return the price of each unit that has one, in hundredths, by unit id.
 
     The result is empty if no prices are known, if a price is no whole number of hundredths, or if the sum of
-    the prices overflows. If rules read prices, which ``looked_at`` tells, :class:`UserError` is raised in
-    these cases.
+    the prices overflows. In these cases, :class:`UserError` is raised instead if ``price/2`` is in
+    ``looked_at``, the predicates that rules read.
     """
     if problem.unit_prices is None:
         if _PRICE in looked_at:
@@ -357,7 +363,10 @@ def write_objectives(objectives: Sequence[Objective]) -> str:
 
 
 def write_exponents(problem: Problem, scales: Scales) -> str:
-    """Return facts ``_exponent(U,F,E)``: entry F of the :meth:`Scales.unit_vector` of unit U is E."""
+    """Return facts ``_exponent(U,F,E)``: entry F of the :meth:`Scales.unit_vector` of unit U is E.
+
+    For success, E is the exponent of factor F in the unit's rate.
+    """
     return "".join(
         f"_exponent({problem.network.unit_number(unit)},{factor},{_check_int32(number)}).\n"
         for unit, vector in scales.unit_vectors().items()
@@ -366,7 +375,10 @@ def write_exponents(problem: Problem, scales: Scales) -> str:
 
 
 def write_product(number: int, exponents: Mapping[int, int]) -> str:
-    """Return facts ``_product(K,F,E)``: the exponents of product number K of rates."""
+    """Return facts ``_product(K,F,E)``: entry F of the vector of product number K of rates is E.
+
+    ``number`` is K; ``exponents`` is the vector, for success the exponent of each factor.
+    """
     return "".join(f"_product({number},{factor},{_check_int32(e)}).\n" for factor, e in exponents.items())
 
 

@@ -17,7 +17,7 @@ BEYOND: Final = "_beyond", 4
 
 
 class Exact:
-    """The functions that rules may call: ``@_exact`` alone."""
+    """The functions that rules may call while clingo grounds them: ``@_exact`` alone."""
 
     def __getattribute__(self, name: str) -> Callable[..., Symbol]:
         """Return the function ``@_exact``; raise ``RuntimeError`` for any other name."""

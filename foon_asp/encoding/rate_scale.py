@@ -116,11 +116,9 @@ def _weight(rate: Fraction, scale: int) -> int:
 
     The logarithm of a rational number other than 1 is irrational, so with enough digits the floor is certain.
     """
-    scaled_failure_rate = scale * (1 - rate)
-    low, high = (
-        scaled_failure_rate,
-        scaled_failure_rate / rate,
-    )  # bounds of -ln rate, precise enough next to 1
+    # bounds of scale * -ln rate, precise enough next to 1
+    low = scale * (1 - rate)
+    high = low / rate
     digits = 40  # doubled until the floor is settled
     while math.floor(low) < math.floor(high):
         value = scale * Fraction(_minus_log(rate, digits))
