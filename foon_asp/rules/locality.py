@@ -157,15 +157,15 @@ class Locality:
         return True
 
     def _tree_terms(
-        self, conjuncts: Iterable[Conjunct], known: Mapping[str, set[Subject]] | None = None
+        self, conjuncts: Iterable[Conjunct], known_terms: Mapping[str, set[Subject]] | None = None
     ) -> _TreeTerms:
         """Return the terms that are known to be in the tree wherever the conjuncts hold.
 
-        They are given as text, each with the subjects that it stands for. ``known`` has terms that are known
-        to be in the tree already; they are in the result, too.
+        They are given as text, each with the subjects that it stands for. ``known_terms``, which are in the
+        tree anyway, are in the result, too.
         """
         positive = [literal for literal in conjuncts if isinstance(literal, Literal) and literal.positive]
-        tree_terms = {term: set(subjects) for term, subjects in (known or {}).items()}
+        tree_terms = {term: set(subjects) for term, subjects in (known_terms or {}).items()}
         changed = True
         while changed:
             changed = False
