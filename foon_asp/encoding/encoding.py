@@ -442,7 +442,7 @@ def _reserved_name_errors(encoding: Encoding) -> list[Diagnostic]:
 def _replaced_definition_errors(encoding: Encoding) -> list[Diagnostic]:
     """Return an error for each reserved predicate in a head of a file that replaces a built-in one.
 
-    Those that the built-in file of the same name defines are allowed.
+    Those that a built-in file of the same name defines, also in ``by_need``, are allowed.
     """
     name = encoding.rules.name if isinstance(encoding.rules, Path) else ""
     built_in_files = [

@@ -58,7 +58,10 @@ class Locality:
         self._find_about_arguments(program)
 
     def nonlocality(self, clause: Clause) -> Nonlocality | None:
-        """Return why a rule is not local; ``None`` if it is local."""
+        """Return why a rule is not local; ``None`` if it is local.
+
+        A rule whose head has a minus never is.
+        """
         if any(atom.signature[0].startswith("-") for atom in clause.heads):
             return Nonlocality(
                 "an atom with a minus rules out the one without, wherever that is", clause.source

@@ -62,7 +62,8 @@ class TraitReader:
         """Return the disjuncts of a literal, with auxiliary predicates replaced by the bodies of rules.
 
         A negated literal, a fact and a recursive predicate are not replaced. ``available(O)`` becomes
-        ``use(U), gives(U,O)``, although O may also be in the kitchen.
+        ``use(U), gives(U,O)``, although O may also be in the kitchen. A predicate that nothing defines has no
+        disjuncts.
         """
         signature = literal.signature
         if literal.negations or signature in SUBJECTS or signature in {USE, TIMES} or signature in above:
