@@ -35,22 +35,24 @@ def run(
     products: int = 0,
     endless: bool = False,
 ) -> Run:
-    """Ground the files and facts and search for the best answer.
+    """Ground the files and facts, and search for the best answer.
 
     Parameters:
         files: The encodings and rules.
         facts: The facts, as text.
         arguments: Options of clingo.
-        deadline: The limits. At a limit or ctrl-C, the run has the last answer.
+        deadline: The limits. If the search is stopped by a limit or ctrl-C, the run has the last answer.
         opt_mode: As in clasp: ``opt``, ``opt,BOUND,...`` or ``ignore`` (stop at the first answer).
-        on_tree: Is called with the units of each answer.
-        on_bound: Is called with each new lower bound.
-        predicates: Predicates (name and arity) whose atoms are returned, in addition to ``use``. The first
+        on_tree: Is called with the numbers of the units of each answer.
+        on_bound: Is called with the greatest lower bound so far, by priority, whenever clingo proves one.
+        predicates: Predicates (name and arity) whose atoms the run has in addition to ``use``. The first
             argument of their atoms is a number.
         products: The number of products of rates in the facts.
-        endless: Whether grounding may not terminate.
+        endless: Whether grounding may not terminate; then it runs in another process.
 
-    Raises the error of :func:`foon_asp.encoding.encoding.program_fault` where clingo refuses the program.
+    If ctrl-C stops the grounding, the run has no answer. Raises ``LimitError`` at a limit while grounding.
+    Raises :class:`UserError` (see :func:`foon_asp.encoding.encoding.program_fault`) if clingo refuses the
+    program.
     """
     began = time.perf_counter()
     try:
@@ -77,7 +79,8 @@ def ground(
 ) -> Grounded:
     """Return the ground program of files and facts; the parameters are those of :func:`run`.
 
-    Raises the errors of :func:`run`, ``LimitError`` at a limit, and ``KeyboardInterrupt`` at ctrl-C.
+    Raises ``LimitError`` at a limit, and ``KeyboardInterrupt`` at ctrl-C. Raises :class:`UserError` if clingo
+    refuses the program.
     """
     try:
         return Grounded(files, facts, arguments, products, deadline, endless)
@@ -86,7 +89,10 @@ def ground(
 
 
 def as_user_error(error: ProgramError, files: Sequence[Loaded] = ()) -> UserError:
-    """Return the error for the user with clingo's messages, their places and source lines."""
+    """Return an error for the user with the messages of clingo, their places and source lines.
+
+    ``files`` are the files and texts of the program.
+    """
     from foon_asp.encoding.encoding import program_fault  # noqa: PLC0415 (slow to import, needed for faults only)
 
     return program_fault(error.messages, error.otherwise, files)

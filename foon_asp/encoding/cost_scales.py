@@ -12,11 +12,13 @@ from foon_asp.problem.number import INT32_MAX
 
 
 class CostScale(NamedTuple):
-    """Integer weights for the costs of units by an objective whose costs are fractions and add up.
+    """Integer weights of costs, for an objective by which costs of units are fractions and add up.
 
-    ``weights[c]`` is ``floor(scale * c)``.
-    ``exact``: no cost is rounded. ``places[c]`` is the index of a cost in the vectors of
-    :meth:`Scales.vector`. ``total`` is the weight of all units.
+    ``scale``: the number by which costs are multiplied.
+    ``exact``: whether no weight is rounded.
+    ``weights``: the weight of each cost c, ``floor(scale * c)``.
+    ``places``: the index of each cost in the vectors of :meth:`Scales.vector`.
+    ``total``: the sum of the weights of all units.
     """
 
     scale: Fraction
@@ -27,25 +29,27 @@ class CostScale(NamedTuple):
 
 
 def cost_scale(costs: Iterable[Fraction]) -> CostScale:
-    """Return the scale by which all costs become integers of 32 bits.
+    """Return the scale of the costs of units; ``costs`` has one for each unit.
 
-    If no such scale exists, return the finest useful scale, by which weights are rounded down.
+    If the least common denominator turns all costs into integers of 32 bits, it is the scale. Otherwise,
+    weights are rounded down, and the scale is the greatest by which they fit into 32 bits, but at most 10^8.
     """
     costs = list(costs)
-    different = sorted(set(costs))
-    greatest = max(different, default=Fraction(0))
-    common = math.lcm(*(cost.denominator for cost in different))
-    exact = common * greatest <= INT32_MAX
-    scale = Fraction(common) if exact else min(Fraction(USUAL_SCALE), INT32_MAX / greatest)
-    weights = {cost: math.floor(scale * cost) for cost in different}
-    places = {cost: index for index, cost in enumerate(different)}
+    distinct_costs = sorted(set(costs))
+    greatest = max(distinct_costs, default=Fraction(0))
+    common_denominator = math.lcm(*(cost.denominator for cost in distinct_costs))
+    exact = common_denominator * greatest <= INT32_MAX
+    scale = Fraction(common_denominator) if exact else min(Fraction(USUAL_SCALE), INT32_MAX / greatest)
+    weights = {cost: math.floor(scale * cost) for cost in distinct_costs}
+    places = {cost: index for index, cost in enumerate(distinct_costs)}
     return CostScale(scale, exact, weights, places, sum(weights[cost] for cost in costs))
 
 
 def require_one_rounded(problem: Problem, objectives: Iterable[Objective]) -> None:
-    """Raise :class:`UserError` where two of the objectives have to be rounded.
+    """Raise :class:`UserError` if two or more of the objectives have to be rounded.
 
-    All units of the network are taken into account, so that the error does not depend on the goals.
+    Success has to be rounded if some rate is not 1. Another objective has to be if no scale turns its costs
+    into integers of 32 bits. All units of the network count, so that the error does not depend on the goals.
     """
     fractions = [objective for objective in objectives if multiplies(objective) or not objective.row.whole]
     if len(fractions) < 2:
@@ -72,19 +76,22 @@ def too_many_rounded(objectives: Iterable[Objective]) -> UserError:
 
 
 class Scales:
-    """Scales of the units of a question in clingo, by objective.
+    """Integer weights of the units of a question for clingo, by objective.
+
+    An objective is *rounded* if some cost by it has to be rounded down to become a weight.
 
     Attributes:
-        rates: The scale of success rates; ``None`` where no rates are known.
+        rates: The scale of success rates; ``None`` if no rates are known.
         costs: The scales of objectives whose costs are fractions and add up.
-        facts: The objectives whose costs are facts, one for each unit.
-        rounded: The only objective whose weights are rounded; ``None`` where none is.
+        facts: The objectives whose costs clingo reads from facts ``cost/3``.
+        rounded: The only objective that is rounded; ``None`` if there is none.
     """
 
     def __init__(self, problem: Problem, units: Iterable[int], objectives: Iterable[Objective] = ()) -> None:
-        """Scale the costs of units of a problem.
+        """Scale the rates of units and their costs by each objective.
 
-        Raises :class:`UserError` where two of the objectives have to be rounded.
+        Raises :class:`UserError` if two of the objectives have to be rounded, and for rates that
+        :func:`problem_scale` refuses.
         """
         units, objectives = list(units), list(objectives)
         self._problem, self._units = problem, units
@@ -101,7 +108,10 @@ class Scales:
         self.rounded: Objective | None = rounded[0] if rounded else None
 
     def weight(self, objective: Objective, units: Iterable[int]) -> int:
-        """Return the total weight of units in clingo, by an objective."""
+        """Return the total weight of units by an objective.
+
+        By the objective ``kitchen``, an item that several of the units need counts once.
+        """
         if multiplies(objective):
             assert self.rates is not None
             return sum(self.rates.weights[self._problem.rate(unit)] for unit in units)
@@ -115,10 +125,10 @@ class Scales:
         return int(sum(problem.figure(objective, unit) for unit in units)) + objective.row.item * len(items)
 
     def cost_weight(self, objective: Objective, cost: int | Fraction) -> int:
-        """Return an upper bound on the cost by an objective as a weight in clingo.
+        """Return the upper bound on weights that follows from an upper bound on costs by an objective.
 
-        Raises :class:`UserError` for an objective that is rounded, and where the weight of all units
-        overflows, since clingo ignores the bound then.
+        ``cost`` is the bound on costs. Raises :class:`UserError` if the objective is rounded. Also raises it
+        if the weight of all units exceeds 32 bits, since clingo then ignores the bound.
         """
         if objective.row.whole:
             return int(cost)
@@ -136,7 +146,10 @@ class Scales:
         return int(scale.scale * cost)
 
     def count_rounded(self, units: Iterable[int]) -> int:
-        """Return how many units have a weight that was rounded down; each adds an error below 1."""
+        """Return how many of the units have a weight by the rounded objective that was rounded down.
+
+        Each of them adds an error below 1. By success, every unit with a rate other than 1 counts.
+        """
         assert self.rounded is not None
         costs = (self._problem.figure(self.rounded, unit) for unit in units)
         if multiplies(self.rounded):
@@ -145,10 +158,11 @@ class Scales:
         return sum(scale * cost != weights[Fraction(cost)] for cost in costs)
 
     def vector(self, units: Iterable[int]) -> dict[int, int]:
-        """Return a vector of units from which their exact total by the rounded objective follows.
+        """Return the vector of units, which determines their exact total by the rounded objective.
 
-        For success rates, it has the exponents by number of a coprime factor. For other objectives, it has
-        the number of units of each cost, by the index of the cost.
+        For success, its entries are the exponents of their rates' product, by factor number
+        (:class:`RateScale`). For any other objective, they are the numbers of units of each cost, by the
+        index of the cost. Entries of 0 are included.
         """
         assert self.rounded is not None
         if multiplies(self.rounded):
@@ -161,7 +175,7 @@ class Scales:
         return vector
 
     def unit_vector(self, unit: int) -> Mapping[int, int]:
-        """Return the :meth:`vector` of one unit, without zeros."""
+        """Return the :meth:`vector` of one unit, without entries of 0."""
         assert self.rounded is not None
         if multiplies(self.rounded):
             assert self.rates is not None
@@ -169,13 +183,14 @@ class Scales:
         return {self.costs[self.rounded].places[Fraction(self._problem.figure(self.rounded, unit))]: 1}
 
     def unit_vectors(self) -> dict[int, Mapping[int, int]]:
-        """Return the :meth:`vector` of each unit of the question, by unit id, without zeros."""
+        """Return the :meth:`unit_vector` of each unit of the question, by unit id."""
         return {unit: self.unit_vector(unit) for unit in self._units}
 
     def bound(self, objective: Objective, weight: int) -> int | Fraction:
         """Return the bound on the cost by an objective that follows from a lower bound on weights.
 
-        It is an upper bound for success, and a lower one for objectives that add up.
+        For success, it is an upper bound, and 1 if no rates are known. For other objectives, it is a lower
+        bound. ``weight`` is the lower bound on weights.
         """
         if multiplies(objective):
             return Fraction(1) if self.rates is None else self.rates.success_bound(weight)
@@ -184,7 +199,8 @@ class Scales:
     def allows(self, objective: Objective, weight: int, figure: int | Fraction) -> bool:
         """Return whether units of a total ``weight`` can have the cost ``figure`` by an objective.
 
-        Unless the objective is rounded, only one cost has that weight.
+        If the objective is rounded, all costs that are no better than :meth:`bound` can have that weight.
+        Otherwise, only one cost has it.
         """
         bound = self.bound(objective, weight)
         if objective is not self.rounded:
@@ -192,7 +208,7 @@ class Scales:
         return figure <= bound if multiplies(objective) else figure >= bound
 
     def _rounds(self, objective: Objective) -> bool:
-        """Return whether weights of an objective are rounded down."""
+        """Whether weights by an objective are rounded down; by success, they are unless all rates are 1."""
         if multiplies(objective):
             # a weight of 0 may be a rate below 1
             return self.rates is not None and any(rate != 1 for rate in self.rates.weights)

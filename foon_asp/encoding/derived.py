@@ -20,10 +20,10 @@ Value = int | str | Term
 
 
 def derive(text: str, name: str, arity: int) -> list[tuple[Value, ...]]:
-    """Ground a stratified program and return the arguments of each atom of a predicate.
+    """Ground a stratified program, and return the arguments of each atom of a predicate.
 
-    The predicate is given by ``name`` and ``arity``. Raises :class:`ProgramError` for statements or instances
-    that clingo refuses or drops.
+    ``text`` is the program; ``name`` and ``arity`` are those of the predicate. Raises :class:`ProgramError`
+    if clingo refuses a statement, or would drop an instance of one.
     """
     messages: list[str] = []
     with refuse_messages(messages):

@@ -100,9 +100,10 @@ class Encoding:
     statements: list[AST] = field(default_factory=list)
 
     def first_argument_names(self, signatures: Collection[Signature]) -> Iterator[tuple[str, str]]:
-        """Yield the predicate and the first argument of each atom over some signatures.
+        """Yield the predicate name and the first argument of each atom whose signature is in ``signatures``.
 
-        The argument is empty if it is no name, but a variable, for example.
+        The first argument is empty if it is no name, but a variable or text, for example. Atoms in heads and
+        bodies count, but none with a minus or a pool.
         """
         symbols = (
             node.symbol for statement in self.statements for node in nodes(statement) if _is_atom(node)
@@ -121,7 +122,10 @@ class Encoding:
         return [statement for statement in self.statements if statement.ast_type == ASTType.Definition]
 
     def predicates_with_argument(self, constant: str) -> set[Signature]:
-        """Return the predicates that rules derive with a given constant as argument."""
+        """Return the predicates that rules derive with a given constant as argument.
+
+        Only rules whose head is a single atom are searched.
+        """
         heads = (rule.head for rule in self.statements if rule.ast_type == ASTType.Rule)
         atoms = (
             head.atom.symbol for head in heads if head.ast_type == ASTType.Literal and _is_atom(head.atom)
@@ -142,8 +146,8 @@ def read_encoding(rules: Loaded) -> Encoding:
     """Parse an encoding and the files that it includes.
 
     Raises :class:`InputError` for a syntax error, and for a text or file that
-    :mod:`foon_asp.encoding.encoding_file` refuses. Raises :class:`UserError` for a missing file and for a
-    text without rules.
+    :mod:`foon_asp.encoding.encoding_file` refuses. Raises :class:`UserError` for a missing file, for a text
+    without rules, and if clingo included a file that was not checked.
     """
     encoding = Encoding(rules)
     collector = _Collector(encoding)
@@ -151,7 +155,7 @@ def read_encoding(rules: Loaded) -> Encoding:
     kinds: set[ASTType] = set()
 
     def collect(statement: AST) -> None:
-        """Pass a statement to the collector; record its file and kind."""
+        """Pass a statement to the collector; record the name of its file, and its kind."""
         included.add(statement.location.begin.filename)
         kinds.add(statement.ast_type)
         collector.collect(statement)
@@ -182,12 +186,12 @@ class _Collector(Transformer):
     """Visitor that records in ``encoding`` what statements define and use: atoms, names and constants."""
 
     def __init__(self, encoding: Encoding) -> None:
-        """Begin outside heads."""
+        """Keep the encoding in which to record; begin outside heads."""
         self.encoding = encoding
         self._in_head = False
 
     def collect(self, statement: AST) -> None:
-        """Record a statement: its text, and the predicates and constants that it defines and uses."""
+        """Record a statement: its text, its place if its kind is refused, and what it defines and uses."""
         encoding = self.encoding
         encoding.text += f"{statement}\n"
         encoding.statements.append(statement)
@@ -224,7 +228,7 @@ class _Collector(Transformer):
         return external
 
     def visit_ConditionalLiteral(self, literal: AST) -> AST:  # noqa: N802
-        """Visit a conditional literal, whose condition is no head."""
+        """Visit a conditional literal; atoms in its condition are recorded as used, even in a head."""
         in_head, self._in_head = self._in_head, False
         self.visit_sequence(literal.condition)
         self._in_head = in_head
@@ -237,9 +241,10 @@ class _Collector(Transformer):
         return atom
 
     def _record_atom(self, symbol: AST, sign: str) -> None:
-        """Record the signature of an atom as defined or used, with its first place.
+        """Record the signature of an atom, or of each atom in a pool, and visit its arguments.
 
-        ``sign`` is ``-`` for an atom after a minus, else empty.
+        It is recorded as defined or used, with its first place. ``sign`` is ``-`` for an atom after a minus,
+        else empty.
         """
         if symbol.ast_type == ASTType.UnaryOperation:  # classical negation: -p(X)
             self._record_atom(symbol.argument, "" if sign else "-")
@@ -259,7 +264,7 @@ class _Collector(Transformer):
         return function
 
     def visit_SymbolicTerm(self, term: AST) -> AST:  # noqa: N802
-        """Record a term that is a word."""
+        """Record a term that is a name, such as a constant."""
         if term.symbol.type is SymbolType.Function:
             self.encoding.names.setdefault(term.symbol.name, _source(term.location))
         return term
@@ -275,7 +280,7 @@ class _Collector(Transformer):
         return aggregate.update(**self.visit_children(aggregate))
 
     def visit_Aggregate(self, aggregate: AST) -> AST:  # noqa: N802
-        """Visit an aggregate, and record for one in a body whether it may give a variable its value."""
+        """Visit an aggregate ``{ ... }``; in a body, record whether it may give a variable its value."""
         if not self._in_head:
             self._record_assignment(aggregate)
         return aggregate.update(**self.visit_children(aggregate))
@@ -301,16 +306,18 @@ def _source(location: Location) -> Source:
 def check_encodings(
     added: Sequence[Encoding], base: Sequence[Encoding], others: Sequence[Encoding] = ()
 ) -> list[Diagnostic]:
-    """Check the user's files: the constraints ``added``, and files in ``base`` that are not built-in.
+    """Check the user's rules: constraints in ``added``, and files in ``base`` that replace built-in ones.
 
-    ``others`` are further built-in files that are loaded.
+    ``added`` may have ready-made constraints, too, and ``base`` built-in files; errors in these are not
+    looked for. ``others`` are further built-in files that are loaded.
 
-    Returns warnings about two mistakes. An atom has a predicate that nothing defines; the most similar one is
-    suggested. Or a term is compared with numbers and can never be a number.
+    Return two kinds of warnings. One is for a predicate in a body of ``added`` that nothing defines, and
+    suggests the most similar one. The other is for a term in the user's constraints that is compared with
+    numbers and can never be a number.
 
     Raises :class:`InputError` for statements that would change the set of trees or their order, or that
-    clingo would ignore silently. These are rules for built-in predicates, reserved names, and statements
-    other than rules.
+    clingo would ignore silently. These are rules for built-in predicates, reserved names, constants that
+    replace a name elsewhere, and statements other than rules.
     """
     errors: list[Diagnostic] = []
     defined = set(PUBLIC)
@@ -350,8 +357,8 @@ def check_encodings(
 def non_numeric_terms(statements: Iterable[AST], constants: Collection[str]) -> Iterator[tuple[AST, str]]:
     """Yield the terms that are compared with numbers but are no numbers, each with a message.
 
-    Such a term is above every number. It is a name that no ``#const`` sets, or a text as guard of a count or
-    sum.
+    Such a term is above every number. It is a name that is not in ``constants``, the names that ``#const``
+    statements set. Or it is a text as guard of a count or sum. Comparisons with ``=`` and ``!=`` are allowed.
     """
     for node in (node for statement in statements for node in nodes(statement)):
         terms: list[AST] = []
@@ -376,7 +383,7 @@ def non_numeric_terms(statements: Iterable[AST], constants: Collection[str]) -> 
 
 @cache
 def _is_built_in(rules: Loaded) -> bool:
-    """Whether rules are a file of the built-in encodings, or a ready-made constraint."""
+    """Whether rules are a built-in encoding, or a ready-made constraint as file or with constants set."""
     path = rules.file if isinstance(rules, Stated) else rules
     return path is not None and path.resolve().is_relative_to(encodings_folder().resolve())
 
@@ -393,7 +400,8 @@ def _statement_errors(encoding: Encoding, refused: Sequence[ASTType]) -> list[Di
 def _definition_errors(encoding: Encoding, owned: frozenset[Signature]) -> list[Diagnostic]:
     """Return an error for each predicate that rules define although a constraint may not.
 
-    ``owned`` are the predicates of facts and of the built-in encodings. Reserved names are refused, too.
+    These are the predicates in ``owned``, which are those of facts and of the built-in encodings, and those
+    with a reserved name.
     """
     return [
         encoding.remark(
@@ -409,7 +417,10 @@ def _definition_errors(encoding: Encoding, owned: frozenset[Signature]) -> list[
 
 
 def _reserved_name_errors(encoding: Encoding) -> list[Diagnostic]:
-    """Return errors for reserved names in bodies, ``#defined`` and terms of a constraint."""
+    """Return errors for reserved names in bodies, ``#defined`` and terms of a constraint.
+
+    The predicate ``_by_person/1`` is allowed.
+    """
     atoms = [
         (f"{name}/{arity}", source)
         for sources in (encoding.used, encoding.declared)
@@ -431,7 +442,7 @@ def _reserved_name_errors(encoding: Encoding) -> list[Diagnostic]:
 def _replaced_definition_errors(encoding: Encoding) -> list[Diagnostic]:
     """Return an error for each reserved predicate in a head of a file that replaces a built-in one.
 
-    Those that the built-in file of the same name defines are allowed.
+    Those that a built-in file of the same name defines, also in ``by_need``, are allowed.
     """
     name = encoding.rules.name if isinstance(encoding.rules, Path) else ""
     built_in_files = [
@@ -452,9 +463,9 @@ def _replaced_definition_errors(encoding: Encoding) -> list[Diagnostic]:
 
 
 def _constant_errors(encoding: Encoding, names: set[str]) -> list[Diagnostic]:
-    """Return errors for constants that would replace a name in the facts or in another file.
+    """Return errors for constants with a reserved name, or a name in the facts or in another file.
 
-    ``names`` are the names in other files.
+    There, the value of the constant would replace the name. ``names`` are the names in other files.
     """
     return [
         encoding.remark(
@@ -475,7 +486,11 @@ def _is_reserved(name: str) -> bool:
 
 
 def undefined_message(signature: Signature, defined: set[Signature]) -> str:
-    """Return the message that a predicate is undefined, with the similar one that may be meant."""
+    """Return the message that a predicate is undefined, with a suggestion from ``defined``.
+
+    The suggestion is a predicate of the same name, or else of the most similar name. If no name is similar,
+    the message refers to the list of predicates.
+    """
     name, arity = signature
     message = f"no rule or fact defines {name}/{arity}, so it never holds"
     same_name = sorted(n for defined_name, n in defined if defined_name == name)
@@ -495,8 +510,10 @@ def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) 
 
     Each value gets the type of the default in its ``#const``. Where the default is a string, the value
     becomes a string, with or without quotes. Where the default is a number, the value has to be an integer of
-    32 bits. Raises :class:`UserError` for an unknown name, and for a constant that only a ready-made
-    constraint with its own values has.
+    32 bits.
+
+    Raises :class:`UserError` for a setting of another form, an unknown name, and a value of another type.
+    Also raises it for a constant that only a ready-made constraint with its own values has.
     """
     defaults = {
         name: value
@@ -510,10 +527,10 @@ def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) 
         if not equals:
             raise UserError(f"found the constant {setting!r}, expected NAME=VALUE")
         if name not in defaults:
-            for use in (encoding.rules for encoding in encodings):
-                if isinstance(use, Stated) and name in dict(use.renamed).values():
+            for rules in (encoding.rules for encoding in encodings):
+                if isinstance(rules, Stated) and name in dict(rules.renamed).values():
                     raise UserError(
-                        f"found a value of the constant {name!r}, but {use.written} has values of its own: "
+                        f"found a value of the constant {name!r}, but {rules.written} has values of its own: "
                         "set it there"
                     )
             listed = ", ".join(sorted(defaults)) or "none: add a constraint with #const"
@@ -525,8 +542,8 @@ def constant_arguments(constants: Sequence[str], encodings: Sequence[Encoding]) 
 def constant_value(name: str, default: str, value: str) -> str:
     """Return a value of a constant as a term, of the type of its default.
 
-    Where the default is a word, the value may be a word or a whole number. Raises :class:`UserError` for a
-    value of another type.
+    If the default is a string, the value gets quotes, unless it has them. If the default is a word, the value
+    may be a word or a whole number. Raises :class:`UserError` for a value of another type.
     """
     if default.startswith('"'):
         return quote(string_constant(value))
@@ -538,11 +555,14 @@ def constant_value(name: str, default: str, value: str) -> str:
 
 
 def unset_constant_warnings(added: Sequence[Encoding], constants: Sequence[str]) -> list[str]:
-    """Return a warning for each constant that is not set and has no effect with its default.
+    """Return a warning for each constant that is not set, so that its constraint in ``added`` has no effect.
 
-    Such defaults are ``""``, ``#sup`` and ``#inf``. A constant may be replaced by facts such as
-    ``allergen("milk").`` Then a rule derives a fact with the constant, and another encoding derives facts of
-    this predicate. There is no warning for it.
+    Such a constant has the default ``""``, ``#sup`` or ``#inf``, and is not set by ``constants``, which are
+    settings ``NAME=VALUE``.
+
+    There is no warning if facts can stand in for the constant. Then a rule derives a predicate with the
+    constant, as in ``allergen(forbidden_ingredient).``, and another file derives this predicate, too, as in
+    ``allergen("milk").``
     """
     settings_given = {setting.partition("=")[0] for setting in constants}
     warnings = []
@@ -584,17 +604,19 @@ def _is_number(value: str) -> bool:
 
 
 def _is_int32(value: str) -> bool:
-    """Whether a text is a whole number that clingo can represent."""
+    """Whether a text is a decimal whole number that clingo can represent."""
     return bool(re.fullmatch(r"-?\d{1,10}", value, re.ASCII)) and abs(int(value)) <= LARGEST
 
 
 def program_fault(
     messages: Sequence[str], otherwise: str, files: Sequence[Loaded] = ()
 ) -> InputError | UserError:
-    """Return clingo's messages about a program as one error with places and source lines.
+    """Return clingo's messages about a program as one error for the user.
 
-    ``files`` are the files and texts of the program; the lines of a text are looked up there. ``otherwise``
-    is the message of the error if clingo has given none.
+    It is :class:`InputError`, with places and source lines, if a message has a place. Otherwise it is
+    :class:`UserError` with the text of the messages, or with ``otherwise``, the text of clingo's exception,
+    if there are none. ``files`` are the files and texts of the program; the source lines of a text are looked
+    up in it.
     """
     errors: dict[Source, Diagnostic] = {}
     for message in messages:
@@ -625,7 +647,7 @@ def program_fault(
 
 
 def _dropped_message(message: str, term: str) -> str:
-    """Return the message that clingo would drop an instance of a rule or element, with its reason.
+    """Return a message for the user: clingo would drop an instance of a rule or aggregate element, and why.
 
     ``message`` is the reason as clingo states it, and ``term`` the term that it names.
     """
@@ -649,9 +671,10 @@ def _dropped_message(message: str, term: str) -> str:
 def located_diagnostic(
     severity: Severity, code: str, message: str, source: Source, files: Sequence[Loaded] = ()
 ) -> Diagnostic:
-    """Return a diagnostic with its source line, found in the files and texts or in the source's own file.
+    """Return a diagnostic with its source line, found in ``files`` or in the file of ``source``.
 
-    A place in a ready-made constraint with constants of its own is replaced by the place in its file.
+    A place in a ready-made constraint with constants of its own is replaced by the place in its file, and the
+    message gets the text of the option. A place after the end of a text is moved to the end.
     """
     for rules in files:
         if isinstance(rules, Stated) and rules.place == source.file:

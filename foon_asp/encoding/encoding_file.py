@@ -38,8 +38,10 @@ _SUFFIX = ".lp"
 def included_files(path: Path) -> list[Path]:
     """Return an encoding and all files that it includes, directly or not, each once.
 
-    A file may include files in its own folder and below. Raises :class:`InputError` for other files, for a
-    ``#script``, for letters outside of clingo's syntax, and for numbers beyond its range.
+    A file may include files in its own folder and below. Raises :class:`InputError` with all faults of the
+    files: other includes, a ``#script``, a call ``@f(...)``, letters that clingo does not read outside of
+    quotes, numbers beyond its range, and text that is not UTF-8. Raises :class:`UserError` for a file whose
+    name does not end in ``.lp``.
     """
     files: dict[Path, Path] = {}  # by resolved path
     pending = [path]
@@ -55,7 +57,10 @@ def included_files(path: Path) -> list[Path]:
 
 
 def source_line(source: Source) -> str:
-    """Return the line of an encoding at a place; empty if there is none, and for files of other kinds."""
+    """Return the line of an encoding at a place.
+
+    It is empty if there is no such line, and for files whose names do not end in ``.lp``.
+    """
     path = Path(source.file)
     if path.suffix != _SUFFIX or not path.is_file():
         return ""
@@ -64,7 +69,7 @@ def source_line(source: Source) -> str:
 
 
 class _Token(NamedTuple):
-    """A token, its kind, and its offset in the text."""
+    """A token: its kind, which is a group name of ``_TOKEN``, its text, and its offset in the program."""
 
     kind: str
     text: str
@@ -72,10 +77,10 @@ class _Token(NamedTuple):
 
 
 def check_text(text: str, origin: str) -> None:
-    """Raise :class:`InputError` for rules without a file that clingo must not read.
+    """Raise :class:`InputError` for rules given as text that clingo must not read.
 
-    They have ``#include``, or what :func:`included_files` refuses. ``origin`` is their name in messages.
-    Raises :class:`UserError` for a text that is not UTF-8.
+    They have an ``#include``, or a fault for which :func:`included_files` raises it. ``origin`` is their name
+    in messages. Raises :class:`UserError` for a text that has no encoding in UTF-8.
     """
     errors: list[Diagnostic] = []
     if any("\ud800" <= letter <= "\udfff" for letter in text):
@@ -88,7 +93,8 @@ def check_text(text: str, origin: str) -> None:
 def _check_file(file: Path, errors: list[Diagnostic]) -> list[Path]:
     """Append the errors of a file to ``errors``, and return the files that it includes.
 
-    Raises :class:`UserError` for a file that is no encoding by its name.
+    A file that is not UTF-8 has one error, and includes nothing. Raises :class:`UserError` for a name that
+    does not end in ``.lp``, or has no encoding in UTF-8.
     """
     if file.suffix != _SUFFIX:
         raise UserError(f"{file}: expected an encoding, a file whose name ends in {_SUFFIX}")
@@ -109,9 +115,10 @@ def _check_file(file: Path, errors: list[Diagnostic]) -> list[Path]:
 
 
 def _check_content(text: str, origin: str, file: Path | None, errors: list[Diagnostic]) -> list[Path]:
-    """Append the errors of a text to ``errors``; return the files that it includes.
+    """Append the errors of a text to ``errors``, and return the files that it may include.
 
-    ``file`` is the file that has the text; a text without a file may include nothing.
+    ``file`` is the file that has the text; a text without a file may include nothing. ``origin`` is its name
+    in messages. Nothing is read after a ``#script``, or if the text has a zero character.
     """
     lines = text.split("\n")
 
@@ -153,9 +160,9 @@ def _check_content(text: str, origin: str, file: Path | None, errors: list[Diagn
                 target = _ESCAPED.sub(
                     lambda match: "\n" if match[1] == "n" else match[1], target_token.text[1:-1]
                 )
-                problem = _include_refusal(file, target)
-                if problem:
-                    error("include", f"found #include of {target_token.text}, {problem}", token.start)
+                refusal = _include_refusal(file, target)
+                if refusal:
+                    error("include", f"found #include of {target_token.text}, {refusal}", token.start)
                 else:
                     included.append(file.parent / target)
             elif target_token is not None and target_token.text == "<":
@@ -185,7 +192,7 @@ def _include_refusal(file: Path, target: str) -> str:
 
 
 def _tokens(text: str) -> Iterator[_Token]:
-    """Yield the tokens of a program, without blanks and comments."""
+    """Yield the tokens of a program, without blanks and comments, up to a block comment that never ends."""
     offset = 0
     while match := _TOKEN.match(text, offset):
         kind = str(match.lastgroup)
@@ -202,9 +209,10 @@ def _tokens(text: str) -> Iterator[_Token]:
 
 
 def string_constant(value: str) -> str:
-    """Return the text that a setting of a string constant means; quotes around it may be omitted.
+    """Return the text that a setting of a string constant means.
 
-    Raises :class:`UserError` for a setting that begins with a quote and is no string of clingo.
+    It may be in quotes; then escaped characters in it are resolved. Raises :class:`UserError` for a setting
+    that begins with a quote and is no string of clingo.
     """
     if not value.startswith('"'):
         return value

@@ -13,14 +13,15 @@ class _BeyondError(Exception):
 
 
 def _divide(a: int, b: int) -> int:
-    """Return a quotient as clingo does, rounded towards 0."""
+    """Return ``a / b`` as clingo computes it, rounded towards 0."""
     return abs(a) // abs(b) * (1 if (a < 0) == (b < 0) else -1)
 
 
 def _power(a: int, b: int) -> int:
-    """Return a power; large powers are cut off, but stay beyond clingo's numbers.
+    """Return ``a ** b``; instead of a huge power, a smaller number that is still beyond clingo's numbers.
 
-    Raises for a negative exponent, where clingo returns wrong values.
+    Raises :class:`_BeyondError` for a negative exponent, where clingo returns wrong values. If ``a`` is 0, it
+    raises ``ZeroDivisionError`` instead.
     """
     if b < 0 and a:
         raise _BeyondError  # for clingo 2**(-1) is 0, and so is 1**(-1)
@@ -43,10 +44,10 @@ _UNARY: Final[dict[str, Callable[[int], int]]] = {"neg": lambda a: -a, "abs": ab
 
 
 def is_beyond(text: str, values: Sequence[int]) -> bool:
-    """Return whether the value of a term or of a subterm is outside clingo's numbers.
+    """Whether the value of a term or of one of its subterms is outside clingo's numbers.
 
     ``text`` is the term in postfix notation, as in ``0 1 + 0 *``; a number in it is an index into ``values``.
-    ``False`` for a division by 0, which clingo reports itself.
+    Negative exponents count as outside. Return ``False`` for a division by 0, which clingo reports itself.
     """
     stack: list[int] = []
     try:

@@ -1,4 +1,10 @@
-"""Writer of facts for clingo, as text."""
+"""Writer of facts for clingo, as text.
+
+If totals by a rounded objective are compared exactly, some facts are about products of rates. Product number
+K is the exact total of a known tree, as a vector (:meth:`foon_asp.encoding.cost_scales.Scales.vector`). For
+success, it has the exponents of the product of the tree's rates. For other objectives, the same predicates
+are used with counts of costs.
+"""
 
 from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
@@ -78,13 +84,15 @@ def write_facts(
 ) -> str:
     """Return the facts about units of a problem, their object nodes, the kitchen and the goals.
 
-    There is one line per unit and per object node. In the facts, these have the numbers that users see.
+    There is one line per unit and per object node. In the facts, these have the numbers that users see. The
+    kitchen is the part that user rules see; its other items become facts ``available/1``.
 
-    ``scales`` have the weights of ``risk/2`` and ``cost/3``; without scales, these facts are omitted.
-    ``looked_at`` are the predicates that user rules read. Unless it is ``None``, facts about sources, videos
-    and prices of units are added.
+    ``scales`` have the weights of ``risk/2`` and ``cost/3``; without scales, ``rate/2``, ``risk/2`` and
+    ``cost/3`` are omitted. ``looked_at`` are the predicates that user rules read; ``None`` if there are no
+    user rules. If there are, facts about sources, videos and prices of units are added.
 
-    Raises :class:`UserError` where user rules read prices and a price is no whole number of hundredths.
+    Raises :class:`UserError` if user rules read prices and a price is no whole number of hundredths. Also
+    raises it for numbers and names that clingo cannot take.
     """
     object_number = problem.network.object_number
     nodes = described_nodes(problem, units)
@@ -101,7 +109,7 @@ def write_facts(
             copies = problem.stock_of(o)
             atoms += [] if copies is None else [("stock", f"{object_number(o)},{_check_int32(copies)}")]
         lines.append(". ".join([_object_atom(problem, o), *map(_atom_text, atoms)]) + ".")
-    return "\n".join([*lines, *_other_lines(problem, nodes)]) + "\n"
+    return "\n".join([*lines, *_utensil_and_goal_facts(problem, nodes)]) + "\n"
 
 
 def write_facts_read(
@@ -109,8 +117,9 @@ def write_facts_read(
 ) -> str:
     """Return the facts of :func:`write_facts` that have the predicates in ``read``.
 
-    Facts about utensils and goals are always included. Without ``scales``, ``risk/2`` and ``cost/3`` are
-    omitted. Raises :class:`UserError` where prices are read and a price is no whole number of hundredths.
+    The facts ``utensil/1``, ``goal/1`` and ``available/1`` are always included. Without ``scales``,
+    ``risk/2`` and ``cost/3`` are omitted, but not ``rate/2``. Raises :class:`UserError` if prices are read
+    and a price is no whole number of hundredths, and for numbers and names that clingo cannot take.
     """
     problem_seen = problem.as_seen or problem
     object_number = problem.network.object_number
@@ -143,13 +152,14 @@ def write_facts_read(
         if o in kitchen:
             atoms.append(("kitchen", f"{object_number(o)}"))
         add(atoms)
-    return "\n".join([*lines, *_other_lines(problem, nodes)]) + "\n"
+    return "\n".join([*lines, *_utensil_and_goal_facts(problem, nodes)]) + "\n"
 
 
-def _other_lines(problem: Problem, nodes: Sequence[int]) -> Iterator[str]:
-    """Yield the facts about utensils and goals, and ``available/1`` of object nodes that rules do not see.
+def _utensil_and_goal_facts(problem: Problem, nodes: Sequence[int]) -> Iterator[str]:
+    """Yield the facts about utensils and goals, and about kitchen items that user rules do not see.
 
-    These are in the kitchen, but not in the part of it that user rules see.
+    ``nodes`` are ids: ``utensil/1`` is about their labels. ``available/1`` is about those of them that are in
+    the kitchen, but not in the part of it that user rules see.
     """
     object_number = problem.network.object_number
     labels = {problem.network.objects[o].label for o in nodes}
@@ -162,19 +172,21 @@ def _other_lines(problem: Problem, nodes: Sequence[int]) -> Iterator[str]:
 def write_worlds(
     problem: Problem, units: Iterable[int], predicates: Collection[str], world: str
 ) -> Iterator[str]:
-    """Yield a line with the facts about each unit and its object nodes, in a world of the unit.
+    """Yield a line for each unit, with the facts about the unit and its object nodes in its own world.
 
-    In a world, rules see no other unit. ``predicates`` are the names of the predicates to write, and
-    ``world`` is that of worlds. A predicate ``p`` becomes ``_p``, with the number of the unit as first
-    argument, which stands for the world.
+    In a world, rules see no other unit. The number of its unit stands for the world.
+
+    ``predicates`` are the names of the predicates to write. A predicate ``p`` becomes ``_p``, with the world
+    as first argument. ``world`` is the name of the predicate that holds of each world. Prices are never
+    written.
     """
     network = problem.network
     sees_nodes = not OBJECT_FACTS.isdisjoint(predicates)
     prices: dict[int, int] | None = {} if {"source", "video"} & set(predicates) else None
 
     @cache
-    def of_object(o: int) -> list[_Atom]:
-        """Return the facts about an object node, by predicates."""
+    def object_atoms(o: int) -> list[_Atom]:
+        """Return the facts about an object node that have one of the predicates to write; they are cached."""
         number = network.object_number(o)
         atoms = [
             (name, f"{number},{arguments}")
@@ -190,7 +202,7 @@ def write_worlds(
             atoms.append(("rate", f"{number},{millionths((problem.as_seen or problem).rate(unit))}"))
         if sees_nodes:
             for o in dict.fromkeys((*network.inputs[unit], *network.outputs[unit])):
-                atoms += of_object(o)
+                atoms += object_atoms(o)
         yield f"{world}({number})." + "".join(
             [f"_{name}({number},{arguments})." for name, arguments in atoms]
         )
@@ -202,7 +214,7 @@ def _atom_text(atom: _Atom) -> str:
 
 
 def _unit_atom(problem: Problem, unit: int) -> str:
-    """Return the fact ``unit(U)`` as text."""
+    """Return the fact ``unit(U)`` as text; raises :class:`UserError` for a number above 32 bits."""
     return f"unit({_check_int32(problem.network.unit_number(unit))})"
 
 
@@ -215,8 +227,9 @@ def _unit_atoms(
 ) -> list[_Atom]:
     """Return the facts about a unit, except ``unit/1``.
 
-    ``read`` has the names of predicates to write; a few others may be written, too. Unless ``prices`` is
-    ``None``, facts about sources, videos and prices are among them.
+    ``read`` has the names of predicates to write. Facts of other predicates are added: ``rate/2``, ``risk/2``
+    and ``cost/3`` if there are scales, ``stays/2`` and ``uses_up/2`` if items are used up. Facts about
+    sources, videos and the price are added unless ``prices`` is ``None``.
     """
     network = problem.network
     inputs, object_number = network.inputs[unit], network.object_number
@@ -262,8 +275,9 @@ def prices_in_hundredths(
 ) -> dict[int, int]:
     """Return the price of each unit that has one, in hundredths, by unit id.
 
-    The result is empty where a price is no whole number of hundredths, or where the sum overflows. If rules
-    read prices, :class:`UserError` is raised instead.
+    The result is empty if no prices are known, if a price is no whole number of hundredths, or if the sum of
+    the prices overflows. In these cases, :class:`UserError` is raised instead if ``price/2`` is in
+    ``looked_at``, the predicates that rules read.
     """
     if problem.unit_prices is None:
         if _PRICE in looked_at:
@@ -274,17 +288,17 @@ def prices_in_hundredths(
         return {}
     prices = [(unit, price) for unit in units if (price := problem.prices[unit]) is not None]
     by_unit = {unit: price.numerator * 100 // price.denominator for unit, price in prices}
-    broken = next((pair for pair in prices if pair[1].numerator * 100 % pair[1].denominator), None)
-    if broken is None and sum(by_unit.values()) <= LARGEST:
+    inexact = next((pair for pair in prices if pair[1].numerator * 100 % pair[1].denominator), None)
+    if inexact is None and sum(by_unit.values()) <= LARGEST:
         return by_unit
     if _PRICE not in looked_at:
         return {}
-    if broken is None:
+    if inexact is None:
         raise UserError(
             f"a rule looks at price/2, and the prices of all units together are more than {LARGEST // 100}, "
             "which is more than clingo's numbers of 32 bits can tell in hundredths: divide all prices by 10"
         )
-    unit, price = broken
+    unit, price = inexact
     text = decimal_text(price) if 10**18 % price.denominator == 0 else f"{price}"
     raise UserError(
         f"a rule looks at price/2, and the price {text} of the unit "
@@ -305,10 +319,10 @@ def _object_atoms(problem: Problem, o: int) -> list[_Atom]:
 
 
 def object_facts(node: ObjectNode, predicates: Collection[str] = OBJECT_FACTS) -> list[_Atom]:
-    """Return the facts about an object node by ``predicates``, without its number as first argument.
+    """Return the facts about an object node, without its number, which is their first argument.
 
-    ``object/1`` is not among them. Each fact is a predicate with its arguments as text: ``("state",
-    '"sliced"')``.
+    ``predicates`` are the names of the predicates to write; ``object/1`` is never written. Each fact is a
+    predicate with its other arguments as text: ``("state", '"sliced"')``.
     """
     atoms = [("label", quote(node.label))] if "label" in predicates else []
     if "state" in predicates:
@@ -321,7 +335,7 @@ def object_facts(node: ObjectNode, predicates: Collection[str] = OBJECT_FACTS) -
 
 
 def described_nodes(problem: Problem, units: Iterable[int]) -> list[int]:
-    """Return the inputs and outputs of some units and the goals, as ids of object nodes in order."""
+    """Return the goals and the inputs and outputs of units, as ids of object nodes in ascending order."""
     network = problem.network
     touched = {
         o for unit in units for objects_of in (network.inputs, network.outputs) for o in objects_of[unit]
@@ -349,7 +363,10 @@ def write_objectives(objectives: Sequence[Objective]) -> str:
 
 
 def write_exponents(problem: Problem, scales: Scales) -> str:
-    """Return facts ``_exponent(U,F,E)``: entry F of the :meth:`Scales.unit_vector` of unit U is E."""
+    """Return facts ``_exponent(U,F,E)``: entry F of the :meth:`Scales.unit_vector` of unit U is E.
+
+    For success, E is the exponent of factor F in the unit's rate.
+    """
     return "".join(
         f"_exponent({problem.network.unit_number(unit)},{factor},{_check_int32(number)}).\n"
         for unit, vector in scales.unit_vectors().items()
@@ -358,7 +375,10 @@ def write_exponents(problem: Problem, scales: Scales) -> str:
 
 
 def write_product(number: int, exponents: Mapping[int, int]) -> str:
-    """Return facts ``_product(K,F,E)``: the exponents of product number K of rates."""
+    """Return facts ``_product(K,F,E)``: entry F of the vector of product number K of rates is E.
+
+    ``number`` is K; ``exponents`` is the vector, for success the exponent of each factor.
+    """
     return "".join(f"_product({number},{factor},{_check_int32(e)}).\n" for factor, e in exponents.items())
 
 
@@ -383,8 +403,8 @@ def write_wanted(number: int) -> str:
 def write_for_sale(prices: Mapping[int, int], second_choices: Iterable[int]) -> str:
     """Return facts ``_for_sale(O,Price)`` and ``_second_choice(O)`` about object nodes that may be bought.
 
-    Prices are integers. Of two lists that cost the same and are as long, the one with fewer nodes of second
-    choice is better.
+    ``prices`` has integers by node number. Of two shopping lists of the same cost and length, the one with
+    fewer nodes of second choice is better.
     """
     facts = [f"_for_sale({o},{_check_int32(price)}).\n" for o, price in prices.items()]
     return "".join([*facts, *(f"_second_choice({o}).\n" for o in second_choices)])
@@ -393,24 +413,24 @@ def write_for_sale(prices: Mapping[int, int], second_choices: Iterable[int]) -> 
 def write_found_list(number: int, items: Iterable[int]) -> str:
     """Return facts ``_found_list(K)`` and ``_on_list(K,O)``: a shopping list that is known.
 
-    No list that contains it is found again.
+    No list that contains it is found again. ``number`` is K; ``items`` are the numbers of its nodes.
     """
     return f"_found_list({number}).\n" + "".join(f"_on_list({number},{o}).\n" for o in items)
 
 
 def write_constraints(weights: Mapping[int, int], kept: Iterable[int]) -> str:
-    """Return facts ``_constraint(C,Weight)``, the cost of dropping a constraint, and ``_kept(C)``.
+    """Return facts ``_constraint(C,Weight)``, the cost of dropping constraint C, and ``_kept(C)``.
 
-    Constraints are numbers. Those in ``kept`` may not be dropped.
+    Constraints are given by number. Those in ``kept`` may not be dropped.
     """
     facts = [f"_constraint({number},{_check_int32(weight)}).\n" for number, weight in weights.items()]
     return "".join([*facts, *(f"_kept({number}).\n" for number in kept)])
 
 
 def write_corrections(corrections: Iterable[Iterable[int]]) -> str:
-    """Return facts ``_correction(K,C)``: constraint C is in correction set number K.
+    """Return facts ``_correction(K,C)``: constraint C is in correction set number K, from 0.
 
-    Without the constraints of a correction set, there is a tree. Constraints are numbers.
+    Without the constraints of a correction set, there is a tree. Constraints are given by number.
     """
     return "".join(
         f"_correction({index},{number}).\n"
@@ -425,7 +445,7 @@ def write_soft(weights: Mapping[int, int]) -> str:
 
 
 def write_least_penalty(priority: int) -> str:
-    """Return the fact ``optimize(_soft,Priority)``: the weights of broken constraints are minimized."""
+    """Return the fact ``optimize(_soft,Priority)``: the total weight of broken constraints is minimized."""
     return f"optimize(_soft,{priority}).\n"
 
 
@@ -448,9 +468,10 @@ def write_at_most(number: int, bounds: Mapping[Objective, int]) -> str:
 
 
 def write_below(below: Iterable[Mapping[Objective, int | Fraction]], scales: Scales) -> str:
-    """Return facts ``_at_most(K,Objective,N)``: a tree has to undercut at least one cost of each set.
+    """Return facts ``_at_most(K,Objective,N)``: a tree has to undercut at least one cost of each set K.
 
-    Raises :class:`UserError` for an objective that is rounded.
+    ``below`` are the sets, costs by objective; K is their index. Raises :class:`UserError` for an objective
+    that is rounded.
     """
     return "".join(
         write_at_most(number, {o: scales.cost_weight(o, cost) - 1 for o, cost in costs.items()})
@@ -464,14 +485,17 @@ def write_assisted(twins: Mapping[int, int], max_assisted: int) -> str:
     ``twins`` maps the number P of a person's unit to the number U of the same unit done by the robot. A tree
     may have at most N units of the person (``max_assisted``).
     """
-    facts = [f"_takes_over({_check_int32(ours)},{theirs}).\n" for ours, theirs in twins.items()]
+    facts = [
+        f"_takes_over({_check_int32(person_unit)},{robot_unit}).\n"
+        for person_unit, robot_unit in twins.items()
+    ]
     return "".join([*facts, f"_at_most_assisted({_check_int32(max_assisted)}).\n"])
 
 
 def write_required(sets: Sequence[Iterable[int]]) -> str:
     """Return facts ``_required(K)`` and ``_one_of(K,U)``: a tree has to have a unit U of each set K.
 
-    ``sets`` have numbers of units.
+    ``sets`` have numbers of units; K is the index of a set.
     """
     return "".join(
         "".join(
@@ -487,7 +511,7 @@ def write_known(numbers: Iterable[int]) -> str:
 
 
 def write_tree(units: Collection[int]) -> str:
-    """Return facts ``_tree_size(N)`` and ``_in_tree(U)``: the tree has exactly these units."""
+    """Return facts ``_tree_size(N)`` and ``_in_tree(U)``: the tree has exactly these units, by number."""
     return f"_tree_size({len(units)}).\n" + "".join(f"_in_tree({unit}).\n" for unit in units)
 
 
@@ -512,7 +536,7 @@ def write_in_all(units: Iterable[int]) -> str:
 def write_avoided_plans(plans: Sequence[Mapping[int, int]]) -> str:
     """Return facts ``_avoid(K,U,N)``: no plan may execute each unit U of known plan K at least N times.
 
-    ``plans`` are the known plans: the number of executions by unit number.
+    ``plans`` are the known plans: the number of executions by unit number. K is the index of a plan.
     """
     return "".join(
         f"_avoid({number},{_check_int32(unit)},{count}).\n"
@@ -527,27 +551,31 @@ def write_given(numbers: Collection[int]) -> str:
 
 
 def write_same_rates(classes: Sequence[Iterable[int]]) -> str:
-    """Return facts ``_same_rate(R,U)``: the numbers of the units of each success rate number R."""
+    """Return facts ``_same_rate(R,U)``: the units of each success rate number R.
+
+    ``classes`` have the numbers of these units; R is the index of a class.
+    """
     return "".join(
         f"_same_rate({rate},{number}).\n" for rate, numbers in enumerate(classes) for number in numbers
     )
 
 
 def write_most_alike(limits: Sequence[int]) -> str:
-    """Return facts ``_most_alike(R,N)``: a tree has at most N units of success rate number R."""
+    """Return facts ``_most_alike(R,N)``: a tree has at most N units of success rate number R, from 0."""
     return "".join(f"_most_alike({rate},{_check_int32(number)}).\n" for rate, number in enumerate(limits))
 
 
 def write_exactly_alike(numbers: Sequence[int]) -> str:
-    """Return facts ``_exactly_alike(R,N)``: a tree has exactly N units of success rate number R."""
+    """Return facts ``_exactly_alike(R,N)``: a tree has exactly N units of success rate number R, from 0."""
     return "".join(f"_exactly_alike({rate},{_check_int32(number)}).\n" for rate, number in enumerate(numbers))
 
 
 def write_distances(trees: Sequence[Collection[Hashable]], chosen: int) -> str:
     """Return facts of the distances between trees, and of the number of trees to choose (``chosen``).
 
-    They are ``_tree(T)``, ``_distance(T,S,D)`` and ``_chosen_trees(N)``. The trees are sets of units or of
-    executions. A distance is the number of units that only one of two trees has.
+    They are ``_tree(T)``, ``_distance(T,S,D)`` for T below S, and ``_chosen_trees(N)``. T and S are indices
+    in ``trees``, which are sets of units or of executions. A distance is the number of elements that only one
+    of two trees has.
     """
     sets = list(map(frozenset, trees))
     facts = [f"_chosen_trees({chosen}).", *(f"_tree({number})." for number in range(len(sets)))]
@@ -565,15 +593,15 @@ def write_tool_order(
     after: Iterable[Iterable[int]],
     may_lack: bool,
 ) -> str:
-    """Return facts of tools, their uses, and the order of steps; kinds of tools and steps are numbers.
+    """Return facts of tools, their uses, and the order of steps; kinds of tools and steps are numbers from 0.
 
     They are ``_tools(K,N)``, ``_may_lack(K)``, ``_tool_use(I,K)``, ``_in_use(I,S)`` and ``_waits(S,R)``.
 
     Parameters:
         tools: The number of tools of each kind.
         uses: For each use of a tool, its kind and the steps during which the tool is in use.
-        after: For each step, the steps that have to be done before.
-        may_lack: Whether tools may be lacking.
+        after: For each step, the steps that have to be done before it.
+        may_lack: Whether tools of each kind may be lacking.
     """
     facts = [f"_tools({kind},{_check_int32(count)}).\n" for kind, count in enumerate(tools)]
     facts += [f"_may_lack({kind}).\n" for kind in range(len(tools)) if may_lack]
@@ -581,14 +609,17 @@ def write_tool_order(
         facts += [f"_tool_use({use},{kind}).\n", *(f"_in_use({use},{step}).\n" for step in steps)]
     facts += [
         f"_waits({step},{earlier_step}).\n"
-        for step, earlier in enumerate(after)
-        for earlier_step in sorted(earlier)
+        for step, earlier_steps in enumerate(after)
+        for earlier_step in sorted(earlier_steps)
     ]
     return "".join(facts)
 
 
 def quote(text: str) -> str:
-    """Return a text as a string of clingo; raises :class:`UserError` for a text that clingo cannot take."""
+    """Return a text as a string of clingo, in quotes.
+
+    Raises :class:`UserError` for a text with a zero character or half a character (a surrogate).
+    """
     if not text.isascii() or "\0" in text:
         if "\0" in text:
             raise UserError(f"the name {text!r} has a zero character, which the solver cannot be given")
@@ -615,7 +646,7 @@ def source_names(sources: Iterable[Source]) -> dict[str, None]:
 
 @lru_cache(maxsize=1000)  # most units are from the file of the one before
 def _file_names(file: str) -> dict[str, None]:
-    """Return the names of a file, with folders and without, as keys."""
+    """Return the names of a file, its path and the path without folders, as keys."""
     return dict.fromkeys(map(encodable, (file, PurePath(file).name)))
 
 
@@ -625,7 +656,7 @@ def millionths(rate: Fraction) -> int:
 
 
 def _check_int32(number: int) -> int:
-    """Return a number; raises :class:`UserError` if it does not fit into 32 bits."""
+    """Return a number unchanged; raises :class:`UserError` if it does not fit into 32 bits."""
     if abs(number) > INT32_MAX:
         raise UserError(f"the number {number} is too large for clingo, whose numbers have 32 bits")
     return number

@@ -19,10 +19,11 @@ from foon_asp.errors import UserError
 
 
 class GroundProgram:
-    """Ground program of files and text; raises :class:`ProgramError` where clingo refuses it.
+    """Ground program of files and text; raises :class:`ProgramError` if clingo refuses it.
 
-    A rule instance that clingo drops with only a message is an error, too. ``products`` is the number of
-    products of rates in the text. A search ends at the ``deadline``, if there is one.
+    It is an error, too, if clingo drops an instance of a rule, for which clingo itself has only a message.
+    ``arguments`` are options of clingo. ``products`` is the number of products of rates in the text; the
+    program part ``_product`` is grounded for each. A search ends at the ``deadline``, if there is one.
     """
 
     deadline: Deadline | None = None
@@ -30,7 +31,7 @@ class GroundProgram:
     def __init__(
         self, files: Sequence[str | Stated], text: str, arguments: Sequence[str], products: int = 0
     ) -> None:
-        """Load files and text into clingo, and ground them."""
+        """Load files and text, with rules that check for overflows last, and ground them."""
         self._messages: list[str] = []
         self._statistics = asks_for_statistics(arguments)
         with refuse_messages(self._messages):
@@ -83,14 +84,18 @@ class GroundProgram:
         on_tree: Callable[[FoundAnswer], None],
         on_bound: Callable[[list[int]], None],
     ) -> Ended:
-        """Search for the best answer, and return how the search ended; any thread may report trees.
+        """Search for the best answer, and return how the search ended.
 
         Parameters:
             opt_mode: As in clasp: ``opt``, ``opt,BOUND,...`` or ``ignore`` (stop at the first answer).
             predicates: Predicates (name and arity) whose atoms are reported, in addition to ``use``. The
                 first argument of their atoms is a number.
-            on_tree: Is called with each answer.
-            on_bound: Is called with each new lower bound.
+            on_tree: Is called with each answer, perhaps in another thread.
+            on_bound: Is called with each lower bound that clingo proves, perhaps in another thread.
+
+        The search is not exhausted if the deadline or ctrl-C stopped it. With ``ignore``, it is exhausted
+        once it has an answer. Options of clingo on the number of answers and their enumeration have no
+        effect.
 
         Raises :class:`UserError` for an option that clasp refuses and for invalid answers, and any error that
         ``on_tree`` raises.
@@ -105,18 +110,18 @@ class GroundProgram:
             raise UserError(str(error)) from None
         faults: list[Exception] = []  # raised in clingo's thread, to be raised again in this one
 
-        def model(model: Model) -> bool:
+        def report_answer(model: Model) -> bool:
             """Report an answer; return whether to continue, which is ``False`` after an error."""
             try:
-                atoms = {name: _first_arguments(model, name, arity) for name, arity in predicates}
+                atoms = {name: _count_by_first_argument(model, name, arity) for name, arity in predicates}
                 rows = {name: _rows_of_numbers(model, name, arity) for name, arity in predicates}
-                on_tree(FoundAnswer(_used(model), tuple(model.cost), atoms, rows))
+                on_tree(FoundAnswer(_used_units(model), tuple(model.cost), atoms, rows))
             except Exception as error:
                 faults.append(error)
             return not faults
 
         with self._control.solve(
-            async_=True, on_model=model, on_unsat=lambda lower: on_bound(list(lower))
+            async_=True, on_model=report_answer, on_unsat=lambda lower: on_bound(list(lower))
         ) as handle:
             if self.deadline:
                 _wait(handle, self.deadline)
@@ -145,7 +150,10 @@ def _statistics_lines(statistics: Any, name: str = "") -> Iterator[str]:
 
 
 def _wait(handle: SolveHandle, deadline: Deadline) -> None:
-    """Wait for the end of a search, and cancel it at the deadline or ctrl-C."""
+    """Wait for the end of a search, and cancel it at the deadline or ctrl-C.
+
+    Ctrl-C is recorded in the deadline, and not raised.
+    """
     try:
         while not handle.wait(deadline.seconds_to_next_check()):
             if deadline.passed:
@@ -156,7 +164,7 @@ def _wait(handle: SolveHandle, deadline: Deadline) -> None:
         handle.cancel()
 
 
-def _used(model: Model) -> frozenset[int]:
+def _used_units(model: Model) -> frozenset[int]:
     """Return the numbers of the units in use in an answer.
 
     Raises :class:`UserError` if an argument of ``use/1`` is no number.
@@ -172,9 +180,9 @@ def _used(model: Model) -> frozenset[int]:
 
 
 def _rows_of_numbers(model: Model, name: str, arity: int) -> frozenset[tuple[int, ...]]:
-    """Return the arguments of the atoms of a predicate in an answer.
+    """Return the arguments of each atom of a predicate in an answer, if all are numbers.
 
-    Atoms with an argument that is no number are left out.
+    Atoms with another argument are left out.
     """
     atoms = (symbol.arguments for symbol in model.symbols(atoms=True) if symbol.match(name, arity))
     return frozenset(
@@ -184,7 +192,7 @@ def _rows_of_numbers(model: Model, name: str, arity: int) -> frozenset[tuple[int
     )
 
 
-def _first_arguments(model: Model, name: str, arity: int) -> Counter[int]:
+def _count_by_first_argument(model: Model, name: str, arity: int) -> Counter[int]:
     """Return how many atoms of a predicate an answer has for each first argument, which is a number."""
     atoms = (symbol for symbol in model.symbols(atoms=True) if symbol.match(name, arity))
     return Counter(symbol.arguments[0].number for symbol in atoms)

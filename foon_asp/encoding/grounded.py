@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 class Grounded:
     """Ground program of files and text, in this process or in a worker process.
 
-    A worker is used if grounding may not terminate (``endless``), if the text is long, or if memory is
-    limited. It is killed at the limits and at ctrl-C. ``products`` is the number of products of rates in the
-    text. ``doing`` names the phase in messages about limits.
+    A worker is used if grounding may not terminate (``endless``), if the text has more than 1,500,000
+    letters, or if memory is limited. It is killed at the limits and at ctrl-C. ``products`` is the number of
+    products of rates in the text. ``doing`` names the phase in messages about limits.
 
-    Raises :class:`foon_asp.encoding.run.ProgramError` where clingo refuses the program, and
-    :class:`LimitError`.
+    Raises :class:`foon_asp.encoding.run.ProgramError` if clingo refuses the program, and :class:`LimitError`
+    at a limit.
     """
 
     def __init__(
@@ -51,7 +51,8 @@ class Grounded:
     def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
         """Return the arguments of all atoms of each predicate, given by name and arity.
 
-        Raises :class:`LimitError` if a limit is reached in a worker.
+        The result has a list for each predicate; all arguments have to be numbers. The rules have to be
+        stratified. Raises :class:`LimitError` if a limit is reached in a worker.
         """
         return self._program.consequences(predicates)
 
@@ -63,36 +64,38 @@ class Grounded:
         on_bound: Callable[[list[int]], None] | None = None,
         predicates: Sequence[tuple[str, int]] = (),
     ) -> Run:
-        """Return the run of a search for the best answer; at a limit or ctrl-C, with the last answer.
+        """Search for the best answer, and return the run; at a limit or ctrl-C, it has the last answer.
 
         Parameters:
             deadline: The limits of the search.
             opt_mode: As in clasp: ``opt``, ``opt,BOUND,...`` or ``ignore`` (stop at the first answer).
-            on_tree: Is called with the units of each answer.
-            on_bound: Is called with each new lower bound.
-            predicates: Predicates (name and arity) whose atoms are returned, in addition to ``use``. The
-                first argument of their atoms is a number.
+            on_tree: Is called with the numbers of the units of each answer.
+            on_bound: Is called with the greatest lower bound so far, by priority, whenever clingo proves one.
+            predicates: Predicates (name and arity) whose atoms the run has in addition to ``use``. The first
+                argument of their atoms is a number.
 
         Raises any error that ``on_tree`` raises, and :class:`UserError` for invalid answers.
         """
         result = Run()
         began = time.perf_counter()
 
-        def tree(answer: FoundAnswer) -> None:
-            """Record an answer, and report its units."""
+        def record_answer(answer: FoundAnswer) -> None:
+            """Record an answer in the run, and report its units."""
             result.units, result.cost, result.atoms, result.rows = answer
             if on_tree:
                 on_tree(answer.units)
 
-        def bound(lower: list[int]) -> None:
-            """Record a lower bound, and report the greatest one so far."""
+        def record_bound(lower: list[int]) -> None:
+            """Record a lower bound in the run if it is the greatest, and report the greatest so far."""
             result.lower = max(result.lower, lower)  # a lesser bound may arrive later; all are valid
             if on_bound:
                 on_bound(result.lower)
 
         try:
             self._begin_phase("searching", deadline)
-            result.exhausted, result.statistics = self._program.search(opt_mode, predicates, tree, bound)
+            result.exhausted, result.statistics = self._program.search(
+                opt_mode, predicates, record_answer, record_bound
+            )
         except LimitError:  # the last answer remains
             pass
         result.solve_seconds = time.perf_counter() - began
@@ -103,7 +106,10 @@ class Grounded:
         self._program.close()
 
     def _begin_phase(self, doing: str, deadline: Deadline) -> None:
-        """Set the deadline of a phase and its name in messages; raises :class:`LimitError` if it is over."""
+        """Set the deadline of a phase and its name in messages.
+
+        Raises :class:`LimitError` if the deadline has passed.
+        """
         deadline.doing = doing
         deadline.check()
         self._program.deadline = deadline

@@ -17,13 +17,14 @@ NO_LIMIT = INT32_MAX  # clingo's limit of messages: beyond a lower one, a releva
 
 
 def listener(messages: list[str], max_kept: int = 1000) -> Callable[[MessageCode, str], None]:
-    """Return a logger for clingo that adds messages about dropped statements or instances to ``messages``.
+    """Return a logger for clingo that adds messages to ``messages``: errors, and instances that clingo drops.
 
-    After ``max_kept`` messages, it adds only those about statements.
+    After ``max_kept`` messages, it adds only errors. Harmless messages are ignored, such as those about
+    undefined atoms.
     """
 
     def log(code: MessageCode, text: str) -> None:
-        """Add a message if it is about something dropped."""
+        """Add a message, unless it is harmless or comes from an overflow check."""
         if text.startswith(f"{CHECKS_FILE}:") and code is MessageCode.OperationUndefined:
             return  # the checked rule causes the same message
         if code not in _HARMLESS and (code is MessageCode.RuntimeError or len(messages) < max_kept):
@@ -34,7 +35,7 @@ def listener(messages: list[str], max_kept: int = 1000) -> Callable[[MessageCode
 
 @contextmanager
 def refuse_messages(messages: list[str]) -> Iterator[None]:
-    """Raise :class:`ProgramError` where clingo stops, or where ``messages`` is not empty after the block."""
+    """Raise :class:`ProgramError` if clingo stops in the block, or if it leaves messages in ``messages``."""
     try:
         yield
     except RuntimeError as error:

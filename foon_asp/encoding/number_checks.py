@@ -17,7 +17,7 @@ BEYOND: Final = "_beyond", 4
 
 
 class Exact:
-    """The functions that rules may call: ``@_exact`` alone."""
+    """The functions that rules may call while clingo grounds them: ``@_exact`` alone."""
 
     def __getattribute__(self, name: str) -> Callable[..., Symbol]:
         """Return the function ``@_exact``; raise ``RuntimeError`` for any other name."""
@@ -30,8 +30,8 @@ class Exact:
 def _exact(text: Symbol, *values: Symbol) -> Symbol:
     """Return 1 if a term is beyond clingo's numbers, else 0.
 
-    ``text`` is the term in postfix notation, and ``values`` are the values in it. 0 also if one of them is no
-    number, which clingo reports itself.
+    ``text`` is the term in postfix notation, and ``values`` are the values in it. Return 0 also if a value is
+    no number, which clingo reports itself.
     """
     if any(value.type is not SymbolType.Number for value in values):
         return Number(0)  # reported by clingo
@@ -39,7 +39,7 @@ def _exact(text: Symbol, *values: Symbol) -> Symbol:
 
 
 def overflow_messages(control: Control) -> Iterator[str]:
-    """Yield a message in clingo's format about each overflow in a ground program."""
+    """Yield a message in clingo's format about each overflow in a ground program, an atom ``_beyond/4``."""
     for atom in control.symbolic_atoms.by_signature(*BEYOND):
         file, line, column, term = atom.symbol.arguments
         yield (

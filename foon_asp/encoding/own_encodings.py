@@ -18,7 +18,7 @@ _DIGESTS = "SHA256SUMS"
 
 
 def is_own(file: Path) -> bool:
-    """Whether a file is a built-in encoding and unchanged."""
+    """Whether a file is a built-in encoding, ready-made constraints included, and unchanged."""
     digests = _digests()
     expected = digests.get(file) or digests.get(file.resolve())
     return expected is not None and expected == digest(file)
@@ -27,7 +27,7 @@ def is_own(file: Path) -> bool:
 def question_encoding(name: str) -> Path:
     """Return the path of a built-in encoding that a question needs, such as ``soft.lp``.
 
-    Users cannot replace it. Raises :class:`UserError` where it was changed.
+    Users cannot replace it. Raises :class:`UserError` if it was changed.
     """
     return _require_unchanged(encodings_folder() / "questions" / name)
 
@@ -67,7 +67,7 @@ def _require_unchanged(file: Path) -> Path:
 
 @cache
 def _digests() -> dict[Path, str]:
-    """Return the digests in ``SHA256SUMS``, by path."""
+    """Return the digests in ``SHA256SUMS``, by path; they are cached."""
     folder = encodings_folder().resolve()
     lines = (folder / _DIGESTS).read_text(encoding="ascii").splitlines()
     return {folder / name: sha for sha, name in (line.split("  ", 1) for line in lines)}

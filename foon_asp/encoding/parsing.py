@@ -11,25 +11,26 @@ _TEXT = "<string>"  # the file name that clingo uses for a text
 
 
 def parse(rules: Loaded, add: Callable[[AST], None], logger: Callable[[MessageCode, str], None]) -> None:
-    """Parse rules and call ``add`` with each statement; raises ``RuntimeError`` as clingo does.
+    """Parse rules, and call ``add`` with each statement.
 
-    For rules without a file, their name replaces the file name in statements and messages.
+    For rules without a file, their name replaces the file name in statements and messages. ``logger`` gets
+    clingo's messages. Raises ``RuntimeError`` for a syntax error, as clingo does.
     """
     if not isinstance(rules, Stated):
         parse_files([str(rules)], add, logger=logger)
         return
     place = rules.place
 
-    def placed(statement: AST) -> None:
+    def add_placed(statement: AST) -> None:
         """Set the name of the rules as file name in a statement, and add the statement."""
         _replace_file_name(statement, place)
         add(statement)
 
-    def logged(code: MessageCode, message: str) -> None:
+    def log_placed(code: MessageCode, message: str) -> None:
         """Put the name of the rules as file name into a message, and log the message."""
         logger(code, place + message.removeprefix(_TEXT) if message.startswith(_TEXT) else message)
 
-    parse_string(rules.text, placed, logger=logged)
+    parse_string(rules.text, add_placed, logger=log_placed)
 
 
 def load(control: Control, rules: Stated, logger: Callable[[MessageCode, str], None]) -> None:
@@ -39,7 +40,7 @@ def load(control: Control, rules: Stated, logger: Callable[[MessageCode, str], N
 
 
 def nodes(root: AST) -> Iterator[AST]:
-    """Yield a node of the syntax tree and all its descendants."""
+    """Yield a node of the syntax tree and all its descendants, each before its children."""
     yield root
     for key in root.child_keys:
         child = getattr(root, key)

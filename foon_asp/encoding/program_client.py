@@ -40,11 +40,11 @@ class WorkerProgram:
 
         ``products`` is the number of products of rates in the text.
         """
-        self._worker = take_worker(_KEY, _start)
-        self._give_back = weakref.finalize(self, _forget, self._worker)
-        command = "ground", _folder(), list(files), text, list(arguments), products, _memory_left(deadline)
+        self._worker = take_worker(_KEY, _start_worker)
+        self._give_back = weakref.finalize(self, _release_worker, self._worker)
         self.deadline = deadline
-        _ask(self._worker, deadline, *command)
+        parameters = list(files), text, list(arguments), products, _memory_left(deadline)
+        _ask(self._worker, deadline, "ground", _current_folder(), *parameters)
 
     def consequences(self, predicates: Sequence[tuple[str, int]]) -> list[list[tuple[int, ...]]]:
         """Return the arguments of all atoms of each predicate, given by name and arity."""
@@ -75,23 +75,26 @@ class WorkerProgram:
 
 
 def derive(text: str, name: str, arity: int, deadline: Deadline) -> list[tuple[Value, ...]]:
-    """Run :func:`foon_asp.encoding.derived.derive` in another process, which is killed at the limits."""
-    worker = take_worker(_KEY, _start)
+    """Run :func:`foon_asp.encoding.derived.derive` in another process.
+
+    The process is killed at the limits and at ctrl-C; then :class:`LimitError` is raised.
+    """
+    worker = take_worker(_KEY, _start_worker)
     try:
         rows: list[tuple[Value, ...]] = _ask(
             worker, deadline, "derive", text, name, arity, _memory_left(deadline)
         )
         return rows
     finally:
-        _forget(worker)
+        _release_worker(worker)
 
 
 def _memory_left(deadline: Deadline) -> int | None:
-    """Return the number of bytes that another process may use, ``None`` without a limit."""
+    """Return how many bytes another process may use, at least 1; ``None`` if memory is not limited."""
     return None if deadline.memory is None else max(1, deadline.memory - deadline.memory_in_use())
 
 
-def _folder() -> str | None:
+def _current_folder() -> str | None:
     """Return the current folder, which may change between programs; ``None`` if it was removed."""
     try:
         return os.getcwd()
@@ -101,26 +104,29 @@ def _folder() -> str | None:
 
 def start_in_advance() -> None:
     """Start a worker process for a later program, unless one is waiting."""
-    give_back_worker(_KEY, take_worker(_KEY, _start))
+    give_back_worker(_KEY, take_worker(_KEY, _start_worker))
 
 
-def _start() -> Worker:
+def _start_worker() -> Worker:
     """Start a worker process."""
     return Worker(_KEY, "rules of yours are grounded", "-S", stderr=subprocess.DEVNULL)
 
 
-def _forget(worker: Worker) -> None:
-    """Make the process drop its program, and return it to the pool."""
+def _release_worker(worker: Worker) -> None:
+    """Make a process drop its program, unless it is busy or dead, and return it to the pool."""
     if worker.is_ready:
         worker.tell(pack_message(("forget",)))
     give_back_worker(_KEY, worker)
 
 
 def _ask(worker: Worker, deadline: Deadline, *command: object, handlers: _Handlers | None = None) -> Any:
-    """Send a command to a worker, and return its answer; ``handlers`` are called with reports on the way.
+    """Send a command to a worker, and return its answer.
 
-    Raises the :class:`ProgramError` or :class:`UserError` that the worker reports, and :class:`LimitError` at
-    a limit. Raises :class:`BugError` for any other error in the worker.
+    Reports that arrive before the answer are passed to ``handlers``, by their kind (``tree`` or ``bound``).
+
+    Raises the :class:`ProgramError` or :class:`UserError` that the worker reports, and :class:`BugError` for
+    any other error that it reports. Raises :class:`LimitError` at a limit. If the worker dies, raises the
+    error of :func:`_error_of_death`.
     """
     try:
         kind, value = worker.ask(pack_message(command), deadline, handlers)
@@ -138,7 +144,8 @@ def _ask(worker: Worker, deadline: Deadline, *command: object, handlers: _Handle
 def _error_of_death(code: int, has_spoken: bool, deadline: Deadline) -> UserError | LimitError:
     """Return the error for a process that died with an exit code.
 
-    It is :class:`LimitError` if memory ran out; else the rules, or the start of Python, are to blame.
+    If memory ran out, it is :class:`LimitError`, and this is recorded in the deadline. Otherwise it is a
+    :class:`UserError` that blames a division, the start of Python, or the rules.
     """
     if code in _OF_MEMORY or (deadline.memory is not None and code == -signal.SIGSEGV):
         deadline.stop_out_of_memory()

@@ -17,13 +17,14 @@ def serve() -> None:
     """Execute the commands on standard input, and write answers to the original standard output.
 
     A command is a tuple of its name and parameters. An answer is a pair: ``done`` with the result, or
-    ``refused``, ``fault`` or ``bug`` with the error. The process exits if memory runs out.
+    ``refused``, ``fault`` or ``bug`` with the error. The command ``forget`` drops the program, without an
+    answer. The process exits if memory runs out or its input ends.
     """
     commands, answers = become_worker(receive)
     program: GroundProgram | None = None
 
-    def obey(command: str, *parameters: Any) -> object:
-        """Execute a command, and return its result; a search sends trees and bounds before."""
+    def execute(command: str, *parameters: Any) -> object:
+        """Execute a command, and return its result; a search first sends its trees and bounds."""
         nonlocal program
         if command == "ground":
             program = None  # frees the memory before the next one
@@ -53,7 +54,7 @@ def serve() -> None:
             program = None
             continue
         try:
-            answer: tuple[str, object] = "done", obey(*command)
+            answer: tuple[str, object] = "done", execute(*command)
         except ProgramError as error:
             answer = "refused", (error.messages, error.otherwise)
         except UserError as error:

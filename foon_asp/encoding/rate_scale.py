@@ -36,7 +36,7 @@ class RateScale(NamedTuple):
     exponents: Mapping[Fraction, Mapping[int, int]]
 
     def product_exponents(self, rates: Iterable[Fraction]) -> dict[int, int]:
-        """Return the exponents of a product of rates, by factor number; every factor is listed."""
+        """Return the exponents of a product of rates, by factor number, including exponents of 0."""
         total = {factor: 0 for rate in self.exponents.values() for factor in rate}
         for rate in rates:
             for factor, exponent in self.exponents[rate].items():
@@ -60,10 +60,10 @@ class RateScale(NamedTuple):
 
 
 def rate_scale(rates: Collection[Fraction]) -> RateScale:
-    """Return the finest useful scale of rates in (0, 1] within clingo's 32-bit integers.
+    """Return the weights and exponents of rates in (0, 1], with the finest useful scale.
 
-    The scale is at most 10^8, except where a rate next to 1 would weigh almost 0. Raises ``ValueError`` for a
-    rate outside of (0, 1].
+    The scale is a power of ten by which all weights fit into 32 bits. It is at most 10^8, except where a rate
+    next to 1 would weigh almost 0. Raises ``ValueError`` for a rate outside of (0, 1].
     """
     if not all(0 < rate <= 1 for rate in rates):
         raise ValueError("expected success rates above 0 and at most 1")
@@ -74,19 +74,23 @@ def rate_scale(rates: Collection[Fraction]) -> RateScale:
 
 
 def _scale(logarithms: Collection[Decimal]) -> int:
-    """Return the power of ten by which logarithms above 0 are multiplied to become weights."""
+    """Return the power of ten by which logarithms above 0 are multiplied to become weights.
+
+    It is 10^8 if there are no logarithms. If the greatest weight would exceed 32 bits, it is smaller. If the
+    least weight would be below 1000, it is greater, as far as 32 bits allow.
+    """
     if not logarithms:
         return USUAL_SCALE
-    fitting: int = 10 ** (INT32_MAX / max(logarithms)).adjusted()
+    fitting_scale: int = 10 ** (INT32_MAX / max(logarithms)).adjusted()
     # A rate next to 1 weighs 1000 or more, where that fits.
-    useful: int = 10 ** ((1000 / min(logarithms)).adjusted() + 1)
-    return min(fitting, max(USUAL_SCALE, useful))
+    useful_scale: int = 10 ** ((1000 / min(logarithms)).adjusted() + 1)
+    return min(fitting_scale, max(USUAL_SCALE, useful_scale))
 
 
 def problem_scale(problem: Problem, units: Iterable[int]) -> RateScale:
-    """Return the scale of the rates of units of a problem.
+    """Return the weights and exponents of the success rates of units of a problem.
 
-    Raises :class:`UserError` where a sum of exponents of the units could overflow.
+    Raises :class:`UserError` if a sum of exponents of the units could exceed 32 bits.
     """
     units = list(units)
     scale = rate_scale(problem.different_rates(units))
@@ -100,8 +104,8 @@ def problem_scale(problem: Problem, units: Iterable[int]) -> RateScale:
 
 def _minus_log(rate: Fraction, digits: int) -> Decimal:
     """Return ``-ln`` of a rate with ``digits`` digits: the relative error is below 10^-digits."""
-    lost = 1 - rate
-    zeros = -_CONTEXT.divide(Decimal(lost.numerator), Decimal(lost.denominator)).adjusted()
+    failure_rate = 1 - rate
+    zeros = -_CONTEXT.divide(Decimal(failure_rate.numerator), Decimal(failure_rate.denominator)).adjusted()
     # The logarithm of 1 + x has as many digits fewer than 1 + x as x begins with zeros.
     context = Context(prec=digits + zeros + 2, Emax=MAX_EMAX, Emin=MIN_EMIN)
     return context.ln(context.divide(Decimal(rate.denominator), Decimal(rate.numerator)))
@@ -112,8 +116,9 @@ def _weight(rate: Fraction, scale: int) -> int:
 
     The logarithm of a rational number other than 1 is irrational, so with enough digits the floor is certain.
     """
-    lost = scale * (1 - rate)
-    low, high = lost, lost / rate  # bounds of -ln rate, precise enough next to 1
+    # bounds of scale * -ln rate, precise enough next to 1
+    low = scale * (1 - rate)
+    high = low / rate
     digits = 40  # doubled until the floor is settled
     while math.floor(low) < math.floor(high):
         value = scale * Fraction(_minus_log(rate, digits))
@@ -124,7 +129,7 @@ def _weight(rate: Fraction, scale: int) -> int:
 
 
 def _exponents(rates: Collection[Fraction]) -> dict[Fraction, dict[int, int]]:
-    """Return for each rate its exponents in a coprime base of all rates, by factor number."""
+    """Return for each rate its exponents in a coprime base of all rates, by factor number, without zeros."""
     base = coprime_base(number for rate in rates for number in rate.as_integer_ratio())
     numbers = {factor: number for number, factor in enumerate(base)}
     exponents: dict[Fraction, dict[int, int]] = {}

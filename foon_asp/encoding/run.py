@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 
 class ProgramError(Exception):
-    """An error of clingo, which refused a program or an option.
+    """The refusal of a program or an option: by clingo, or because clingo would drop an instance of a rule.
 
-    ``messages`` are its reasons; ``otherwise`` is the text of its exception.
+    ``messages`` are clingo's reasons; ``otherwise`` is the text of its exception, empty if it raised none.
     """
 
     def __init__(self, messages: Sequence[str], otherwise: str) -> None:
@@ -20,16 +20,17 @@ class ProgramError(Exception):
 
 
 def asks_for_statistics(options: Sequence[str]) -> bool:
-    """Whether options of clingo request its statistics."""
+    """Whether options of clingo request its statistics: ``--stats`` or ``--stats=N`` with N from 1."""
     return any(option == "--stats" or re.fullmatch("--stats=[1-9]\\d*", option) for option in options)
 
 
 class FoundAnswer(NamedTuple):
     """An answer of clingo.
 
-    ``units``: the numbers of the units in use. ``cost``: the cost vector.
-    ``atoms``: by predicate, the number of its atoms for each first argument.
-    ``rows``: by predicate, the arguments of its atoms whose arguments are all numbers.
+    ``units``: the numbers of the units in use.
+    ``cost``: the cost vector, highest priority first.
+    ``atoms``: by name of a requested predicate, the number of its atoms for each first argument.
+    ``rows``: by name of a requested predicate, the arguments of its atoms whose arguments are all numbers.
     """
 
     units: frozenset[int]
@@ -39,7 +40,7 @@ class FoundAnswer(NamedTuple):
 
 
 class Ended(NamedTuple):
-    """The end of a search: whether it was exhausted, and clingo's statistics as text if requested."""
+    """The end of a search: whether the search space is exhausted, and clingo's statistics if requested."""
 
     exhausted: bool
     statistics: str = ""
@@ -50,15 +51,16 @@ class Run:
     """The result of a run of clingo.
 
     Attributes:
-        units: The last (best) answer; ``None`` without one.
+        units: The numbers of the units of the last answer, which is the best; ``None`` if there is no answer.
         cost: The cost vector of the answer as clingo reports it; its numbers wrap at 32 bits.
-        exhausted: Whether the whole search space was searched, so that the answer is optimal, or none exists.
-        lower: The proved lower bound of each priority, highest first, as far as known.
-        atoms: By requested predicate, the number of its atoms in the answer for each first argument.
-        rows: By requested predicate, the arguments of its atoms whose arguments are all numbers.
+        exhausted: Whether the whole search space was searched. Then the answer is optimal, or none exists.
+        lower: The proved lower bound of each priority, highest first; empty if none is proved.
+        atoms: By name of a requested predicate, the number of its atoms in the answer for each first
+            argument.
+        rows: By name of a requested predicate, the arguments of its atoms whose arguments are all numbers.
         ground_seconds: The time of grounding.
         solve_seconds: The time of the search.
-        statistics: Statistics of clingo as text, where an option requests them.
+        statistics: Statistics of clingo as text; empty unless an option requests them.
     """
 
     units: frozenset[int] | None = None

@@ -7,10 +7,11 @@ from typing import NamedTuple
 class Stated(NamedTuple):
     """The text of rules, and their name in messages.
 
-    ``place`` replaces the file name in messages, as in ``rule 1``. The other fields are for a ready-made
-    constraint whose constants were set for this use. ``file`` is its file, with the same lines as the text;
-    ``written`` is the text of the option, and ``renamed`` has pairs of the new and the original names of
-    constants.
+    ``place``: the name that replaces the file name in messages, as in ``rule 1``.
+    The other fields are for a ready-made constraint whose constants were set for this use.
+    ``file``: its file, with the same lines as the text.
+    ``written``: the text of the option.
+    ``renamed``: pairs of the new and the original name of each constant.
     """
 
     place: str

@@ -60,10 +60,10 @@ class Literal(NamedTuple):
 
 
 class Test(NamedTuple):
-    """A comparison, ``#true`` or ``#false``.
+    """A comparison, ``#true`` or ``#false`` in a body, with or without ``not``.
 
-    ``holds`` is its truth value; ``None`` if it depends on a variable, or on a term that is not evaluated
-    here.
+    ``holds`` is its truth value. It is ``None`` if it depends on a variable, or on a term with an operation,
+    which is not evaluated here.
     """
 
     ast: AST
@@ -99,8 +99,8 @@ class Guard(NamedTuple):
 class Aggregate(NamedTuple):
     """An aggregate in a body.
 
-    ``holds`` is its truth value if the guards alone decide it, as in ``#count { ... } < #sup``; else
-    ``None``. ``negations`` is 0, 1 or 2.
+    ``holds`` is its truth value if the guards alone decide it, as in ``#count { ... } < #sup``; otherwise
+    ``None``. ``negations``, the number of ``not`` before it, is 0, 1 or 2; ``holds`` takes them into account.
     """
 
     function: AggregateFunction
@@ -123,10 +123,10 @@ Conjunct = Literal | Test | Conditional | Aggregate | UnknownConjunct
 class Clause(NamedTuple):
     """A rule without pools, taken apart.
 
-    ``plain``: the rule is a constraint, or its head is one atom without negation or choice.
+    ``plain``: whether the rule is a constraint, or its head is one atom without negation, minus or choice.
     ``head``: this atom; ``None`` for a constraint, and for a rule that is not plain.
     ``head_elements``: the head atoms of a rule that is not plain, each with its condition.
-    ``number``: a number for the rule, the same for all clauses of a rule with pools.
+    ``number``: a number for the rule; the clauses of a rule with pools have the same number.
     ``ast``: the syntax tree of the clause; its body has one node for each conjunct of ``body``.
     """
 
@@ -152,7 +152,8 @@ class Clause(NamedTuple):
 def clauses(rule: AST, number: int, constants: Constants) -> Iterator[Clause]:
     """Unpool a rule: yield one clause for each choice from its pools, such as ``p(1;2)``.
 
-    ``number`` is stored in each clause, so that the rule of a clause can be found again.
+    ``number`` is stored in each clause, so that the rule of a clause can be found again. ``constants`` serve
+    to evaluate comparisons.
     """
     source = source_of(rule)
     for clause in rule.unpool(condition=True):
@@ -200,9 +201,9 @@ def _has_no_operation(term: AST) -> bool:
 
 
 def value(term: AST, constants: Constants) -> Symbol | None:
-    """Return the value of a number, text, word or constant; ``None`` for any other term.
+    """Return the value of a number, text, word, ``#sup``, ``#inf`` or constant; ``None`` for any other term.
 
-    A number may stand after a minus. A constant whose value is unknown has the value ``None``.
+    A number may stand after a minus. If a constant's value is unknown, the result is ``None``.
     """
     if term.ast_type == ASTType.SymbolicTerm:
         symbol: Symbol = term.symbol
@@ -216,14 +217,20 @@ def value(term: AST, constants: Constants) -> Symbol | None:
 
 
 def plain_value(symbol: Symbol) -> str | int | None:
-    """Return a symbol as number or as text in quotes; ``None`` for others, such as words without quotes."""
+    """Return the value of a number or of a text in quotes, without the quotes; ``None`` for others.
+
+    Among the others are words without quotes, ``#sup`` and ``#inf``.
+    """
     if symbol.type is SymbolType.Number:
         return symbol.number
     return symbol.string if symbol.type is SymbolType.String else None
 
 
 def factors(term: AST) -> list[AST]:
-    """Return the two factors of a product; any other term is returned as the only factor."""
+    """Return the two factors of a product; any other term is returned as the only factor.
+
+    A factor may be a product itself.
+    """
     product = (ASTType.BinaryOperation, BinaryOperator.Multiplication)
     is_product = (term.ast_type, getattr(term, "operator_type", None)) == product
     return [term.left, term.right] if is_product else [term]
@@ -232,8 +239,9 @@ def factors(term: AST) -> list[AST]:
 def constant_values(definitions: Iterable[AST], settings: Sequence[str]) -> dict[str, Symbol | None]:
     """Return the values of constants by name, from ``#const`` statements and settings ``name=value``.
 
-    A setting replaces a default value; settings of other names are ignored. ``None`` stands for a value that
-    only clingo can tell, such as one with arithmetic or one that names another constant.
+    A setting replaces a default value; settings of other names are ignored. The value is ``None`` if only
+    clingo can tell it. That is so for arithmetic, for the name of another constant, and for a constant with
+    two statements, for example.
     """
     texts: dict[str, str | None] = {}
     for definition in definitions:
@@ -320,7 +328,7 @@ class _Reader:
         return self.literal(node)
 
     def literal(self, node: AST) -> Literal | Test | UnknownConjunct:
-        """Return a literal over a predicate, a test, or ``UnknownConjunct`` for anything else."""
+        """Return a literal over a predicate, or a test; for any other node, ``UnknownConjunct``."""
         text = str(node)
         if node.ast_type != ASTType.Literal:
             return UnknownConjunct(text)
@@ -384,14 +392,20 @@ class _Reader:
         return Aggregate(function, elements, tuple(guards), int(node.sign), holds, str(node))
 
     def _holds_at_infinity(self, function: AggregateFunction, guard: Guard) -> bool | None:
-        """Return whether a sum or count satisfies a guard ``#inf`` or ``#sup``; ``None`` for other guards."""
+        """Return whether a sum or count satisfies a guard ``#inf`` or ``#sup``.
+
+        Return ``None`` for other guards and other aggregates.
+        """
         bound = value(guard.term, self._constants)
         if function not in _NUMBER_AGGREGATES or bound not in (Infimum, Supremum):
             return None
         return comparison_holds(Number(0), guard.comparison, bound)
 
     def head_atoms(self, head: AST) -> Iterator[tuple[Literal, tuple[Conjunct, ...]]]:
-        """Yield the atoms of a head that is not plain, each with its condition; ``not`` is dropped."""
+        """Yield the atoms of a head that is not plain, each with its condition; ``not`` is dropped.
+
+        Anything else in the head, such as a comparison, is left out.
+        """
         if head.ast_type == ASTType.Literal:
             atom = self.literal(head)
             if isinstance(atom, Literal):

@@ -11,9 +11,10 @@ _SECTION = re.compile(r"(\w+): +(\S.*)$")
 
 
 class Parameter(NamedTuple):
-    """A ``#const`` of a constraint: its name, its default as written, and an example value from the file.
+    """A parameter of a constraint, which is a ``#const`` of its file.
 
-    The defaults ``""``, ``#sup`` and ``#inf`` stand for "not set". The example is empty if the file has none.
+    ``own_value`` is its default as written; ``""``, ``#sup`` and ``#inf`` stand for "not set". ``example`` is
+    the value in the example call of the file, empty if there is none.
     """
 
     name: str
@@ -24,7 +25,7 @@ class Parameter(NamedTuple):
 class LibraryConstraint(NamedTuple):
     """A ready-made constraint: a file of ``encodings/constraints``, and what its comment says.
 
-    ``purpose`` tells what it demands of a tree.
+    ``name`` is the name of the file without ``.lp``. ``purpose`` tells what the constraint demands of a tree.
     """
 
     name: str

@@ -75,9 +75,11 @@ class Doubt(NamedTuple):
 class Dependence:
     """Monotonicity of each predicate of a program, computed as a fixpoint over its rules.
 
-    ``varied``: the predicates whose facts vary within the question; their monotonicity is unknown.
+    ``varied`` are predicates whose atoms the question itself changes, such as ``available/1`` in the search
+    for a shopping list; their monotonicity is unknown.
     ``doubts``: by predicate that rules derive, why its monotonicity is unknown.
-    ``loops``: the predicates with recursion through ``not`` or an aggregate, each with the place of a rule.
+    ``loops``: the predicates that are derived from themselves through ``not``, an aggregate, a condition or a
+    choice, each with the place of such a rule.
     """
 
     def __init__(
@@ -107,7 +109,10 @@ class Dependence:
                     self._depends[clause.head.signature] = after
 
     def of_predicate(self, signature: Signature) -> Monotonicity:
-        """Return the monotonicity of a predicate; ``NOT`` for a predicate of facts."""
+        """Return the monotonicity of a predicate.
+
+        It is ``NOT`` for a predicate of facts, and for one that nothing defines.
+        """
         return self._depends.get(signature, Monotonicity.NOT)
 
     def of_body(self, conjuncts: Iterable[Conjunct]) -> Monotonicity:
@@ -118,7 +123,10 @@ class Dependence:
         return dependence
 
     def of_conjunct(self, conjunct: Conjunct) -> Monotonicity:
-        """Return the monotonicity of one conjunct of a body."""
+        """Return the monotonicity of one conjunct of a body.
+
+        It is ``NOT`` for a comparison, and ``BOTH`` for a conjunct of unknown kind.
+        """
         if isinstance(conjunct, Literal):
             depends = self.of_predicate(conjunct.signature)
             return depends.negated() if conjunct.negations == 1 else depends
@@ -135,11 +143,15 @@ class Dependence:
             reason = self.doubts.get(literal.signature) or self._doubt_of_predicate(literal.signature)
             if reason:
                 return reason
-        strange = next((conjunct for conjunct in conjuncts if isinstance(conjunct, UnknownConjunct)), None)
-        return Doubt(f"{strange.text} is nothing that is looked into") if strange else None
+        unknown = next((conjunct for conjunct in conjuncts if isinstance(conjunct, UnknownConjunct)), None)
+        return Doubt(f"{unknown.text} is nothing that is looked into") if unknown else None
 
     def _doubt_of_predicate(self, signature: Signature) -> Doubt | None:
-        """Return why a predicate's monotonicity is unknown whatever its rules are, else ``None``."""
+        """Return why a predicate's monotonicity is unknown whatever its rules are, else ``None``.
+
+        It is unknown if the predicate has a minus, varies, belongs to a question, or is one of a few facts
+        that are not the same in each search.
+        """
         name, arity = signature
         if name.startswith("-"):
             return Doubt(f"{name}/{arity} is negated with a minus")
@@ -176,14 +188,14 @@ class Dependence:
                         changed = True
 
     def _find_loops(self, program: Sequence[Clause]) -> None:
-        """Fill ``loops``, and give the predicates in it a doubt."""
+        """Fill ``loops``, and add the predicates in it to ``doubts``, unless they have a doubt."""
         reads: defaultdict[Signature, set[Signature]] = defaultdict(set)
         nonpositive: list[tuple[Signature, Signature, Source]] = []
         for clause in program:
             for head in clause.heads:
-                for read, plainly in _predicates_read(clause.body, clause.plain):
+                for read, is_positive in _predicates_read(clause.body, clause.plain):
                     reads[head.signature].add(read)
-                    if not plainly:
+                    if not is_positive:
                         nonpositive.append((head.signature, read, clause.source))
         sources_of = {signature: _closure(signature, reads) for signature in reads}
         for head_signature, read, source in nonpositive:
@@ -251,7 +263,10 @@ class Dependence:
         )
 
     def _of_aggregate(self, aggregate: Aggregate) -> Monotonicity:
-        """Return the monotonicity of an aggregate."""
+        """Return the monotonicity of an aggregate.
+
+        It is ``NOT`` if its conditions do not depend on the tree, or if its guards alone decide it.
+        """
         conditions = Monotonicity.NOT
         for element in aggregate.elements:
             conditions |= self.of_body(element.condition)
@@ -263,9 +278,10 @@ class Dependence:
         return dependence.negated() if aggregate.negations == 1 else dependence
 
     def _of_guard(self, aggregate: Aggregate, guard: Guard, conditions: Monotonicity) -> Monotonicity:
-        """Return the monotonicity of an aggregate with one of its guards.
+        """Return the monotonicity that an aggregate would have with only the given guard.
 
-        ``conditions`` is the monotonicity of the conditions of its elements.
+        It is ``BOTH`` for ``=`` and ``!=``, except for a count of 0, and for a sum whose weights may be
+        negative. ``conditions`` is the monotonicity of the conditions of the aggregate's elements.
         """
         operator, function = guard.comparison, aggregate.function
         if operator in {ComparisonOperator.Equal, ComparisonOperator.NotEqual}:
@@ -304,25 +320,28 @@ def predicate_text(signature: Signature) -> str:
     return f"{signature[0]}/{signature[1]}"
 
 
-def _predicates_read(conjuncts: Iterable[Conjunct], plainly: bool) -> Iterator[tuple[Signature, bool]]:
-    """Yield the predicates that a body reads, each with a flag.
+def _predicates_read(conjuncts: Iterable[Conjunct], is_positive: bool) -> Iterator[tuple[Signature, bool]]:
+    """Yield the predicates that conjuncts read, each with whether it is read positively.
 
-    The flag is ``True`` for a positive literal. It is ``False`` if the predicate is negated, or stands in an
-    aggregate or a condition, or if ``plainly`` is ``False``.
+    A predicate that is negated, or stands in an aggregate or a condition, is not. If ``is_positive`` is
+    ``False``, none is.
     """
     for conjunct in conjuncts:
         if isinstance(conjunct, Literal):
-            yield conjunct.signature, plainly and conjunct.positive
+            yield conjunct.signature, is_positive and conjunct.positive
         elif isinstance(conjunct, Conditional):
-            yield from _predicates_read((conjunct.literal,), plainly)
-            yield from _predicates_read(conjunct.condition, plainly=False)
+            yield from _predicates_read((conjunct.literal,), is_positive)
+            yield from _predicates_read(conjunct.condition, is_positive=False)
         elif isinstance(conjunct, Aggregate):
             for element in conjunct.elements:
-                yield from _predicates_read(element.condition, plainly=False)
+                yield from _predicates_read(element.condition, is_positive=False)
 
 
 def _closure(start: Signature, reads: Mapping[Signature, set[Signature]]) -> set[Signature]:
-    """Return a predicate and all predicates that it is derived from, directly or through others."""
+    """Return a predicate and all predicates that it is derived from, directly or through others.
+
+    ``reads`` has the predicates in the bodies of the rules for a predicate.
+    """
     closure, stack = {start}, [start]
     while stack:
         for source in reads.get(stack.pop(), ()):

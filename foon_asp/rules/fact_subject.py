@@ -17,7 +17,8 @@ class Subject(StrEnum):
 class Subjects(NamedTuple):
     """The arguments of a fact that stand for a unit, an object node or a label, by position from 0.
 
-    ``about``: the fact describes these. ``leads_to``: if all in ``about`` are in the tree, these are, too.
+    ``about``: the subjects that the fact describes.
+    ``leads_to``: the subjects that are in the tree whenever all subjects in ``about`` are.
     ``numbers``: the positions of numbers that are never negative. Arguments at other positions are names or
     numbers.
     """
@@ -55,11 +56,7 @@ SUBJECTS: dict[Signature, Subjects] = {
     ("rate", 2): _NUMBER_SUBJECTS,
     ("price", 2): _NUMBER_SUBJECTS,
 }
-# Predicates that a tree decides.
-# Predicates that a tree decides.
-# Predicates that a tree decides.
-# Predicates that a tree decides.
-# Predicates that a tree decides.
+# Predicates whose atoms depend on the tree.
 DECISIONS: dict[Signature, Subjects] = {
     ("use", 1): Subjects({}, {0: Subject.UNIT}),
     ("available", 1): _OF_OBJECT,

@@ -16,7 +16,10 @@ Value = str | int | None
 
 
 class Columns(NamedTuple):
-    """Argument positions of a predicate by type: unit numbers, object node numbers, other numbers, texts."""
+    """Argument positions of a predicate, from 0, by type of argument.
+
+    ``units`` and ``objects`` have numbers of units and of object nodes, ``numbers`` other numbers.
+    """
 
     units: tuple[int, ...] = ()
     objects: tuple[int, ...] = ()
@@ -87,8 +90,8 @@ _TEXTS: Final[Mapping[str, Callable[[_NetworkPart], Iterable[Names]]]] = {
 def position_of_wrong_type(columns: Columns, values: Mapping[int, Value]) -> int | None:
     """Return the first position whose value has the wrong type; ``None`` if there is none.
 
-    A text has the wrong type where a number is expected, a number where a text is. ``None`` as a value always
-    has.
+    ``values`` has values by position. A text has the wrong type where a number is expected, a number where a
+    text is expected. A value ``None`` always has the wrong type.
     """
     for position, value in values.items():
         if not isinstance(value, str if position in columns.texts else int):
@@ -101,7 +104,7 @@ class FactValues:
 
     In a store, the part in memory is searched first, then all units and nodes, one by one. The search reads
     at most ``max_read`` units and as many nodes. If there are more, a name that is not among these counts as
-    known.
+    one that a fact has.
     """
 
     max_read: ClassVar[int] = 200_000
@@ -114,8 +117,8 @@ class FactValues:
     def matches(self, name: str, columns: Columns, values: Mapping[int, Value]) -> bool:
         """Whether some fact of the predicate ``name`` may have ``values``, given by argument position.
 
-        One fact must have all the texts. The number of a unit or node need only exist, and any other number
-        matches. A value of the wrong type matches nothing.
+        One fact must have all the texts. The number of a unit or node need only exist; it is not checked in a
+        store. Any other number matches. A value of the wrong type matches nothing.
         """
         if position_of_wrong_type(columns, values) is not None:
             return False
@@ -138,7 +141,8 @@ class FactValues:
     def nearest(self, name: str, columns: Columns, words: Mapping[int, str]) -> dict[int, str] | None:
         """Return the texts of the fact spelled most like ``words``; both are given by argument position.
 
-        ``None`` if no text is similar, and for every call after the twentieth.
+        If a fact has exactly these texts, they are returned. Return ``None`` if no text is similar, and for
+        every call after the twentieth.
         """
         self._lookups_left -= 1
         if self._lookups_left < 0:
@@ -181,7 +185,10 @@ class FactValues:
         return None if origin is None else origin.whole_network
 
     def _may_have_fact_outside_memory(self, name: str, wanted: Mapping[int, Value]) -> bool:
-        """Whether the part of a store that is not in memory may have a fact with the ``wanted`` texts."""
+        """Whether the part of a store that is not in memory may have a fact with the ``wanted`` texts.
+
+        It may if that part is unknown, or too large to be read to the end; all motions and utensils are read.
+        """
         network = self._whole_network
         if network is None or self._has_fact(name, wanted, network):
             return True
@@ -199,7 +206,10 @@ def unknown_text_message(facts: Sequence[str], word: str, meant: str | None) -> 
 
 
 def nearest_text(facts: Sequence[str], word: str, values: FactValues) -> str | None:
-    """Return the text most similar to a word in facts of the predicates ``facts``; ``None`` if none is."""
+    """Return the text most similar to a word in facts of the predicates ``facts``.
+
+    Return ``None`` if no text is similar.
+    """
     nearest = [values.nearest(fact, COLUMNS[fact, 2], {1: word}) for fact in facts]
     best = near_labels(word, sorted({match[1] for match in nearest if match is not None}), 1)
     return best[0] if best else None

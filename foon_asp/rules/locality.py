@@ -39,7 +39,10 @@ class Nonlocality(NamedTuple):
 
 
 class Locality:
-    """Locality of each rule of a program, computed as a fixpoint over its auxiliary predicates."""
+    """Locality of each rule of a program: whether its truth for a tree depends on facts about the tree alone.
+
+    It is computed as a fixpoint over the auxiliary predicates.
+    """
 
     def __init__(self, program: Sequence[Clause], dependence: Dependence) -> None:
         """Find the locality of all predicates that the clauses of a program derive."""
@@ -55,7 +58,10 @@ class Locality:
         self._find_about_arguments(program)
 
     def nonlocality(self, clause: Clause) -> Nonlocality | None:
-        """Return why a rule is not local; ``None`` if it is local."""
+        """Return why a rule is not local; ``None`` if it is local.
+
+        A rule whose head has a minus never is.
+        """
         if any(atom.signature[0].startswith("-") for atom in clause.heads):
             return Nonlocality(
                 "an atom with a minus rules out the one without, wherever that is", clause.source
@@ -71,14 +77,14 @@ class Locality:
     def _find_leads_to(self) -> dict[Signature, dict[int, set[Subject]]]:
         """Find the arguments of auxiliary predicates that are in the tree whenever an atom holds.
 
-        Return the subjects that each argument stands for then, by predicate and position. They are the
+        Return the subjects that an argument stands for in the tree, by predicate and position. They are the
         greatest fixpoint over the rules. The result is also set as ``_leads_to``.
         """
-        leads = {
+        leads_to = {
             signature: {position: set(Subject) for position in range(signature[1])}
             for signature in self._rules
         }
-        self._leads_to = leads
+        self._leads_to = leads_to
         changed = True
         while changed:
             changed = False
@@ -89,16 +95,16 @@ class Locality:
                             continue
                         tree_terms = self._tree_terms(condition, self._tree_terms(clause.body))
                         for position, term in enumerate(atom.arguments):
-                            subjects = leads[signature][position] & tree_terms.get(str(term), set())
-                            changed |= subjects != leads[signature][position]
-                            leads[signature][position] = subjects
-        return leads
+                            subjects = leads_to[signature][position] & tree_terms.get(str(term), set())
+                            changed |= subjects != leads_to[signature][position]
+                            leads_to[signature][position] = subjects
+        return leads_to
 
     def _find_about_arguments(self, program: Sequence[Clause]) -> None:
         """Fill ``_about`` and ``_nonlocal`` for all auxiliary predicates, as a fixpoint.
 
-        ``_about`` gets the arguments that have to be in the tree, so that the rules for a predicate are
-        local. ``_nonlocal`` gets the predicates with a rule that is not local whatever their arguments are.
+        ``_about`` gets the arguments that have to be in the tree for the rules of a predicate to be local.
+        ``_nonlocal`` gets the predicates that have a rule which is not local, whatever their arguments are.
         """
         changed = True
         while changed:
@@ -147,40 +153,41 @@ class Locality:
         return changed
 
     def _mark_nonlocal(self, signature: Signature, nonlocality: Nonlocality) -> bool:
-        """Record why a predicate is not local, unless a reason is known; return whether it is the first."""
+        """Record why a predicate is not local, unless a reason is known; return whether it was recorded."""
         if signature in self._nonlocal:
             return False
         self._nonlocal[signature] = nonlocality
         return True
 
     def _tree_terms(
-        self, conjuncts: Iterable[Conjunct], before: Mapping[str, set[Subject]] | None = None
+        self, conjuncts: Iterable[Conjunct], known_terms: Mapping[str, set[Subject]] | None = None
     ) -> _TreeTerms:
-        """Return what terms stand for in the tree wherever the conjuncts hold: subjects by term, as text.
+        """Return the terms that are known to be in the tree wherever the conjuncts hold.
 
-        ``before`` has terms that are known to be in the tree; they are in the result, too.
+        They are given as text, each with the subjects that it stands for. ``known_terms``, which are in the
+        tree anyway, are in the result, too.
         """
         positive = [literal for literal in conjuncts if isinstance(literal, Literal) and literal.positive]
-        tree_terms = {term: set(subjects) for term, subjects in (before or {}).items()}
+        tree_terms = {term: set(subjects) for term, subjects in (known_terms or {}).items()}
         changed = True
         while changed:
             changed = False
             for literal in positive:
-                for position, subject in self._led_arguments(literal, tree_terms):
+                for position, subject in self._arguments_in_tree(literal, tree_terms):
                     term = literal.arguments[position]
                     if _has_one_value(term) and subject not in tree_terms.setdefault(str(term), set()):
                         tree_terms[str(term)].add(subject)
                         changed = True
         return tree_terms
 
-    def _led_arguments(self, literal: Literal, tree_terms: _TreeTerms) -> list[tuple[int, Subject]]:
-        """Return the arguments of a literal that are in the tree if it holds: positions with subjects.
+    def _arguments_in_tree(self, literal: Literal, tree_terms: _TreeTerms) -> list[tuple[int, Subject]]:
+        """Return the arguments that are in the tree if a literal holds: pairs of a position and a subject.
 
         ``tree_terms`` has the terms that are known to be in the tree.
         """
         if literal.signature in self._leads_to:
-            leads = self._leads_to[literal.signature]
-            return [(position, subject) for position, subjects in leads.items() for subject in subjects]
+            leads_to = self._leads_to[literal.signature]
+            return [(position, subject) for position, subjects in leads_to.items() for subject in subjects]
         facts = _FACTS.get(literal.signature)
         if facts is None or not all(
             subject in tree_terms.get(str(literal.arguments[position]), ())
@@ -192,9 +199,9 @@ class Locality:
     def _lacking_term(
         self, conjuncts: Iterable[Conjunct], tree_terms: _TreeTerms, source: Source
     ) -> "_LackingTerm | None":
-        """Return the first term that has to be in the tree but may be outside; ``None`` if there is none.
+        """Return the first term in conjuncts that has to be in the tree but may be outside, else ``None``.
 
-        ``tree_terms`` has the terms that are known to be in the tree.
+        ``tree_terms`` has the terms that are known to be in the tree. ``source`` is the place of the rule.
         """
         for conjunct in conjuncts:
             lacking = self._lacking_term_in_conjunct(conjunct, tree_terms, source)
@@ -234,7 +241,7 @@ class Locality:
     ) -> "_LackingTerm | None":
         """Return the first argument that has to be in the tree but may be outside, else ``None``.
 
-        The literal may also be not local whatever its arguments are; then the result has an empty term.
+        If the predicate is not local whatever its arguments are, return an empty term with the reason.
         """
         signature = literal.signature
         if signature in self._nonlocal:

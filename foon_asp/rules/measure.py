@@ -35,8 +35,9 @@ _DECIMAL = re.compile(r"[0-9]{1,1000}(\.[0-9]{1,1000})?", re.ASCII)
 class Measure:
     """User rules that define an objective by the cost of each unit.
 
-    ``name`` is the name of the objective. ``place`` says where the rules are from: the path of a file, or a
-    name such as ``measure 1`` for rules passed as text. A file may define several measures.
+    ``name`` is the name of the objective, and ``text`` has the rules. ``place`` says where the rules are
+    from: the path of a file, or a name such as ``measure 1`` for rules passed as text. A file may define
+    several measures.
     """
 
     name: str
@@ -51,7 +52,8 @@ class Measure:
     def costs(self, problem: Problem, deadline: Deadline | None = None) -> Sequence[Cost]:
         """Return the cost of each unit of a problem, by id; a unit without a rule costs 0.
 
-        Clingo evaluates the rules until the deadline at most. The costs are cached for the network.
+        The costs are cached for the network. Raises :class:`LimitError` at the deadline, which only an
+        evaluation in another process notices.
 
         Raises :class:`InputError` if rules give a unit two costs, or a cost other than a number from 0.
         Raises :class:`UserError` if they read success rates and there are none.
@@ -78,9 +80,8 @@ def wrong_cost(
 ) -> str | None:
     """Return a message about the first unit whose cost differs from the stated cost; ``None`` if none does.
 
-    ``stated`` has costs by unit id. Each such unit is evaluated, even if another unit has the same facts.
-    There is also a message if the rules do not define the measure. Raises the errors of
-    :meth:`Measure.costs`.
+    ``stated`` has costs by unit id. Each such unit is evaluated, even if another unit has the same facts. If
+    the rules do not define the measure, the message says that. Raises the errors of :meth:`Measure.costs`.
     """
     from foon_asp.rules.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)
 
@@ -106,27 +107,27 @@ class _Evaluation:
     def __init__(self, measure: Measure, rules: "MeasureRules", problem: Problem, deadline: Deadline) -> None:
         """Prepare the evaluation of a measure; ``rules`` are its parsed rules."""
         self._measure, self._rules, self._problem, self._deadline = measure, rules, problem, deadline
-        self._number = problem.network.unit_number
+        self._unit_number = problem.network.unit_number
 
     def costs(self) -> Sequence[Cost]:
-        """Return the cost of each unit, by id. Only one of several units with the same facts is evaluated."""
+        """Return the cost of each unit, by id; of units with the same facts, only one is evaluated."""
         units = range(len(self._problem.network))
         fact_keys = self._fact_keys()
         if fact_keys is None:
             cost_by_number = self.cost_by_number(units)
-            return [cost_by_number.get(self._number(unit), 0) for unit in units]
+            return [cost_by_number.get(self._unit_number(unit), 0) for unit in units]
         first_unit: dict[Hashable, int] = {}
         for unit, key in enumerate(fact_keys):
             first_unit.setdefault(key, unit)
         cost_by_number = self.cost_by_number(first_unit.values())
-        by_key = {key: cost_by_number.get(self._number(unit), 0) for key, unit in first_unit.items()}
+        by_key = {key: cost_by_number.get(self._unit_number(unit), 0) for key, unit in first_unit.items()}
         return list(map(by_key.__getitem__, fact_keys))
 
     def _fact_keys(self) -> Sequence[Hashable] | None:
         """Return a key for each unit, by id.
 
-        Units with equal keys have the same facts, except for numbers of units and nodes. ``None`` if the
-        rules use these numbers, or read a fact that the keys do not cover.
+        Units with equal keys have the same facts, except for numbers of units and nodes. Return ``None`` if
+        the rules use these numbers, or read a fact that the keys do not cover.
         """
         if not self._rules.nameless:
             return None
@@ -165,11 +166,11 @@ class _Evaluation:
         return list(zip(*columns, strict=True)) if columns else [()] * len(network)
 
     def cost_by_number(self, units: Iterable[int]) -> dict[int, Cost]:
-        """Return the costs of units, given by id, that rules derive; the result is by unit number.
+        """Return the costs that rules derive for units, by unit number; a unit without a rule is left out.
 
-        Raises :class:`InputError` for an invalid cost, and for a unit with two costs.
+        ``units`` are ids. Raises :class:`InputError` for an invalid cost, and for a unit with two costs.
         """
-        by_number = {self._number(unit): unit for unit in units}
+        by_number = {self._unit_number(unit): unit for unit in units}
         values: dict[int, Cost] = {}
         for world, name, number, value in self._derive_costs(by_number.values(), self._rules.statements):
             if name != (self._measure.name,):
@@ -185,8 +186,8 @@ class _Evaluation:
     ) -> Sequence[tuple["Value", ...]]:
         """Return the costs of units that clingo derives, as rows of world, measure, unit number and cost.
 
-        The world is the number of the unit whose facts were used. Raises :class:`InputError` if clingo drops
-        an instance of a rule.
+        The world is the number of the unit whose facts were used. Clingo runs in this process if the program
+        is small, else in another one. Raises :class:`InputError` if clingo drops an instance of a rule.
         """
         from foon_asp.encoding import derived  # noqa: PLC0415
         from foon_asp.encoding.encoding import program_fault  # noqa: PLC0415 (takes clingo along)
@@ -210,7 +211,10 @@ class _Evaluation:
             raise self._with_places(program_fault(refused.messages, refused.otherwise), statements) from None
 
     def _with_places(self, error: UserError, statements: Sequence["Statement"]) -> UserError:
-        """Return an error of clingo with places in the rules of the user, not in the text for clingo."""
+        """Return an error of clingo with places in the rules of the user, not in the text for clingo.
+
+        An error without a place gets the name of the rules in front of its message.
+        """
         if not isinstance(error, InputError):
             return UserError(f"{self._measure.place}: {error}")
         return InputError(
@@ -230,10 +234,13 @@ class _Evaluation:
         return located_diagnostic(Severity.ERROR, code, message, source, [stated])
 
     def _refuse_cost(self, unit: int) -> None:
-        """Raise :class:`InputError` with the rules by which a unit has an invalid cost or several costs."""
+        """Raise :class:`InputError` with the rules by which a unit has an invalid cost or several costs.
+
+        To find them, the unit is evaluated again with each rule for costs alone.
+        """
         from foon_asp.rules.measure_rules import BEYOND  # noqa: PLC0415 (takes clingo along)
 
-        network, number = self._problem.network, self._number(unit)
+        network, number = self._problem.network, self._unit_number(unit)
         unit_text = f"the unit {network.motions[unit]!r} ({number}, {network.sources[unit][0]})"
         source_by_cost: dict[tuple[Value, Value], Source] = {}
         statements = self._rules.statements
@@ -286,9 +293,9 @@ def _nodes_key(
 
 
 def _exact_cost(value: "Value") -> Cost | None:
-    """Return a derived value as an exact cost: ``5``, or for ``"2.50"`` the fraction 5/2.
+    """Return a derived value as an exact cost: ``5`` for 5, the fraction 5/2 for ``"2.50"``.
 
-    ``None`` if it is no number from 0.
+    Return ``None`` if the value is no number from 0.
     """
     if isinstance(value, int):
         return value if value >= 0 else None
@@ -309,8 +316,8 @@ def read_measures(rules: str | PathLike[str] | Iterable[str | PathLike[str]]) ->
     """Read measures from one or several files or texts of rules; return them by name.
 
     An existing path is a file. Any other text is rules if it has ``:-``, or ends in a full stop; else it is a
-    path. Raises :class:`UserError` for an empty text, for faults in rules, and for a measure that is defined
-    twice.
+    path. Repeated texts and files are read once. Raises :class:`UserError` for an empty text, for faults in
+    rules, and for a measure that two texts define.
     """
     rules = [rules] if isinstance(rules, str | PathLike) else list(rules)
     if not rules:

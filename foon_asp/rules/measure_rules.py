@@ -71,7 +71,10 @@ _UNIT, _OBJECT = "unit", "object"
 
 
 class Statement(NamedTuple):
-    """A statement of the program for clingo, its source, and whether its head is a cost."""
+    """A statement of the program for clingo: its text, its place in the user's rules, and its kind.
+
+    ``is_cost``: whether its head is a cost.
+    """
 
     text: str
     source: Source
@@ -85,8 +88,8 @@ class MeasureRules(NamedTuple):
     ``statements``: the program for clingo, one statement per line.
     ``reads``: the names of the predicates of facts that the rules read.
     ``nameless``: whether units cost the same if their facts differ only in numbers of units and object nodes.
-    ``plain``: whether the grounding cannot be large, since no rule has an interval, a division, two tables or
-    many atoms.
+    ``plain``: whether the grounding is small, since no rule has an interval, a division, two tables or many
+    atoms.
     """
 
     names: dict[str, Source]
@@ -98,10 +101,10 @@ class MeasureRules(NamedTuple):
 
 @lru_cache(maxsize=64)
 def read_rules(text: str, origin: str) -> MeasureRules:
-    """Parse and check the rules of measures; the results for the last texts are cached.
+    """Parse and check the rules of measures; the results for the last 64 texts are cached.
 
-    ``origin`` is the name of the text in messages. Raises :class:`InputError` for a syntax error, and unless
-    all rules are over facts about one unit.
+    ``origin`` is the name of the text in messages. Raises :class:`InputError` for a syntax error, and for
+    rules that are not about one unit at a time. Raises :class:`UserError` if the text defines no measure.
     """
     check_text(text, origin)
     stated = Stated(origin, text)
@@ -191,9 +194,10 @@ class _MeasureReader:
         yield from (writer.write(rule, source) for rule, source in rules)
 
     def _check_head(self, rule: AST, atoms: "_Atoms", names: dict[str, Source]) -> None:
-        """Add an error for a head other than one atom of a permitted predicate.
+        """Add an error for a head that is not one atom of a permitted predicate.
 
-        The measure that the head names is added to ``names``.
+        Also add one for a cost whose first argument is no name. The measure that a head names is added to
+        ``names``, with its place.
         """
         head = rule.head
         if head.ast_type is not ASTType.Literal or head.sign != Sign.NoSign:
@@ -241,9 +245,10 @@ class _MeasureReader:
                 self._add_error_at("undefined-atom", undefined_message(signature, defined | readable), atom)
 
     def _check_names(self, names: dict[str, Source]) -> None:
-        """Add errors for names of measures and constants that have another meaning in the facts.
+        """Add errors for names of measures and constants that are reserved, or have a meaning in the facts.
 
-        Raises :class:`UserError` if the rules define no measure and have no other error.
+        Also add one for a constant with the name of a measure. Raises :class:`UserError` if the rules define
+        no measure and have no other error.
         """
         for name, source in names.items():
             if name in PUBLIC_NAMES or name.startswith("_"):
@@ -275,7 +280,7 @@ class _MeasureReader:
                 self._add_error_at("head", f"found {atom}, expected a cost such as cost(mine,U,5)", atom)
 
     def _check_loops(self) -> None:
-        """Add an error for recursive rules, whose atoms may be infinitely many or undefined."""
+        """Add an error for the first recursive predicate: its atoms may be infinitely many, or undefined."""
         graph: dict[Signature, set[Signature]] = {}
         for atoms in self._atoms:
             for head in map(_signature, atoms.heads):
@@ -299,7 +304,10 @@ class _MeasureReader:
                     yield signature
 
     def _dependent_predicates(self) -> frozenset[Signature]:
-        """Return ``cost/3``, the predicates of facts about units, and all predicates that depend on them."""
+        """Return ``cost/3``, the predicates of facts about units, and all predicates that depend on them.
+
+        The fact ``utensil/1`` is not among them, as it is the same for all units.
+        """
         dependent = {COST, *self._facts_read()} - {("utensil", 1)}
         before = 0
         while len(dependent) > before:
@@ -310,7 +318,11 @@ class _MeasureReader:
         return frozenset(dependent)
 
     def _has_small_grounding(self, atoms: "_Atoms", dependent: frozenset[Signature]) -> bool:
-        """Whether the grounding of a rule, given by its atoms, cannot be large."""
+        """Whether a rule, given by its atoms, can have only few ground instances for each unit.
+
+        Such a rule has no interval, no division and few atoms. At most one of these is over a table, a
+        predicate that depends on no facts.
+        """
         tables = [atom for atom in atoms.used if _signature(atom) not in dependent]
         return (
             not (atoms.has_interval or atoms.divides)
@@ -349,9 +361,10 @@ class _Atoms(Transformer):
     """Visitor that collects the atoms of a rule, as terms, and the use of its variables.
 
     ``heads``, ``used``: the atoms in the head, and those in the body.
-    ``negated``: atoms with a minus before them.
+    ``negated``: atoms with a minus before them, which are in neither list.
     ``compared``: the variables that are used other than in tests for equality.
-    ``divides``: whether the rule has a division; clingo's process crashes at -2147483648 / -1.
+    ``has_interval``: whether the rule has an interval such as ``1..9``.
+    ``divides``: whether the rule has a division or remainder; clingo's process crashes at -2147483648 / -1.
     """
 
     def __init__(self, rule: AST) -> None:
@@ -424,8 +437,8 @@ def _is_nameless(rules: Sequence[_Atoms]) -> bool:
     """Whether rules compare units and object nodes for equality only.
 
     The argument positions of units and of object nodes are inferred from the facts, along the variables of
-    each rule. The answer is ``False`` if such a position has a constant or a variable of the other kind. It
-    is ``False``, too, if such a variable is compared.
+    each rule. Return ``False`` if such a position has a constant or a variable of the other kind, if such a
+    variable is compared, or if it is a cost.
     """
     kinds: dict[tuple[Signature, int], str] = {(COST, 1): _UNIT}
     for name, arity in FACT_PREDICATES.items():

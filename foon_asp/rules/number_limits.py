@@ -44,23 +44,26 @@ Head = Callable[[AST], str]
 
 
 def number_checks(statements: Iterable[AST]) -> str:
-    """Return the text of rules that derive ``_beyond/4`` where a term overflows; empty where no term can."""
+    """Return the text of rules that derive ``_beyond/4`` where a term of the statements overflows.
+
+    It is empty if no term can.
+    """
     return "".join(f"{text}\n" for _, text in overflow_checks(statements, _overflow_atom))
 
 
 def _overflow_atom(term: AST) -> str:
-    """Return the atom ``_beyond(File,Line,Column,Term)`` for a term or a sum."""
+    """Return the atom ``_beyond(File,Line,Column,Term)`` for a term or a sum, with its place."""
     begin = term.location.begin
     shown = "the sum" if term.ast_type in _AGGREGATES else str(term).removeprefix("(").removesuffix(")")
     return f"{BEYOND[0]}({quote(begin.filename)},{begin.line},{begin.column},{quote(shown)})"
 
 
 def overflow_checks(statements: Iterable[AST], head: Head) -> Iterator[tuple[AST, str]]:
-    """Yield pairs of a statement and a check rule, which holds where a term of the statement overflows.
+    """Yield pairs of a statement and a check rule, which holds where a term or sum overflows.
 
     ``head`` returns the head of the rule. Its body has the conditions of the statement that bind variables or
     have no arithmetic. The check evaluates the term again only if a value in it is large enough for an
-    overflow.
+    overflow. Statements other than rules, ``#const`` and ``#minimize`` have no checks.
     """
     for statement in statements:
         if not _CALCULATES.search(str(statement)):
@@ -84,7 +87,7 @@ def _term_checks(node: AST, conditions: Sequence[AST], head: Head) -> Iterator[s
     """Yield the check rules for the terms in a node that can overflow.
 
     The head of a rule is ``head`` of the term. Its body has ``conditions``, perhaps a test for a large value,
-    and a call of ``@_exact``.
+    and a call of ``@_exact``. A term of numbers alone has a rule only if it does overflow.
     """
     for term in _arithmetic_terms(node):
         leaves: dict[str, AST] = {}
@@ -121,16 +124,19 @@ def _postfix(term: AST, leaves: dict[str, AST]) -> Iterator[str]:
 
 
 def _safe_magnitude(term: AST) -> int:
-    """Return a magnitude; a term cannot overflow if no value in it is larger. -1 if there is none."""
+    """Return a bound: if no value in a term exceeds it in absolute value, the term cannot overflow.
+
+    It is the greatest such number among ``LARGEST``, its half, its quarter and so on; -1 if there is none.
+    """
     return next(
         (limit for limit in (LARGEST >> n for n in range(32)) if _max_magnitude(term, limit) <= LARGEST), -1
     )
 
 
 def _max_magnitude(term: AST, limit: int) -> int:
-    """Return an upper bound on the magnitude of a term and its subterms.
+    """Return an upper bound on the absolute values of a term and its subterms.
 
-    The values in the term are assumed to have at most the magnitude ``limit``.
+    The values in the term are assumed to be at most ``limit`` in absolute value.
     """
     if term.ast_type == ASTType.UnaryOperation:
         return _max_magnitude(term.argument, limit) + int(term.operator_type == UnaryOperator.Negation)
@@ -160,9 +166,9 @@ def _has_interval(term: AST) -> bool:
 
 
 def _sum_aggregates(rule: AST) -> Iterator[tuple[AST, list[str]]]:
-    """Yield each sum of a rule with its elements as text, where weights are replaced by magnitudes.
+    """Yield each sum in a rule, with its elements as text in which weights become absolute values.
 
-    A sum whose weights are all 1 is left out.
+    A sum whose weights are all 1 is left out. Of ``#minimize``, only sums in the body are yielded.
     """
     for body_part in rule.body if rule.ast_type == ASTType.Minimize else [rule.head, *rule.body]:
         aggregate = body_part.atom if body_part.ast_type == ASTType.Literal else body_part
@@ -175,7 +181,7 @@ def _sum_aggregates(rule: AST) -> Iterator[tuple[AST, list[str]]]:
 
 
 def _magnitude_elements(element: AST) -> Iterator[str]:
-    """Yield two elements, as text: one adds a positive weight, one the magnitude of a negative weight."""
+    """Yield two elements as text: one adds a positive weight, one the absolute value of a negative one."""
     inner = element.condition
     condition = list(inner.condition) if isinstance(inner, AST) else list(inner)
     weight = "_Weight"
@@ -229,7 +235,10 @@ def _element_terms(
 
 
 def _arithmetic_terms(node: AST) -> Iterator[AST]:
-    """Yield the maximal terms with arithmetic in a node of the syntax tree."""
+    """Yield the maximal terms with an operation of two operands in a node of the syntax tree.
+
+    Terms within their leaves, such as arguments of functions, are yielded, too.
+    """
     if node.ast_type == ASTType.SymbolicAtom:
         symbol = node.symbol
         while symbol.ast_type == ASTType.UnaryOperation:  # p with a minus before it
@@ -251,7 +260,7 @@ def _arithmetic_terms(node: AST) -> Iterator[AST]:
 
 
 def _check_conditions(body: Iterable[AST]) -> list[AST]:
-    """Return the conjuncts of a body that bind variables or have neither arithmetic nor aggregates."""
+    """Return the conjuncts of a body that may bind variables, or have neither arithmetic nor aggregates."""
     return [
         condition
         for condition in body
@@ -263,7 +272,8 @@ def _conditions_without(node: AST, conditions: Sequence[AST]) -> Sequence[AST]:
     """Return the conditions for the check of a node, without the node itself if others bind its variables.
 
     Clingo drops an instance in which an equation overflows. A check with this equation would be dropped, too.
-    Without the node, conditions with variables that nothing else binds are left out as well.
+    Without the node, conditions with variables that nothing else binds are left out as well. If the others do
+    not bind the variables of its arithmetic, all conditions are returned.
     """
     other_conditions = [condition for condition in conditions if condition != node]
     bound = _bound_variables(other_conditions)
@@ -300,7 +310,7 @@ def _bound_variables(conditions: Sequence[AST]) -> set[str]:
 
 
 def _solvable_variables(term: AST) -> Iterator[str]:
-    """Yield the variable for which clingo solves an equation with a linear term such as ``2*X+1``."""
+    """Yield the variable for which clingo solves an equation with a linear term such as ``2*X+1``, if any."""
     if term.ast_type == ASTType.Variable:
         yield term.name
     elif term.ast_type == ASTType.BinaryOperation and term.operator_type in _LINEAR:
@@ -315,7 +325,7 @@ def _is_calculation(node: AST) -> bool:
 
 
 def _binds(condition: AST) -> bool:
-    """Whether a condition may bind a variable."""
+    """Whether a condition may bind a variable: a positive atom, or an equation that is not negated."""
     if condition.ast_type != ASTType.Literal or condition.sign != Sign.NoSign:
         return False
     atom, guards = condition.atom, []

@@ -12,16 +12,17 @@ from foon_asp.rules.fact_values import COLUMNS, Columns
 
 
 class NumberedUnit(NamedTuple):
-    """The atom or comparison that names a unit by its number, as text, and the place of its rule."""
+    """An atom or comparison that names a unit by its number: its text, and the place of its rule."""
 
     text: str
     source: Source
 
 
 def numbered_unit(statements: Iterable[AST]) -> NumberedUnit | None:
-    """Return the first atom or comparison that names a unit by its number, as ``use(7)`` does, else ``None``.
+    """Return the first atom or comparison in rules that names a unit by its number, as ``use(7)`` does.
 
-    A number that is matched with a unit only through a user predicate is not found.
+    Only bodies and conditions are searched. A number that is matched with a unit only through a user
+    predicate is not found. Return ``None`` if there is no such atom or comparison.
     """
     for statement in statements:
         if statement.ast_type == ASTType.Rule:
@@ -33,7 +34,10 @@ def numbered_unit(statements: Iterable[AST]) -> NumberedUnit | None:
 
 
 def _numbered_unit_text(clause: Clause) -> str:
-    """Return the atom or comparison of a clause that names a unit by its number; empty without one."""
+    """Return the atom or comparison of a clause that names a unit by its number; empty without one.
+
+    A comparison does if it has a constant, and a variable that stands for a unit in an atom.
+    """
     conditions: list[Conjunct] = [conjunct for _, condition in clause.head_elements for conjunct in condition]
     conjuncts = [*clause.body, *conditions]
     units: set[str] = set()

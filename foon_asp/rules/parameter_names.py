@@ -38,8 +38,8 @@ def unknown_parameters(
 ) -> Iterator[str]:
     """Yield a warning for each parameter whose value names nothing in the network, with a similar name.
 
-    Only unchanged ready-made constraints are checked. ``settings``, as ``NAME=VALUE``, are the parameters of
-    those that are passed without constants of their own.
+    Only text parameters of unchanged ready-made constraints are checked, if they are set. ``settings``, as
+    ``NAME=VALUE``, are the parameters of constraints that are passed without constants of their own.
     """
     shared = dict(setting.partition("=")[::2] for setting in settings)
     for constraint in dict.fromkeys(map(find_constraint, constraints)):

@@ -30,7 +30,7 @@ class RuleText(NamedTuple):
 class LibraryUse(NamedTuple):
     """A ready-made constraint with constants of its own, as ``forbid_motion:forbidden_motion=fry``.
 
-    ``file`` is the file of the constraint, and ``written`` this text of the option.
+    ``file`` is the file of the constraint. ``written`` is the text of the option, such as this example.
     """
 
     file: Path
@@ -82,9 +82,9 @@ Constraint = Path | RuleText | LibraryUse
 def given_constraint(constraint: str | PathLike[str] | Constraint) -> Constraint:
     """Return the constraint that a Python argument stands for.
 
-    A text that is an existing path, or names a ready-made constraint, stands for that. Any other text is a
-    rule if it has ``:-``, or ends in a full stop; else it is a path. Raises :class:`UserError` for an empty
-    text.
+    A text that is an existing path is this path. ``NAME:CONSTANT=VALUE`` is the use of a ready-made
+    constraint. Any other text is a rule if it has ``:-``, or ends in a full stop; else it is a path, or the
+    name of a ready-made constraint. Raises :class:`UserError` for an empty text.
     """
     if isinstance(constraint, RuleText | LibraryUse):
         return constraint
@@ -106,7 +106,7 @@ def given_constraint(constraint: str | PathLike[str] | Constraint) -> Constraint
 
 
 def named_constraint(text: str, path: type[Path] = Path) -> Path | LibraryUse:
-    """Return a text as use of a ready-made constraint if it is ``NAME:CONSTANT=VALUE``, else as a path.
+    """Return the use of a ready-made constraint for a text ``NAME:CONSTANT=VALUE``, else the text as a path.
 
     An existing path is always a path. ``path`` is the class of paths that are returned.
     """
@@ -121,7 +121,8 @@ def named_constraint(text: str, path: type[Path] = Path) -> Path | LibraryUse:
 def find_constraint(constraint: Constraint) -> Constraint:
     """Return a constraint; the name of a ready-made one is replaced by the path of its file.
 
-    Raises :class:`UserError` where there is no such file and no ready-made constraint of this name.
+    An existing file has precedence over a ready-made constraint. Raises :class:`UserError` if there is no
+    such file and no ready-made constraint of this name.
     """
     if not isinstance(constraint, Path):
         return constraint
@@ -149,7 +150,10 @@ def _constraints_folder() -> Path:
 
 
 def _ready_made_file(path: Path) -> Path | None:
-    """Return the file of the ready-made constraint with this name (``.lp`` may be missing), else ``None``."""
+    """Return the file of the ready-made constraint with this name, else ``None``.
+
+    The ending ``.lp`` may be missing. A path with a folder is no name.
+    """
     if path.name != str(path):
         return None
     file = _constraints_folder() / (path.name.removesuffix(_SUFFIX) + _SUFFIX)

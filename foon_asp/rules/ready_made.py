@@ -41,11 +41,12 @@ _REQUIRING_PREFIX = "require_"  # prefix of the names of constraints that requir
 class ReadyMade:
     """Ready-made constraints of one question, which are evaluated without clingo.
 
-    ``local``: the constraints read facts about the tree alone.
+    ``local``: ``True``, as the constraints read facts about the tree alone.
     ``redundant``: ``False``, as a tree needs redundant units only where a required set demands them.
-    ``unsettled``: some constraints do more than to remove and require units; these are antimonotone.
-    ``shrinking``: all constraints are antimonotone: if a tree keeps to them, so does every subtree.
-    ``constants``: the constants by name, as terms of clingo. ``files``: the files of the constraints.
+    ``unsettled``: whether some constraints do more than to remove and require units; these are antimonotone.
+    ``shrinking``: whether all constraints are antimonotone: if a tree keeps to them, so does every subtree.
+    ``constants``: the constants by name, as terms of clingo.
+    ``files``: the files of the constraints.
     """
 
     local: Final = True
@@ -64,14 +65,17 @@ class ReadyMade:
 
     @property
     def looked_at(self) -> frozenset[tuple[str, int]]:
-        """The predicates that the constraints read, in addition to those of the built-in encodings."""
+        """The predicates that the constraints read, in addition to those of the built-in encodings.
+
+        ``price/2`` is among them only if a constraint limits the price.
+        """
         return READ | {_PRICE} if "max_price" in self.constants else READ
 
     def has_same_meaning(self, problem: Problem) -> bool:
         """Whether the constraints mean the same for a problem here as in clingo.
 
-        ``False`` if some are ``unsettled`` and the rules see less than the kitchen (``kitchen_seen``), and
-        for prices that clingo refuses.
+        Return ``False`` if some are ``unsettled`` and the rules see less than the kitchen (``kitchen_seen``).
+        Return ``False`` also if they limit the price, and clingo refuses the prices.
         """
         if self.unsettled and problem.kitchen_seen != problem.kitchen:
             return False
@@ -87,7 +91,11 @@ class ReadyMade:
         return False
 
     def restriction_of(self, problem: Problem, deadline: Deadline) -> Restriction | Contradiction:
-        """Return the units removed from a problem and the sets required, or a contradiction."""
+        """Return the units that the constraints remove from a problem, and the sets that they require.
+
+        Return :class:`Contradiction` if a constraint holds of no tree, or if a required set is empty. The
+        deadline is not looked at.
+        """
         meanings, _ = self._meanings(problem)
         # what is needed by a unit of the last set is made by one of the others, as the tree executes
         required = tuple(
@@ -101,7 +109,11 @@ class ReadyMade:
         return Restriction(removed.__contains__, required)
 
     def upper_limits(self, problem: Problem, deadline: Deadline) -> Iterator[LinearRow]:
-        """Yield the upper limits on sums of amounts of single units."""
+        """Yield the constraints that bound a sum of amounts of units from above, as rows.
+
+        A bounded sum over sets of several units is left out, since a set counts only once. The deadline is
+        not looked at.
+        """
         for rule_meaning in self._meanings(problem)[0]:
             if rule_meaning.max_sum is not None and all(
                 len(units) == 1 for units, _ in rule_meaning.counted_sets
@@ -116,7 +128,7 @@ class ReadyMade:
         return ruled.fault(tree, frozenset(range(len(problem.network))) - tree) is None
 
     def _meanings(self, problem: Problem) -> tuple[tuple[Meaning, ...], CompiledRules]:
-        """Return the meanings of the constraints for a problem, and a checker of trees against these.
+        """Return the meanings of the constraints for a problem, and a checker of trees for these meanings.
 
         The result for the last problem is cached.
         """
@@ -130,8 +142,9 @@ class ReadyMade:
 def ready_made(constraints: Sequence[Constraint], settings: Sequence[str]) -> ReadyMade | None:
     """Return the constraints if each is ready-made, unchanged, used once, and has all its constants set.
 
-    ``settings``, as ``NAME=VALUE``, set the constants of constraints that are passed without constants.
-    ``None`` for any other constraints, for one with an error, and if a value is not a plain text or number.
+    Return ``None`` for any other constraints, for one with an error, and if a value is not a plain text or
+    number. ``settings``, as ``NAME=VALUE``, set the constants of constraints that are passed without
+    constants; ``None`` is returned also if a setting is not used.
     """
     shared = dict(setting.partition("=")[::2] for setting in settings)
     files: list[Path] = []
@@ -153,9 +166,11 @@ def _rules_with_values(
 ) -> tuple[Sequence[Rule], Mapping[str, str]] | None:
     """Return constraints with the values of their constants, and all constants as terms of clingo.
 
-    ``uses`` are the names of constraints with their constants; these are ``shared`` where a use has none of
-    its own. The result is ``None`` if a value is not a plain text or number, or is missing. It is ``None``,
-    too, if a setting in ``shared`` is not used.
+    ``uses`` are the names of constraints, each with its constants. These are ``shared`` itself if the use has
+    none of its own. What one use lists, such as allergens, all uses get.
+
+    Return ``None`` if a value is missing, or is not a plain text or number. Return ``None`` also if a setting
+    in ``shared`` is not used.
     """
     facts: dict[str, set[str]] = {name: set() for name in LISTED}
     constants: dict[str, str] = {}
@@ -191,7 +206,10 @@ def _rules_with_values(
 
 
 def question_of(problem: Problem) -> Question:
-    """Return the parts of a problem that constraints read: its network, kitchen, goals, rates and prices."""
+    """Return the parts of a problem that constraints read: its network, kitchen, goals, rates and prices.
+
+    The rates are those that user rules see.
+    """
     problem_seen = problem.as_seen or problem
     return Question(
         problem.network,

@@ -12,7 +12,7 @@ from foon_asp.rules.dependence import AVAILABLE, TIMES, USE
 from foon_asp.rules.fact_subject import SUBJECTS
 
 _KITCHEN = ("kitchen", 1)
-_HAVING = {
+_ROLES = {
     "motion": Role.MOTION,
     **dict.fromkeys(("input", "needs"), Role.INPUT),
     **dict.fromkeys(("output", "gives"), Role.OUTPUT),
@@ -22,9 +22,10 @@ _Atom = tuple[Signature, int, tuple[_Term, ...]]  # with its negations
 
 
 class TraitReader:
-    """Reader of traits in conjunctions about one unit of the tree; it unfolds auxiliary predicates.
+    """Reader of the traits that conjunctions about one unit of the tree require of it.
 
-    ``clauses`` are the rules by the predicate that they derive.
+    It replaces auxiliary predicates by the bodies of their rules. ``clauses`` are the rules, by the predicate
+    that they derive.
     """
 
     def __init__(self, clauses: Mapping[Signature, Sequence[Clause]], constants: Constants) -> None:
@@ -45,8 +46,8 @@ class TraitReader:
     ) -> list[list[_Atom]]:
         """Return the disjuncts of a conjunction, with its variables replaced by the terms in ``names``.
 
-        Conjuncts other than literals are left out. ``above`` has the auxiliary predicates that are being
-        unfolded.
+        Conjuncts other than literals are left out. Variables that are not in ``names`` get new names there.
+        ``above`` has the auxiliary predicates that are being unfolded.
         """
         alternatives = []
         for conjunct in conjuncts:
@@ -61,7 +62,8 @@ class TraitReader:
         """Return the disjuncts of a literal, with auxiliary predicates replaced by the bodies of rules.
 
         A negated literal, a fact and a recursive predicate are not replaced. ``available(O)`` becomes
-        ``use(U), gives(U,O)``.
+        ``use(U), gives(U,O)``, although O may also be in the kitchen. A predicate that nothing defines has no
+        disjuncts.
         """
         signature = literal.signature
         if literal.negations or signature in SUBJECTS or signature in {USE, TIMES} or signature in above:
@@ -80,7 +82,7 @@ class TraitReader:
     def _replace_term(self, term: AST, names: dict[str, _Term]) -> _Term:
         """Return the value of a constant, or the term that ``names`` has for a variable.
 
-        A variable that is not in ``names`` gets a new name there.
+        A variable that is not in ``names`` gets a new name there; each ``_`` gets another one.
         """
         symbol = value(term, self._constants)
         if symbol is not None:
@@ -92,15 +94,16 @@ class TraitReader:
 def _traits(atoms: Sequence[_Atom]) -> Iterator[Trait]:
     """Yield the traits that a conjunction of atoms states for the unit that it uses.
 
-    For an input that the rule keeps out of the kitchen, the trait is ``Having.MADE``.
+    They are its motion, and labels and ingredients of its inputs and outputs, as far as they are texts. For
+    an input that the rule keeps out of the kitchen, the role is ``Role.MADE``.
     """
     units = {terms[0] for signature, negations, terms in atoms if signature in {USE, TIMES} and not negations}
     facts = [(signature[0], terms) for signature, negations, terms in atoms if not negations]
     outside = {terms[0] for signature, negations, terms in atoms if signature == _KITCHEN and negations == 1}
     for name, terms in facts:
-        if name not in _HAVING or terms[0] not in units:
+        if name not in _ROLES or terms[0] not in units:
             continue
-        role, words = _HAVING[name], [terms[-1]]
+        role, words = _ROLES[name], [terms[-1]]
         if role is not Role.MOTION:
             words = [
                 fact_terms[-1]

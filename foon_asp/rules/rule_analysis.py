@@ -39,7 +39,7 @@ class Kind(StrEnum):
     """The effect of a rule on the set of trees.
 
     ``FACT``: it is independent of the tree, and allows every tree or none.
-    ``DELETING``: it excludes the trees with one of certain units, which are known without clingo.
+    ``DELETING``: it excludes the trees that have one of certain units, which are found before the search.
     ``SHRINKING``: it is antimonotone: if it allows a tree, it allows every subset.
     ``REQUIRING``: it is monotone: if it allows a tree, it allows every superset.
     ``OTHER``: its kind is unknown.
@@ -73,11 +73,14 @@ _IMPLIED = "times(U,1) :- use(U)."
 class Rule(NamedTuple):
     """A rule of one question, with its kind and locality.
 
-    ``reason``, at ``reason_source``: why the kind is ``OTHER``, or why the rule has no effect; else empty.
-    ``nonlocality``, at ``nonlocality_source``: the facts outside the tree that the rule reads; empty for a
-    local rule (:mod:`foon_asp.rules.locality`). A ``HELPER`` is always local: its facts count for the rules
-    that use it.
-    ``one_of``: the rule requires a unit of each of one or several sets, which are found before the search.
+    ``source``: the place of the rule.
+    ``reason``: why the kind is ``OTHER``, or why the rule has no effect; else empty. ``reason_source`` is the
+    place that it is about.
+    ``nonlocality``: the facts outside the tree that the rule reads; empty for a local rule
+    (:mod:`foon_asp.rules.locality`). ``nonlocality_source`` is the place where it reads them. A ``HELPER`` is
+    always local: its facts count for the rules that use it.
+    ``one_of``: whether the rule requires a unit of each of one or several sets, which are found before the
+    search.
     """
 
     source: Source
@@ -95,18 +98,19 @@ class Rule(NamedTuple):
 
     @property
     def without_effect(self) -> bool:
-        """Whether the rule allows every tree, since a condition in it never holds."""
+        """Whether the rule excludes no tree, and derives nothing, since a condition in it never holds."""
         return bool(self.reason) and self.kind is not Kind.OTHER
 
 
 class Analysis:
     """The rules of one question as clauses, each with its kind.
 
-    ``rules``: the rules, in the order of the files.
+    ``rules``: the rules, in the order of the files; statements that cannot change the set of trees, such as
+    ``#show``, are left out.
+    ``statements``: the syntax trees of ``rules``.
     ``live_clauses``: the clauses of rules and built-in rules, except those with a condition that never holds.
     ``clauses_of_rule``: the live clauses of each rule, by its index in ``rules``.
-    ``removals``, ``at_least_ones``, ``rows``: the translations of rules, where there is one, by the same
-    index.
+    ``removals``, ``at_least_ones``, ``rows``: the translations of rules that have one, by index in ``rules``.
     ``constant_texts``: ``#const`` statements for the constants in these translations.
     """
 
@@ -116,7 +120,7 @@ class Analysis:
         """Analyse parsed statements.
 
         ``settings`` are the constants that are set, as ``name=value`` for clingo. ``varied`` are predicates
-        whose facts vary within the question.
+        whose atoms the question itself changes (:class:`Dependence`).
         """
         statements = tuple(statements)
         self.definitions = [statement for statement in statements if statement.ast_type == ASTType.Definition]
@@ -176,7 +180,7 @@ class Analysis:
         return kind, self._why_not_monotone(clause) if kind is Kind.OTHER else None
 
     def reads(self, signature: Signature) -> bool:
-        """Whether the body of some rule has a predicate."""
+        """Whether the body of some live clause has a predicate."""
         return any(
             literal.signature == signature
             for clause in self.live_clauses
@@ -184,7 +188,7 @@ class Analysis:
         )
 
     def _why_never(self, body: Iterable[Conjunct]) -> str | None:
-        """Return why a body cannot hold, whatever the facts are; ``None`` where it may."""
+        """Return why a body cannot hold, whatever the facts are; ``None`` if it may hold."""
         for conjunct in body:
             if isinstance(conjunct, Test | Aggregate) and conjunct.holds is False:
                 return _NEVER
@@ -219,7 +223,8 @@ class Analysis:
     def _classify_statement(self, statement: AST, live_clauses: Sequence[Clause]) -> Rule:
         """Return a statement as a rule with its kind and locality.
 
-        ``live_clauses`` are its clauses that can have an effect.
+        ``live_clauses`` are its clauses that can have an effect. If there are none, the rule is a ``FACT`` or
+        a ``HELPER`` with the reason. A statement other than a rule is ``OTHER``, and not local.
         """
         source = source_of(statement)
         if statement.ast_type != ASTType.Rule:
@@ -252,7 +257,7 @@ class Analysis:
         """Return a rule with the kind that follows from its translations.
 
         The translations are added to ``removals``, ``at_least_ones`` and ``rows``, under the index of the
-        rule (``number``).
+        rule (``number``). A rule that is not local, a ``HELPER`` and an ``OTHER`` rule have none.
         """
         live_clauses = self.clauses_of_rule[number]
         if not rule.local or rule.kind in {Kind.HELPER, Kind.OTHER}:
@@ -278,7 +283,10 @@ class Analysis:
 
 
 def _conjunction_kind(kinds: Iterable[Kind]) -> Kind:
-    """Return the kind of a conjunction of rules, from their kinds."""
+    """Return the kind of a conjunction of rules, from their kinds.
+
+    It is the only kind besides ``FACT``, or ``OTHER`` if there are several.
+    """
     distinct = set(kinds)
     if len(distinct) > 1:
         distinct.discard(Kind.FACT)
@@ -287,7 +295,7 @@ def _conjunction_kind(kinds: Iterable[Kind]) -> Kind:
 
 @cache
 def _implied_clauses() -> list[Clause]:
-    """Return the rules of the built-in encoding that user rules can read."""
+    """Return the clauses of the built-in rule for ``times/2``, which user rules can read; they are cached."""
     statements: list[AST] = []
     parse_string(_IMPLIED, statements.append)
     return list(clauses(statements[-1], -1, {}))

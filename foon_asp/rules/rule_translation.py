@@ -62,8 +62,8 @@ class Removal(NamedTuple):
 class AtLeastOne(NamedTuple):
     """A rule that requires a unit of each of several sets.
 
-    Its program derives an atom ``asks`` with a term for each set. It derives ``meets`` with this term in the
-    world of each unit of the set. If it derives ``meets`` in the world ``NOTHING``, no unit of the set is
+    ``program``: it derives an atom ``asks`` with a term for each set. It derives ``meets`` with this term in
+    the world of each unit of the set. If it derives ``meets`` in the world ``NOTHING``, no unit of the set is
     needed.
     ``wanted``: the traits of the units in the sets.
     """
@@ -73,12 +73,13 @@ class AtLeastOne(NamedTuple):
 
 
 class Row(NamedTuple):
-    """A rule that bounds a sum of weights of units. Its program derives the weights in atoms ``weighs``.
+    """A rule that bounds a sum of weights of units.
 
-    ``number``: the first argument of the atoms. Different weights of a unit add up.
+    ``number``: the first argument of the atoms ``weighs``.
+    ``program``: it derives the weights in atoms ``weighs``. Different weights of a unit add up.
     ``bound``: an upper bound on the sum; with ``at_least``, a lower bound.
-    ``used``: a weight counts once, not for each execution of the unit.
-    ``per_unit``: the bound holds for each unit by itself, not for the sum over units.
+    ``used``: whether a weight counts once, not for each execution of the unit.
+    ``per_unit``: whether the bound holds for each unit by itself, not for the sum over units.
     """
 
     number: int
@@ -103,8 +104,8 @@ _ALLOWED = {
 class Translator:
     """Translator of rules to removals, at-least-one constraints or rows.
 
-    The method for a kind returns ``None`` for a rule of another kind. ``program`` has the clauses of all
-    rules.
+    The method for a translation returns ``None`` for a rule that has none of this kind. ``program`` has the
+    clauses of all rules.
     """
 
     def __init__(self, program: Sequence[Clause], constants: Constants, dependence: Dependence) -> None:
@@ -125,7 +126,10 @@ class Translator:
         self._units_read_by_predicate: dict[Signature, int] = {}
 
     def removal(self, clauses: Sequence[Clause]) -> Removal | None:
-        """Return a removal of units for the rule that consists of ``clauses``; ``None`` for another rule."""
+        """Return the removal of units for the rule that consists of ``clauses``.
+
+        Return ``None`` if a clause calculates, or depends on more than one unit of the tree.
+        """
         if not all(self._has_no_calculation(clause.body) for clause in clauses):
             return None
         if any(self._count_units_read(clause.body) > 1 for clause in clauses):
@@ -135,7 +139,11 @@ class Translator:
         )
 
     def at_least_one(self, clause: Clause) -> AtLeastOne | None:
-        """Return the at-least-one constraint that a requiring rule stands for; ``None`` for another rule."""
+        """Return the at-least-one constraint that a requiring rule stands for.
+
+        Return ``None`` if the rule calculates, or if one of its conditions on the tree is not the absence of
+        a unit.
+        """
         unit_positions = [n for n, conjunct in enumerate(clause.body) if self._count_units_read([conjunct])]
         set_positions = [n for n in range(len(clause.body)) if n not in unit_positions]
         alternatives = [self._alternatives(clause, n) for n in unit_positions]
@@ -159,7 +167,8 @@ class Translator:
     def row(self, clause: Clause) -> Row | None:
         """Return the row that a rule such as ``:- #sum { N,U : times(U,N) } > 9`` stands for.
 
-        ``None`` for another rule.
+        A rule such as ``:- times(U,N), N > 3`` stands for a row with a bound per unit. Return ``None`` for a
+        rule of another form.
         """
         body = clause.body
         if len(body) == 1 and isinstance(body[0], Aggregate):
@@ -208,7 +217,7 @@ class Translator:
         return [*rules, *programs], facts
 
     def _sum_row(self, aggregate: Aggregate, elements: Sequence[AST]) -> Row | None:
-        """Return the row that bounds a sum or count with one guard; ``None`` for other aggregates.
+        """Return the row that a sum or count with one guard stands for; ``None`` for other aggregates.
 
         ``elements`` are the syntax trees of its elements.
         """
@@ -235,7 +244,7 @@ class Translator:
 
         The predicate is ``use/1`` or ``times/2``. The weight of n executions of a unit is n times this
         weight, since nothing else reads n. ``condition`` has the syntax trees of the element's condition.
-        ``None`` if the element has another form.
+        Return ``None`` if the element has another form.
         """
         executions = _execution_arguments(element.condition)
         if executions is None or not self._has_no_calculation(element.condition):
@@ -265,9 +274,10 @@ class Translator:
         return f"{self._answer_head('weighs', weight, unit)} :- {'; '.join(body)}.", signature.signature
 
     def _remaining_bound(self, comparison: int, term: AST) -> tuple[bool, int] | None:
-        """Return the bound that forbids a comparison: whether it is a lower bound, and its number.
+        """Return the bound that remains if a comparison is forbidden: whether it is lower, and its number.
 
-        For ``> 9`` it is ``(False, 9)``. ``None`` if the term is no number, and for ``=`` and ``!=``.
+        If ``> 9`` is forbidden, the upper bound ``(False, 9)`` remains. Return ``None`` if the term is no
+        number, and for ``=`` and ``!=``.
         """
         number, allowed = value(term, self._constants), _ALLOWED.get(ComparisonOperator(comparison))
         if number is None or number.type is not SymbolType.Number or allowed is None:
@@ -277,8 +287,9 @@ class Translator:
     def _alternatives(self, clause: Clause, position: int) -> "list[_Alternative] | None":
         """Return the conditions under which a unit makes a conjunct of a requiring rule false.
 
-        Each condition is given as texts for clingo and as conjuncts. ``None`` if the conjunct has another
-        form.
+        Each condition is a pair: its parts as texts for clingo, and as conjuncts. The conjunct states that
+        units are absent: it is a literal or a conditional with ``not``, or a count of 0. Return ``None`` for
+        any other conjunct.
         """
         conjunct, node = clause.body[position], clause.ast.body[position]
         if isinstance(conjunct, Aggregate):
@@ -321,7 +332,8 @@ class Translator:
     def _rule_text(self, head: str, clause: Clause) -> str:
         """Return a rule with this head and the body of a clause.
 
-        It holds in each world if the clause depends on the tree, else in the world without units only.
+        If the head has the variable for worlds, the rule gets a condition on it: any world if the clause
+        depends on the tree, else the world without units.
         """
         body = [str(self._worlds.visit(node)) for node in clause.ast.body]
         if self._world in head:
@@ -334,7 +346,10 @@ class Translator:
         return f"{head} :- {'; '.join(body) or '#true'}."
 
     def _count_units_read(self, body: Iterable[Conjunct]) -> int:
-        """Return on how many units of the tree a conjunction depends; 2 stands for more than one."""
+        """Return on how many units of the tree a conjunction depends; 2 stands for more than one.
+
+        A literal with ``not``, an aggregate or a conditional that depends on the tree counts as 2.
+        """
         unit_count = 0
         for conjunct in body:
             if isinstance(conjunct, Literal):

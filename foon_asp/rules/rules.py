@@ -26,7 +26,8 @@ _SHRINKING = {Kind.HELPER, Kind.FACT, Kind.DELETING, Kind.SHRINKING}
 class ShownRule(NamedTuple):
     """A rule as users see it: its text, and places in files.
 
-    ``use`` is the option text of a ready-made constraint with constants of its own, else empty.
+    ``use`` is the option text of a ready-made constraint with constants of its own, else empty. The places,
+    such as ``source``, replace those of ``rule``, which may be in the text of such a constraint.
     """
 
     rule: Rule
@@ -71,8 +72,8 @@ class Rules:
     ) -> None:
         """Analyse encodings, under constants that are set as ``name=value`` for clingo.
 
-        ``varied`` are predicates of facts that the question derives or varies. ``endless`` says that
-        grounding the rules may not terminate.
+        ``varied`` are predicates that the question itself derives or changes. ``endless`` says that grounding
+        the rules may not terminate; then they are evaluated in another process.
         """
         self._encodings, self._constants, self._endless = tuple(encodings), tuple(constants), endless
         self._last: tuple[Problem, Collection[int] | None, UnitAnswers | None] | None = None
@@ -117,7 +118,7 @@ class Rules:
 
     @property
     def shrinking(self) -> bool:
-        """Whether all rules are antimonotone: every subtree of a tree that keeps to them does, too."""
+        """Whether all rules are antimonotone: if a tree keeps to them, so does every subtree."""
         return all(rule.kind in _SHRINKING for rule in self.rules)
 
     @property
@@ -154,7 +155,7 @@ class Rules:
 
     @property
     def wanted(self) -> list[RequiredUnit] | None:
-        """The traits of required units, for each at-least-one constraint.
+        """The traits of required units, for each at-least-one constraint; empty if rules only remove units.
 
         ``None`` if a rule is not local, or does more than to remove or require units.
         """
@@ -170,11 +171,11 @@ class Rules:
     @property
     def only_limits(self) -> bool:
         """Whether rules read numbers of executions only to bound these numbers from above."""
-        at_most = {number for number, bound in self._analysis.rows.items() if not bound.at_least}
+        upper_rows = {number for number, row in self._analysis.rows.items() if not row.at_least}
         others = (
             clause
             for number, rule_clauses in enumerate(self._analysis.clauses_of_rule)
-            if number not in at_most
+            if number not in upper_rows
             for clause in rule_clauses
         )
         return all(literal.signature != TIMES for clause in others for literal in literals(clause.body))
@@ -182,7 +183,8 @@ class Rules:
     def limits(self, problem: Problem, deadline: Deadline) -> list[LinearRow]:
         """Return the linear limits on executions that rules state, over the units that can execute.
 
-        Empty if clingo refuses a rule. Raises :class:`UserError` as :meth:`restriction_of` does.
+        The result is empty if clingo refuses a rule. A limit per unit becomes one row for each unit. Raises
+        :class:`UserError` as :meth:`restriction_of` does.
         """
         answers = self._answers(problem, deadline) if self._analysis.rows else None
         limits: list[LinearRow] = []
@@ -196,7 +198,7 @@ class Rules:
         return limits
 
     def upper_limits(self, problem: Problem, deadline: Deadline) -> Iterator[LinearRow]:
-        """Yield the upper limits on sums over units; none if the rules are left to the search."""
+        """Yield the upper bounds among :meth:`limits`; none if the rules are left to the search."""
         if not self.leave_to_search(problem):
             yield from (row for row in self.limits(problem, deadline) if not row.at_least)
 
@@ -206,15 +208,19 @@ class Rules:
         """Return the restriction of a problem by the rules that remove units or require one of a set.
 
         A tree keeps to these rules if and only if it has no removed unit, and a unit of each required set.
-        Only ``units`` are considered, by default the units that can execute. Returns ``None`` if clingo
-        refuses a rule. Raises :class:`UserError` if rules read a price that is not a whole number of
-        hundredths.
+        Only ``units`` are considered, by default the units that can execute.
+
+        Return :class:`Contradiction` if no tree keeps to these rules, and ``None`` if clingo refuses a rule.
+        Raises :class:`UserError` if rules read a price that is not a whole number of hundredths.
         """
         answers = self._answers(problem, deadline, units)
         return None if answers is None else answers.restriction
 
     def leave_to_search(self, problem: Problem) -> bool:
-        """Whether to leave the rules to the search: faster in a large network if no unit is required."""
+        """Whether to leave the rules to the search: in a large network, if they require no unit.
+
+        There, the search evaluates the rules faster, since it looks only at units near the goals.
+        """
         large = len(problem.network) > TUNING.evaluated_units
         return large and not self._analysis.at_least_ones
 
@@ -235,11 +241,13 @@ class Rules:
                 clauses = [clause for number in numbers for clause in analysis.clauses_of_rule[number]]
                 programs = [line for rule in understood for line in rule.program]
                 rules, read = analysis.translator.complete_program(programs, clauses)
-                plain = problem if problem.restriction is None else replace(problem, restriction=None)
-                among = self._evaluated_units(plain) if units is None else units
+                unrestricted_problem = (
+                    problem if problem.restriction is None else replace(problem, restriction=None)
+                )
+                evaluated_units = self._evaluated_units(unrestricted_problem) if units is None else units
                 answers = ask_units(
-                    plain,
-                    among,
+                    unrestricted_problem,
+                    evaluated_units,
                     [*analysis.constant_texts, *rules],
                     read,
                     deadline if self._endless else None,
@@ -248,7 +256,7 @@ class Rules:
         return self._last[2]
 
     def _evaluated_units(self, problem: Problem) -> Collection[int]:
-        """Return the units to evaluate rules on: all that can execute.
+        """Return the ids of the units to evaluate rules on: all that can execute.
 
         In a large network, they are only the units that at-least-one constraints name, if no other rules are
         evaluated.

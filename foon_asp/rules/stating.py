@@ -16,9 +16,9 @@ from foon_asp.rules.passed_constraint import Constraint, LibraryUse, RuleText
 def load_constraints(constraints: Sequence[Constraint]) -> dict[Constraint, Loaded]:
     """Return what clingo loads for each constraint: a file or a text.
 
-    Rules given as text are called ``rule 1``, ``rule 2`` and so on; ready-made constraints with constants of
-    their own ``use 1``, ``use 2``. Raises :class:`UserError` for constants that a ready-made constraint does
-    not have, and for wrong values.
+    A path is returned as it is. Rules given as text are called ``rule 1``, ``rule 2`` and so on; ready-made
+    constraints with constants of their own are called ``use 1``, ``use 2``. Raises :class:`UserError` for
+    constants that a ready-made constraint does not have, and for wrong values.
     """
     loaded_by_constraint: dict[Constraint, Loaded] = {}
     rules = uses = 0
@@ -39,8 +39,9 @@ def load_constraints(constraints: Sequence[Constraint]) -> dict[Constraint, Load
 def _renamed_constraint(use: LibraryUse, number: int) -> Stated:
     """Return a ready-made constraint with its constants set, as text in which names end in a number.
 
-    Constants and predicates of its own are renamed, so that a constraint can be used twice. Each statement is
-    on the same line as its beginning in the file. ``number`` is that of the use.
+    The constraint's own constants and predicates are renamed, so that it can be used twice. Each statement is
+    on the same line as its beginning in the file. ``number`` is that of the use. Raises :class:`UserError`
+    for an unknown constant or a wrong value.
     """
     encoding = read_encoding(use.file)
     values = use.constants
@@ -49,7 +50,7 @@ def _renamed_constraint(use: LibraryUse, number: int) -> Stated:
             names_known = ", ".join(encoding.constants) or "none"
             raise UserError(f"{use}: {use.file.stem} has no constant {name!r}; it has {names_known}")
     own = {*encoding.defined, *encoding.declared} - PUBLIC - EXTENDED
-    renaming = _Renamer(own, encoding.constants, number)
+    renamer = _Renamer(own, encoding.constants, number)
     statements: list[AST] = []
     parse(use.file, statements.append, lambda *_: None)
     lines: dict[int, list[str]] = {}
@@ -61,9 +62,9 @@ def _renamed_constraint(use: LibraryUse, number: int) -> Stated:
             changed = statement.update(value=_parse_term(constant_value(statement.name, default, value)))
         else:
             changed = statement
-        lines.setdefault(statement.location.begin.line, []).append(str(renaming.visit(changed)))
+        lines.setdefault(statement.location.begin.line, []).append(str(renamer.visit(changed)))
     text = "\n".join(" ".join(lines.get(line, ())) for line in range(1, max(lines, default=0) + 1))
-    names = {renaming.name(name): name for name in encoding.constants}
+    names = {renamer.new_name(name): name for name in encoding.constants}
     return Stated(f"use {number}", f"{text}\n", use.file, use.written, tuple(names.items()))
 
 
@@ -77,14 +78,14 @@ def _parse_term(text: str) -> AST:
 class _Renamer(Transformer):
     """Rewriter that renames some predicates and constants: ``tainted`` becomes ``_tainted_1``.
 
-    ``number`` is the number at the end of new names.
+    ``predicates`` and ``constants`` are those to rename. ``number`` is the number at the end of new names.
     """
 
     def __init__(self, predicates: Collection[Signature], constants: Collection[str], number: int) -> None:
         """Keep the predicates and constants to rename."""
         self._predicates, self._constants, self._number = predicates, constants, number
 
-    def name(self, name: str) -> str:
+    def new_name(self, name: str) -> str:
         """Return the new name, which begins with ``_`` as all reserved names do."""
         return f"_{name.lstrip('_')}_{self._number}"
 
@@ -99,19 +100,19 @@ class _Renamer(Transformer):
         if symbol.ast_type == ASTType.Pool:
             return symbol.update(arguments=[self._rename_symbol(argument) for argument in symbol.arguments])
         own = (symbol.name, len(symbol.arguments)) in self._predicates
-        name = self.name(symbol.name) if own else symbol.name
+        name = self.new_name(symbol.name) if own else symbol.name
         return symbol.update(name=name, arguments=self.visit_sequence(symbol.arguments))
 
     def visit_SymbolicTerm(self, term: AST) -> AST:  # noqa: N802
         """Return a constant under its new name if it has one; any other term unchanged."""
         symbol = term.symbol
         if symbol.type is SymbolType.Function and symbol.name in self._constants and not symbol.arguments:
-            return term.update(symbol=Function(self.name(symbol.name)))
+            return term.update(symbol=Function(self.new_name(symbol.name)))
         return term
 
     def visit_Definition(self, definition: AST) -> AST:  # noqa: N802
         """Return a ``#const`` statement with new names."""
-        return definition.update(name=self.name(definition.name), value=self.visit(definition.value))
+        return definition.update(name=self.new_name(definition.name), value=self.visit(definition.value))
 
     def visit_Defined(self, defined: AST) -> AST:  # noqa: N802
         """Return ``#defined``, with the new name of its predicate if it has one."""
@@ -124,4 +125,4 @@ class _Renamer(Transformer):
     def _rename_signature(self, statement: AST) -> AST:
         """Return ``#defined`` or ``#show``, with the new name of its predicate if it has one."""
         own = (statement.name, statement.arity) in self._predicates
-        return statement.update(name=self.name(statement.name)) if own else statement
+        return statement.update(name=self.new_name(statement.name)) if own else statement

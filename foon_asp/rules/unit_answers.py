@@ -17,8 +17,9 @@ from foon_asp.rules.rule_translation import ANSWER, NOTHING
 class UnitAnswers(NamedTuple):
     """The evaluation of rules on single units.
 
-    ``restriction`` has the removed units and the required sets. ``weights`` has the weight of units by the
-    number of a row and by unit id.
+    ``restriction``: the removed units and the required sets; :class:`Contradiction` if no tree keeps to the
+    rules.
+    ``weights``: by the number of a row, the weight of each unit by id.
     """
 
     restriction: Restriction | Contradiction
@@ -34,9 +35,11 @@ def ask_units(
 ) -> UnitAnswers | None:
     """Evaluate the programs of rules on units; with a ``deadline``, in another process.
 
-    ``program`` has the rules as text. ``read`` are the predicates of facts that the rules read. Returns
-    ``None`` if clingo refuses a rule; the search then reports the message of clingo. Raises
-    :class:`UserError` if rules read a price that is not a whole number of hundredths.
+    ``program`` has the rules as text. ``read`` are the predicates of facts that the rules read. If facts of
+    ``units`` cannot be written, the rules are evaluated on the units that can execute. Return ``None`` if
+    clingo refuses a rule; the search then reports the message of clingo.
+
+    Raises :class:`UserError` if rules read a price that is not a whole number of hundredths.
     """
     try:
         facts = write_facts_read(problem, sorted(units), read)
@@ -58,7 +61,7 @@ def ask_units(
 def candidate_units(network: Network, wanted: Iterable[RequiredUnit]) -> set[int] | None:
     """Return the ids of units that may have the traits in ``wanted``, among them all that rules require.
 
-    Only the first trait of each row is looked up. ``None`` if a row has no trait.
+    Of each row, only the first trait is looked at. Return ``None`` if a row has no trait.
     """
     units: set[int] = set()
     for row in (row for requirement in wanted for row in requirement.rows):
@@ -78,6 +81,8 @@ def _read_answers(problem: Problem, rows: Iterable[tuple[Value, ...]]) -> UnitAn
     """Return the removed units, required sets and weights in the atoms that clingo derived.
 
     ``rows`` are the arguments of the atoms ``_of_unit/4`` (see :mod:`foon_asp.rules.rule_translation`).
+    Worlds of unknown units are skipped. If there is no tree or a required set is empty, return
+    :class:`Contradiction` with the weights.
     """
     removed: set[int] = set()
     required: dict[tuple[Value, Value], set[int] | None] = {}  # None where a set is not needed

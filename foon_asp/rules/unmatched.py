@@ -41,8 +41,10 @@ _Values = Mapping[str, Sequence[Symbol]]  # by variable, where all values are kn
 class _Unmatched(NamedTuple):
     """A literal that matches no fact, with the warning about it and its place.
 
-    ``clause``: the index of its rule in the file. ``head``: the predicate that the rule derives.
+    ``clause``: the index of its rule in the file.
+    ``head``: the predicate that the rule derives; ``None`` if it derives none.
     ``constants``: the values in the literal.
+    ``message``: the text of the warning.
     """
 
     clause: int
@@ -53,18 +55,23 @@ class _Unmatched(NamedTuple):
 
 
 def unmatched_warnings(
-    theirs: Sequence[Encoding], ours: Sequence[Encoding], settings: Sequence[str], values: FactValues
+    user_files: Sequence[Encoding],
+    ready_made_files: Sequence[Encoding],
+    settings: Sequence[str],
+    values: FactValues,
 ) -> Iterator[Diagnostic]:
     """Yield a warning for each literal over a fact whose constants match nothing in the network.
 
-    ``theirs`` are user files, ``ours`` ready-made constraints used with them, and ``settings`` the constants
-    that are set. There is no warning if another rule with the same head has a literal that matches and has
-    the same constants: one rule may look for a label, the other for an ingredient, of the same name.
+    Only literals in ``user_files`` get warnings. ``ready_made_files`` are constraints used with them, and
+    ``settings`` the constants that are set, as ``NAME=VALUE``.
+
+    There is no warning if another rule in the same file with the same head has a literal that matches and has
+    the same constants. For example, one rule looks for a label, the other for an ingredient of this name.
 
     There are also warnings for facts in user files, such as ``allergen("milk").``, that name nothing in the
     network.
     """
-    encodings = (*theirs, *ours)
+    encodings = (*user_files, *ready_made_files)
     definitions = [statement for encoding in encodings for statement in encoding.definitions]
     constants = constant_values(definitions, settings)
     rules = [
@@ -73,11 +80,11 @@ def unmatched_warnings(
     ]
     programs = [list(chain.from_iterable(of_file)) for of_file in rules]
     search = _Search(list(chain.from_iterable(programs)), constants, values)
-    unlisted = _unlisted_warnings(list(chain.from_iterable(programs[: len(theirs)])), constants, values)
-    for encoding, program in zip(theirs, programs, strict=False):
+    unlisted = _unlisted_warnings(list(chain.from_iterable(programs[: len(user_files)])), constants, values)
+    for encoding, program in zip(user_files, programs, strict=False):
         warnings = [(literal.source, literal.message) for literal in search.unmatched(program)]
-        own = set(map(id, program))
-        warnings += [(clause.source, text) for clause, text in unlisted if id(clause) in own]
+        clause_ids = set(map(id, program))
+        warnings += [(clause.source, text) for clause, text in unlisted if id(clause) in clause_ids]
         for source, message in dict.fromkeys(warnings):
             yield encoding.remark(Severity.WARNING, "unmatched", message, source)
 
@@ -94,9 +101,10 @@ class _Search:
         self._listed_values = self._find_listed_values(program)
 
     def unmatched(self, program: Sequence[Clause]) -> Iterator[_Unmatched]:
-        """Return the literals of the rules of one file that match no fact.
+        """Return the literals of the rules of one file that match no fact, each with a warning.
 
-        A literal is left out if another rule with the same head matches with the same constants.
+        A literal is left out if another rule with the same head has a literal that matches and has the same
+        constants.
         """
         candidates: list[_Unmatched] = []
         matched: defaultdict[tuple[Signature | None, frozenset[Symbol]], set[int]] = defaultdict(set)
@@ -126,9 +134,10 @@ class _Search:
     def _value_combinations(
         self, literal: Literal, conjuncts: Iterable[Conjunct]
     ) -> Sequence[Mapping[int, Symbol]]:
-        """Return the combinations of values that a literal over a fact requires, by position.
+        """Return the combinations of values that a literal over a fact requires, by argument position.
 
-        Empty where there are more than 10,000: then the literal counts as matched.
+        Arguments whose values are unknown are left out. The result is empty if no value is known, and if
+        there are more than 10,000 combinations; then the literal counts as matched.
         """
         max_combinations = 10_000
         values_by_position = (
@@ -151,9 +160,10 @@ class _Search:
         return self._values.matches(literal.signature[0], COLUMNS[literal.signature], wanted)
 
     def _argument_values(self, literal: Literal, bound: _Values) -> dict[int, Sequence[Symbol]]:
-        """Return the possible values of arguments, by position, without arguments of unknown values.
+        """Return the possible values of arguments, by position; arguments of unknown values are left out.
 
-        ``bound`` has the possible values of variables.
+        ``bound`` has the possible values of variables. An argument that may be an unset constant is left out,
+        too.
         """
         values_by_position: dict[int, Sequence[Symbol]] = {}
         for position, argument in enumerate(literal.arguments):
@@ -206,9 +216,10 @@ class _Search:
         return columns
 
     def _warning_text(self, literal: Literal, rows: Sequence[Mapping[int, Symbol]]) -> str:
-        """Return the warning about a literal that matches no fact, with similar names.
+        """Return the warning about a literal that matches no fact.
 
-        ``rows`` are its combinations of values.
+        ``rows`` are its combinations of values. The warning says that an argument has the wrong type, that no
+        unit or node has a number, or which similar texts a fact has.
         """
         name, columns = literal.signature[0], COLUMNS[literal.signature]
         variables = {
@@ -294,7 +305,7 @@ def _literals_with_scope(
 ) -> Iterator[tuple[Literal, tuple[Conjunct, ...]]]:
     """Yield the literals in conjuncts of a body, each with the conjuncts of the condition around it.
 
-    A literal outside conditions comes with ``scope``.
+    A literal outside conditions comes with ``scope`` instead.
     """
     for conjunct in conjuncts:
         if isinstance(conjunct, Literal):
@@ -329,7 +340,7 @@ def _symbol_text(symbol: Symbol) -> str:
 
 
 def _literal_text(literal: Literal, arguments: Mapping[int, str]) -> str:
-    """Return a literal without its ``not``, with arguments replaced by position."""
+    """Return a literal without its ``not``; ``arguments`` replace those at the same positions."""
     shown = [arguments.get(position, str(argument)) for position, argument in enumerate(literal.arguments)]
     return f"{literal.signature[0]}({','.join(shown)})"
 

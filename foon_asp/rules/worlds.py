@@ -10,8 +10,9 @@ from foon_asp.rules.clause import Signature
 class Worlds(Transformer):
     """Rewriter that adds a world as first argument to predicates that differ from world to world.
 
-    ``dependent`` are these predicates; their names get a ``prefix``. ``world`` is a variable that no rule
-    has.
+    A world stands for one unit, and rules in it see no other unit. ``dependent`` are the predicates to
+    change; their names get a ``prefix``. ``world`` is a variable that no rule has. Atoms with a minus are not
+    changed.
     """
 
     def __init__(self, dependent: Collection[Signature], world: str, prefix: str = "_") -> None:

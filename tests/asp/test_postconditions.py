@@ -46,7 +46,7 @@ def break_wanted_product(patch: pytest.MonkeyPatch) -> None:
 
 def break_models(patch: pytest.MonkeyPatch) -> None:
     """Read other units out of clingo's answers than it used."""
-    patch.setattr("foon_asp.encoding.ground_program._used", lambda _: frozenset({0, 1}))
+    patch.setattr("foon_asp.encoding.ground_program._used_units", lambda _: frozenset({0, 1}))
 
 
 def break_costs(patch: pytest.MonkeyPatch) -> None:
