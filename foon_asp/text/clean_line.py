@@ -21,10 +21,10 @@ _LABEL = re.compile(r' *[^ ";\t\r\n\[\]{}][^;\t\r\n\[\]{}]*')
 
 
 def clean_line(text: str) -> Line | None:
-    """Return the parsed line of a text without line end, or ``None`` where the parser has to read it.
+    """Return the parsed line of a text without line end, or ``None`` if the parser has to read it.
 
-    ``None`` also stands for faulty lines. Only slips in ingredients, and a space for the tab before a
-    bracket, are read here; the line then has remarks.
+    The parser has to read lines with faults and with most slips. Slips in ingredients, and a space for the
+    tab before a bracket, are read here; the line then has remarks.
     """
     if match := _STATE_LINE.fullmatch(text):
         return _matched_state_line(match)
@@ -38,7 +38,10 @@ def clean_line(text: str) -> Line | None:
 
 
 def clean_node(notation: str) -> ObjectNode | None:
-    """Return the node of a notation that is a label alone, without quotes; ``None`` for another notation."""
+    """Return the node of a one-line notation that is a label alone, without quotes.
+
+    Return ``None`` for any other notation.
+    """
     return ObjectNode(notation.strip(" ")) if _LABEL.fullmatch(notation) else None
 
 
@@ -63,7 +66,7 @@ def no_tab_remark(bracket: str, column: int) -> Remark:
 
 
 def split_ingredients(listed: str, column: int, remarks: list[Remark]) -> tuple[str, ...]:
-    """Return the ingredients between brackets, split at commas, without spaces around them.
+    """Return the ingredients in ``listed``, a text between brackets: split at commas, without spaces around.
 
     Empty ingredients are left out, repeated ones stay. ``column`` is that of the first letter of ``listed``.
     Adds to ``remarks`` at most one remark each on empty, on spaced and on repeated ingredients.

@@ -59,7 +59,7 @@ class JsonList:
         self.errors.append(Diagnostic(Severity.ERROR, "json", message, source, excerpt))
 
     def position_of(self, offset: int) -> Source:
-        """Return the line and column, from 1, of an offset in the text; fastest for ascending offsets."""
+        """Return the source of an offset in the text, with line and column; fastest for ascending offsets."""
         if offset < self._counted:
             self._line, self._counted = 1, 0
         self._line += self._text.count("\n", self._counted, offset)
@@ -230,8 +230,8 @@ class JsonFault(NamedTuple):
 def json_fault(error: json.JSONDecodeError) -> JsonFault:
     """Return the fault that the standard library found in a JSON text.
 
-    A comma before the end of a list or an object is reported at the comma, since Python versions report
-    different places.
+    A comma before the end of a list or an object is reported at the comma in words of our own, since Python
+    versions report different places.
     """
     text, offset, message = error.doc, error.pos, error.msg
     start = offset

@@ -27,10 +27,10 @@ def find_goal(
     listed: Sequence[ListedObject] = (),
     wording: Wording = GOAL,
 ) -> int:
-    """Return the id of the object node that a goal names.
+    """Return the id of the object node that a goal names in ``names``, which is a network or a store.
 
-    A name is tried in this order: as the one-line notation of a node (``sweet potato; chopped; in [cutting
-    board]``); as the label of an entry of the goals file ``listed``; as the label of a single node.
+    The name is tried in this order: as the one-line notation of a node (``sweet potato; chopped; in [cutting
+    board]``); as the label of an entry in ``listed``, the goals file; as the label of a single node.
 
     A text that is no notation, or the notation of no node, is also tried literally as a label. A label with
     a semicolon after it (``onion;``) is only tried as notation: it is the node without states. Raises
@@ -95,7 +95,8 @@ def nodes_beginning(start: str, names: NodeNames, max_nodes: int) -> list[int]:
 def entry_names(listed: Sequence[ListedObject], names: NodeNames) -> Iterator[str]:
     """Yield a name for each entry of a goals file, by which :func:`find_goal` finds the entry's node.
 
-    It is the label, or the notation of the node if the label also means another node.
+    It is the label, or the notation of the node if the label also means another node. An entry that does not
+    match exactly one node has its label.
     """
     counts = Counter(entry.pattern.label for entry in listed)
     for entry in listed:
