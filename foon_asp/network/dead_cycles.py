@@ -25,7 +25,7 @@ def dead_cycles(network: Network, available: Collection[int] = ()) -> list[DeadC
     """Return the dead cycles among nodes that are not ``available``, in time linear in the network.
 
     A node that a unit needs, such as the knife that chops, does not count as made by this unit. Nodes that no
-    unit makes count as available. If there is no dead cycle, every other node can be made.
+    unit makes count as available. If there is no dead cycle, all nodes are available or can be made.
 
     Algorithm: nodes that can be made are removed from each strongly connected component. The rest of the
     component falls into components of its own. Such a component is a dead cycle if it needs no other one.

@@ -29,10 +29,10 @@ class UnitDifference(NamedTuple):
 
     @property
     def is_slip(self) -> bool:
-        """Whether the two texts are spelled almost alike, so that one may be a typing error.
+        """Whether one of the two texts may be a typing error, since they are spelled almost alike.
 
-        If so, they are one letter apart, or differ only in doubled letters, capitals, blanks and punctuation.
-        If a text is empty, this is false.
+        They are if they differ by one letter, or only in doubled letters, capitals, blanks and punctuation.
+        An empty text is like no other.
         """
         return bool(self.left and self.right) and (
             one_letter_apart(self.left, self.right)
@@ -243,7 +243,7 @@ def _node_differences(node: ObjectNode, other: ObjectNode) -> tuple[UnitDifferen
 
 
 def _may_correspond(node: ObjectNode, other: ObjectNode, differences: Sequence[UnitDifference]) -> bool:
-    """Whether two nodes may be versions of one: they have the same label, or at most two differences."""
+    """Whether two nodes may be versions of one node: they have the same label, or at most two differences."""
     return node.label == other.label or len(differences) <= 2
 
 

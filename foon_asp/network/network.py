@@ -35,7 +35,7 @@ class Network:
 
     A network may be a part of a larger one, the whole network, that was not read in full. ``unit_numbers``
     and ``object_numbers`` then have the ids of its units and nodes in the whole network, in rising order.
-    Users are shown these ids. An empty tuple means that they are the same as here.
+    Users are shown these ids. An empty tuple means that the ids are the same in both networks.
 
     Example:
         >>> network = foon_asp.load().network

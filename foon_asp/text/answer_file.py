@@ -143,7 +143,10 @@ def _executions(value: Json) -> Iterator[tuple[FunctionalUnit, Source]]:
 
 
 def _unit(value: Json) -> tuple[FunctionalUnit, Source]:
-    """Return a unit and its first source from its JSON in an answer; other JSON raises various errors."""
+    """Return a unit and its first source from its JSON in an answer.
+
+    Other JSON raises the errors that :func:`read_listed_tree` catches.
+    """
     inputs, outputs = (tuple(map(read_node_json, value[key])) for key in ("inputs", "outputs"))
     source = value["source"][0]
     if not isinstance(value["motion"], str) or not isinstance(source, dict):

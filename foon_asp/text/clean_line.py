@@ -65,15 +65,17 @@ def no_tab_remark(bracket: str, column: int) -> Remark:
     return Remark(column, "space-for-tab", f"no tab before {bracket}; read as if there were one")
 
 
-def split_ingredients(listed: str, column: int, remarks: list[Remark]) -> tuple[str, ...]:
-    """Return the ingredients in ``listed``, a text between brackets: split at commas, without spaces around.
+def split_ingredients(text: str, column: int, remarks: list[Remark]) -> tuple[str, ...]:
+    """Return the ingredients in the text between brackets, split at commas and without spaces around them.
 
-    Empty ingredients are left out, repeated ones stay. ``column`` is that of the first letter of ``listed``.
+    Empty ingredients are left out, repeated ones stay. ``column`` is that of the first letter of the text.
     Adds to ``remarks`` at most one remark each on empty, on spaced and on repeated ingredients.
     """
-    split = listed.split(",")
-    if len(set(split)) == len(split) and all(item and item[0] != " " != item[-1] for item in split):
-        return tuple(split)
+    raw_items = text.split(",")
+    if len(set(raw_items)) == len(raw_items) and all(
+        item and item[0] != " " != item[-1] for item in raw_items
+    ):
+        return tuple(raw_items)
     kept: list[str] = []
     seen: set[str] = set()
     remarked: set[str] = set()
@@ -84,16 +86,16 @@ def split_ingredients(listed: str, column: int, remarks: list[Remark]) -> tuple[
             remarks.append(Remark(column, code, message))
             remarked.add(code)
 
-    for raw in split:
-        item = raw.strip(" ")
+    for raw_item in raw_items:
+        item = raw_item.strip(" ")
         if not item:
             add_remark("empty-ingredient", "empty ingredient left out")
         else:
-            if item != raw:
+            if item != raw_item:
                 add_remark("outer-space", f"spaces around {item!r} left out")
             if item in seen:
                 add_remark("repeated-ingredient", f"ingredient {item!r} is listed twice")
             kept.append(item)
             seen.add(item)
-        column += len(raw) + 1
+        column += len(raw_item) + 1
     return tuple(kept)

@@ -64,7 +64,8 @@ class Converter:
     def learn(self, text: str) -> None:
         """Record the ids in a text that will be converted: equal names get them, and new ids differ.
 
-        Does nothing unless the target is the dialect ``ids``.
+        Has to be called with all texts before the first one is converted. Does nothing unless the target is
+        the dialect ``ids``.
         """
         if self.target is Dialect.IDS:
             for line in format_of(text).lines(text):
@@ -101,7 +102,7 @@ class Converter:
         losses_by_line: dict[str, list[Loss]] = {}
 
         def rewrite(line: Line, written: str) -> str:
-            """Return a line as the target writes it, and record its losses under the text that it had."""
+            """Return a line as the target writes it, and record its losses under its old text ``written``."""
             target_line = writer.in_dialect(line)
             losses_by_line[written] = lost_in_line(line, target_line)
             return write_line(target_line)

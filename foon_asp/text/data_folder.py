@@ -72,7 +72,7 @@ class Data(NamedTuple):
     ``warnings``: the assumptions made while reading.
     ``left_out``: the number of lines that were left out.
     ``unit_prices``: the prices of units; ``None`` without any price.
-    ``starting``: whether the kitchen is the starting kitchen; it is without a kitchen file.
+    ``starting``: true if the kitchen is the starting kitchen.
     ``goals_from``: empty if a file lists the goals; *marked* if they are the nodes marked with ``!`` in the
     network; *last* if they are outputs of the last unit of each file.
     ``repeated``: the nodes that a unit lists twice.

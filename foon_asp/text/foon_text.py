@@ -50,7 +50,7 @@ class FoonText(Format):
         return dialect
 
     def lists_objects(self, text: str) -> bool:
-        """Whether there are object lines and no motion lines."""
+        """Whether the text has object lines and no motion lines."""
         starts = {line[:1] for line in split_lines(text)}
         return "O" in starts and "M" not in starts
 
@@ -59,7 +59,10 @@ class FoonText(Format):
         return TextUnits(text_pieces(file, self.piece_letters), str(file), reading).units()
 
     def units(self, text: str, file: str, reading: Reading) -> Iterator[ReadUnit]:
-        """Yield the units of a text in order; a node that a unit lists twice counts once."""
+        """Yield the units of a text in order, without their lines but with their amounts.
+
+        A node that a unit lists twice counts once, with the greatest of its amounts.
+        """
         return _text_units(text, file, reading).units()
 
     def listed_units(self, text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:

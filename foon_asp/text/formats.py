@@ -16,7 +16,7 @@ FORMATS: Final[tuple[Format, ...]] = (SideTable(), NEUTRAL, JSON, TEXT)
 
 
 def format_of(text: str, file: str = "") -> Format:
-    """Return the first format that recognises a text, by its beginning or by the name ``file`` of its file."""
+    """Return the first format that recognises a text, by its beginning or by the name of its ``file``."""
     return next(format_ for format_ in FORMATS if format_.recognises(text, file))
 
 

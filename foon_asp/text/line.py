@@ -135,7 +135,7 @@ def line_names(line: Line) -> Iterator[Mention]:
 class LineError(Exception):
     """A text that the grammar does not accept: the column (from 1), what was found, and what was expected.
 
-    ``advice`` is a correction that is added to the message; empty for none.
+    ``advice`` is a correction that is added to the message, or empty.
     """
 
     def __init__(self, column: int, found: str, expected: tuple[str, ...], advice: str = "") -> None:
