@@ -64,7 +64,7 @@ class ObjectLine(NamedTuple):
 
     @property
     def category(self) -> str | None:
-        """The recipe category of a goal, which is a number; ``None`` for a line without one."""
+        """The recipe category of a goal, a number other than ``00`` and ``01``; ``None`` without one."""
         fields = self.fields if self.motion_flag is None else self.fields[1:]
         return next((field for field in fields if is_number(field) and field not in SLIPPED_FLAGS), None)
 

@@ -34,9 +34,9 @@ def find_goal(
     node.
 
     A text that is no notation, or the notation of no node, is also tried literally as a label. A label with
-    a semicolon after it (``onion;``) is only tried as notation: it is the node without states. Raises
-    :class:`GoalError` with candidates ready to paste if the name is unknown or means several nodes.
-    ``wording`` has the words for a goal in messages.
+    a semicolon after it (``onion;``) is only tried as notation: it is the node without states. Notation is
+    reduced to the level of ``names``. Raises :class:`GoalError` with candidates ready to paste if the name is
+    unknown or means several nodes. ``wording`` has the words for a goal in messages.
     """
     parsed_name: str | ObjectNode = name
     fault = None

@@ -125,6 +125,9 @@ class FoonReader(Reading):
         Parameters:
             file: The path of the file.
             content: Its bytes, if they are known; ``None`` to read the file.
+
+        Raises:
+            UserError: if the file cannot be read, or is a store.
         """
         try:
             return read_plain_text(file) if content is None else plain_text(content, file)

@@ -176,7 +176,8 @@ class TextUnits:
         """Yield the units of a chunk, read line by line; remarks and faults are recorded.
 
         A chunk has several units where blanks stand behind ``//``. ``last`` is true for the last chunk of a
-        file. Videos that comments name are those of the units after them.
+        file; a unit without ``//`` at its end then causes a warning. Lines ``# Source:`` name the videos of
+        all units up to the next such lines.
         """
         self._lines = lines = chunk.split("\n")
         start = 0
