@@ -129,7 +129,8 @@ class StandInTable(NamedTuple):
         """Yield the edits between two nodes: kind, part of the served node, part of the serving one, price.
 
         The price is ``None`` if the edit is never allowed. If the table has the pair of nodes, this is the
-        only edit.
+        only edit. Different labels whose pair the table lacks are an edit of spelling if they are spelled
+        alike; otherwise they are never allowed.
         """
         if (serving, served) in self.pairs:
             yield Edit.NODE, str(served), str(serving), self.pairs[serving, served]

@@ -161,8 +161,8 @@ def kitchen_file(folder: Path) -> Path | None:
 def network_files(path: Path) -> list[Path]:
     """Return the network files of a folder; for a path that is no folder, return the path itself.
 
-    These are ``FOON.txt`` alone, or without it all files that may be networks, sorted by name; kitchens, goals
-    and tables are none. Raises :class:`UserError` for a folder without a network.
+    These are ``FOON.txt`` alone, or without it all files that may be networks, by name. Kitchens, goals
+    and tables are left out. Raises :class:`UserError` for a folder without a network.
     """
     if not path.is_dir():
         return [path]

@@ -78,7 +78,8 @@ class JsonList:
     def _elements_under_key(self, position: int) -> Iterator[tuple[int, object]]:
         """Yield the elements of the list under the key; values of other keys go to ``others``.
 
-        ``position`` is the one after the opening bracket of the object.
+        ``position`` is the one after the opening bracket of the object. Raises :class:`JsonFaultError` for a
+        fault, also for an object without the key.
         """
         seen: set[str] = set()
         position = self._skip_blanks(position)

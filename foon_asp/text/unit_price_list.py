@@ -71,7 +71,7 @@ def _node_field(node: ObjectNode) -> str:
 
 
 def _parse_unit(motion: str, fields: list[str], column: int) -> FunctionalUnit:
-    """Return the unit of a motion whose ``fields`` are its inputs, an arrow and its outputs.
+    """Return the unit of a motion whose ``fields`` are one or more inputs, an arrow, and any outputs.
 
     ``column`` is where the fields begin. Raises :class:`LineError` at a fault.
     """
