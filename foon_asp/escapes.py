@@ -1,7 +1,7 @@
 """Escaped text: terminals and logs receive only harmless characters, whatever names contain.
 
-Other characters become a JSON escape (a backslash, ``u`` and four digits). So an escaped JSON text is JSON
-with the same value.
+Unsafe characters, such as control characters and marks of writing direction, become a JSON escape: a
+backslash, ``u`` and four digits. So an escaped JSON text is JSON with the same value.
 """
 
 import re
@@ -22,14 +22,16 @@ _COMMAND = r"(?m)^([^\S\n]*):(?=:)|#(?=#(?:\[|vso\[))"
 
 
 def escaped(name: str) -> str:
-    """Return a name with escapes for unsafe characters, line ends and tabs, to be shown within a line."""
+    """Return a name that can be shown within a line: unsafe characters, line ends and tabs are escaped."""
     return re.sub(_IN_A_LINE, _escape_match, name)
 
 
 def escaped_lines(text: str, styled: bool = False) -> str:
-    """Return a text of several lines with escapes for unsafe characters and for commands of build logs.
+    """Return a text of several lines with escapes for unsafe characters; line ends and tabs stay.
 
-    Line ends and tabs stay. A ``styled`` text keeps its escape sequences, such as colours.
+    A command of build logs, such as ``::error::`` or ``##[error]``, gets an escape within its beginning, so
+    that no log obeys it. A ``styled`` text keeps escape characters, for its colours, and carriage returns
+    before escape characters.
     """
     shown = re.sub(_UNSAFE_BUT_ESCAPE, _escape_match, text) if styled else UNSAFE.sub(_escape_match, text)
     return re.sub(_COMMAND, _without_command, shown) if "::" in shown or "##" in shown else shown
@@ -38,7 +40,7 @@ def escaped_lines(text: str, styled: bool = False) -> str:
 def encodable(text: str, encoding: str = "utf-8") -> str:
     """Return a text with escapes for the letters that an encoding does not have.
 
-    For an unknown encoding, this is ASCII.
+    An unknown encoding is taken for ASCII.
     """
     try:
         text.encode(encoding)
@@ -64,14 +66,14 @@ def _escape_match(match: re.Match[str]) -> str:
 
 
 def _without_command(match: re.Match[str]) -> str:
-    """Return a matched beginning of a command, with an escape for its last letter."""
+    """Return a match of ``_COMMAND``, the beginning of a command, with an escape for its last letter."""
     return f"{match[1] or ''}{_escape_of(match[0][-1])}"
 
 
 def _escape_of(letter: str) -> str:
-    r"""Return the JSON escape of a letter: ``\u200b``; a letter beyond 0xFFFF has two, of its halves."""
-    number = ord(letter)
-    if number > 0xFFFF:  # two halves, as in JSON
-        number -= 0x10000
-        return f"\\u{0xD800 + (number >> 10):04x}\\u{0xDC00 + (number & 0x3FF):04x}"
-    return f"\\u{number:04x}"
+    r"""Return the JSON escape of a letter: ``\u200b``; a letter beyond 0xFFFF has two, a surrogate pair."""
+    code_point = ord(letter)
+    if code_point > 0xFFFF:
+        code_point -= 0x10000
+        return f"\\u{0xD800 + (code_point >> 10):04x}\\u{0xDC00 + (code_point & 0x3FF):04x}"
+    return f"\\u{code_point:04x}"

@@ -10,7 +10,10 @@ from foon_asp.warning import warn
 
 
 def copy_permissions(old_status: os.stat_result, file: Path) -> None:
-    """Set permissions of a file to those in ``old_status``, and owner and group where this is allowed."""
+    """Set the permissions of a file to those in ``old_status``, and its owner and group where allowed.
+
+    If the owner may not be set, the group alone is set, where allowed.
+    """
     new_status = file.stat()
     if (old_status.st_uid, old_status.st_gid) != (new_status.st_uid, new_status.st_gid):
         try:
@@ -22,7 +25,7 @@ def copy_permissions(old_status: os.stat_result, file: Path) -> None:
 
 
 def warn_of_replaced(file: Path, old_status: os.stat_result) -> None:
-    """Warn if a replaced file had other names (hard links), or another owner than the new file has.
+    """Warn if a replaced file had other names (hard links), or another owner than the new ``file`` has.
 
     ``old_status`` is the status of the replaced file.
     """

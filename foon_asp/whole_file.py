@@ -21,13 +21,14 @@ _PARTIAL = re.compile(r"\.foon-asp\.[0-9a-f]{16}")
 
 
 def write_whole(file: Path, content: bytes) -> None:
-    """Replace the content of a file, completely or not at all: after a failure, the file is unchanged.
+    """Make a file or replace its content, completely or not at all: after a failure, the file is unchanged.
 
     A new file is written beside the old one and renamed. It gets the permissions of the old one, and its
-    owner where that is allowed. A write-protected file is not replaced. Where the path is a link, the linked
-    file is written. Of a file with several names (hard links), only this name gets the new content, with a
-    warning. A pipe or device is written to directly. Raises :class:`UserError` where the file cannot be
-    written.
+    owner where that is allowed. If the path is a symbolic link, the linked file is replaced. A pipe or device
+    is written to directly.
+
+    Warns if the file has other names (hard links), which keep the old content, or if its owner changes.
+    Raises :class:`UserError` where the file cannot be written, for example if it is write-protected.
     """
     try:
         if file.exists() and not file.is_file():
@@ -42,11 +43,11 @@ def write_whole(file: Path, content: bytes) -> None:
 
 
 def write_all_whole(contents: Mapping[Path, bytes]) -> None:
-    """Replace the contents of several files; if one cannot be written, none is changed.
+    """Replace the contents of several files, which all have to exist; if one cannot be written, none changes.
 
-    All new files are written beside the old ones before the first is renamed. After an error, which is
-    raised as :class:`UserError`, and after ctrl-C, all files are as before. If the process is killed in the
-    middle, each file is the old one or the new one.
+    All new files are written beside the old ones before the first is renamed. After an error or ctrl-C, all
+    files have their old content. If the process is killed in the middle, each file has its old or its new
+    content. Warns as :func:`write_whole` does. Raises :class:`UserError` where a file cannot be written.
     """
     old_contents: dict[Path, bytes] = {}
     try:
@@ -72,7 +73,7 @@ def write_all_whole(contents: Mapping[Path, bytes]) -> None:
 def utf_8(text: str) -> bytes:
     """Return the bytes of a text in UTF-8.
 
-    Raises :class:`UserError` for half of a surrogate pair, which UTF-8 cannot hold.
+    Raises :class:`UserError`, with the line, for half of a surrogate pair, which UTF-8 cannot hold.
     """
     try:
         return text.encode()
@@ -93,11 +94,12 @@ def _replace(target: Path, content: bytes) -> None:
 
 @contextlib.contextmanager
 def _staged_file(target: Path, content: bytes) -> Iterator[Path]:
-    """Return a context with the path of a new file beside the target, for the caller to rename.
+    """Return a context with the path of a new file beside the target; the caller renames it to the target.
 
-    Files that killed processes left in the folder are removed before. The new file is removed at the end if
-    it was not renamed. Raises :class:`OSError` for a target that may not be written. Warns if the replaced
-    file had other names or another owner.
+    The file has the content, and the permissions of the target. At first, temporary files that killed
+    processes left in the folder are removed. At the end, the new file is removed if it was not renamed, and
+    a replaced file with other names or another owner is warned of. Raises :class:`OSError` for a target that
+    may not be written.
     """
     old_status = None
     if target.exists():
@@ -123,20 +125,23 @@ def _staged_file(target: Path, content: bytes) -> Iterator[Path]:
 
 
 def _create_locked_file(folder: Path) -> tuple[Path, BinaryIO]:
-    """Return the path of a new file with an unused name, and the open file, which is locked until closed."""
+    """Return the path of a new file with an unused name, and the open file.
+
+    The file is locked until it is closed, where files can be locked.
+    """
     while True:
         partial = folder / f".foon-asp.{os.urandom(8).hex()}"
         partial_file = partial.open("xb")
         if _try_lock(partial_file.fileno(), otherwise=True) and partial.exists():
             return partial, partial_file
-        partial_file.close()  # before it was locked, another process took it for left over
+        partial_file.close()  # before the lock, another process took the file for a leftover
 
 
 @functools.cache  # once for each folder: fmt writes many files
 def _remove_leftovers(folder: Path) -> None:
     """Remove the temporary files in a folder that no process has locked: their processes were killed.
 
-    Does nothing when it is called again with the same folder. Errors are ignored.
+    A second call with the same folder does nothing. Errors are ignored.
     """
     with contextlib.suppress(OSError):
         for name in filter(_PARTIAL.fullmatch, os.listdir(folder)):
@@ -145,7 +150,10 @@ def _remove_leftovers(folder: Path) -> None:
 
 
 def _remove_unlocked(file: Path) -> None:
-    """Remove a temporary file unless another process, which writes it, has locked it."""
+    """Remove a temporary file, unless another process is writing it and so has locked it.
+
+    If files cannot be locked, or if this is no regular file, it stays.
+    """
     descriptor = os.open(file, os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0))
     try:
         if stat.S_ISREG(os.fstat(descriptor).st_mode) and _try_lock(descriptor, otherwise=False):
@@ -155,9 +163,9 @@ def _remove_unlocked(file: Path) -> None:
 
 
 def _try_lock(descriptor: int, otherwise: bool) -> bool:
-    """Lock an open file, given by its descriptor, and return whether it is locked now.
+    """Lock an open file, given by its descriptor, and return whether this succeeded.
 
-    Returns ``otherwise`` where files cannot be locked.
+    Return ``False`` if another process has locked it, and ``otherwise`` where files cannot be locked.
     """
     if fcntl is None:
         return otherwise

@@ -135,8 +135,7 @@ def _summary(renaming: Renaming, files: int, written: bool) -> str:
     kind, old, new = renaming.rename
     mentions = f"{counted(renaming.mentions, 'mention')} in {counted(files, 'file')}"
     text = f"the {kind} {old!r} becomes {new!r}: {mentions}"
-    if renaming.already:
-        text += (
-            f"; {new!r} stood there {counted(renaming.already, 'time')} already, and both are one name now"
-        )
+    if renaming.new_mentions:
+        times = counted(renaming.new_mentions, "time")
+        text += f"; {new!r} stood there {times} already, and both are one name now"
     return f"{text}; written" if written else f"{text}; -y writes it"

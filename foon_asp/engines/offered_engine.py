@@ -56,5 +56,5 @@ def _validate_reply(
         raise offer.fault(
             f"looked at {optimized!r}, expected the first of {', '.join(objectives)}, or more of them"
         )
-    tree = None if units is None else offer.units(units, len(problem.network))
+    tree = None if units is None else offer.tree_of_reply(units, len(problem.network))
     return EngineAnswer(offer.name, objectives[: len(optimized)], tree, finished)

@@ -11,9 +11,10 @@ from foon_asp.network.graph import cycles
 class DeadCycle(NamedTuple):
     """A set of object nodes, each made only by units that need a node of the set.
 
-    ``nodes`` are the ids of the set. ``steps`` are a shortest cycle in it, which begins with the node that
-    the earliest unit needs. Each step is the id of a node and the id of a unit that needs the node. The unit
-    makes the node of the next step; the last unit makes the node of the first step.
+    ``nodes`` are the ids of the set. ``steps`` are a shortest cycle through one of them. The cycle begins
+    with an input of the unit with the lowest id that makes a node of the set. Each step is the id of a node
+    and the id of a unit that needs the node. The unit makes the node of the next step; the last unit makes
+    the node of the first step.
     """
 
     steps: tuple[tuple[int, int], ...]
@@ -24,7 +25,7 @@ def dead_cycles(network: Network, available: Collection[int] = ()) -> list[DeadC
     """Return the dead cycles among nodes that are not ``available``, in time linear in the network.
 
     A node that a unit needs, such as the knife that chops, does not count as made by this unit. Nodes that no
-    unit makes count as available. If there is no dead cycle, every node can be made.
+    unit makes count as available. If there is no dead cycle, all nodes are available or can be made.
 
     Algorithm: nodes that can be made are removed from each strongly connected component. The rest of the
     component falls into components of its own. Such a component is a dead cycle if it needs no other one.
@@ -64,7 +65,7 @@ def dead_cycles(network: Network, available: Collection[int] = ()) -> list[DeadC
 
 
 def _components(network: Network, made: list[tuple[int, ...]], nodes: Collection[int]) -> dict[int, int]:
-    """Map each node on a cycle to the number of its strongly connected component.
+    """Map each node on a cycle to the number of its strongly connected component, from 0.
 
     Only ``nodes`` and the edges between them count. ``made`` has for each unit the nodes that it makes and
     does not need.
@@ -78,9 +79,10 @@ def _components(network: Network, made: list[tuple[int, ...]], nodes: Collection
 
 
 def _dead_nodes(network: Network, made: list[tuple[int, ...]], component: dict[int, int]) -> set[int]:
-    """Return the nodes that cannot be made even if all nodes outside of their component are available.
+    """Return the nodes on cycles that cannot be made, even if all nodes of other components are available.
 
-    ``component`` maps each node on a cycle to the number of its component.
+    ``made`` has for each unit the nodes that it makes and does not need. ``component`` maps each node on a
+    cycle to the number of its component.
     """
     lacking: dict[tuple[int, int], int] = {}  # inputs that a unit lacks, within a component of its outputs
     for unit, outputs in enumerate(made):
@@ -106,10 +108,11 @@ def _dead_nodes(network: Network, made: list[tuple[int, ...]], component: dict[i
 def _shortest_cycle(
     network: Network, made: list[tuple[int, ...]], nodes: frozenset[int], producers: list[int]
 ) -> DeadCycle:
-    """Return the dead cycle of strongly connected ``nodes``, with a shortest cycle as its steps.
+    """Return the dead cycle of strongly connected ``nodes``, with a shortest cycle through one as its steps.
 
-    ``producers`` are the units that make a node of the set, in order. The cycle is found by breadth-first
-    search from the node that the first of them needs.
+    ``producers`` are the units that make a node of the set, in rising order. The cycle is found by
+    breadth-first search from the first input of the first producer that is in the set. ``made`` has for each
+    unit the nodes that it makes and does not need.
     """
     consumers: dict[int, list[int]] = {}
     for unit in producers:

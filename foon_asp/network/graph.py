@@ -8,11 +8,11 @@ UNREACHED = -1
 
 
 def layers(network: Network, start: Iterable[int]) -> tuple[list[int], list[int]]:
-    """Return the layers of all object nodes and of all units, by id; the nodes ``start`` are available.
+    """Return two lists by id: the layer of each object node, and the layer of each unit.
 
-    A node of ``start`` is in layer 0. A unit is one layer above the highest of its inputs, and in layer 1 if
-    it has none. Any other node is in the layer of the lowest unit that makes it. The layer of what cannot be
-    reached is ``UNREACHED``.
+    The nodes ``start`` are available and in layer 0. A unit is one layer above the highest of its inputs, and
+    in layer 1 if it has none. Any other node is in the layer of the lowest unit that makes it. The layer of a
+    node or unit that cannot be reached is ``UNREACHED``.
     """
     node_layer = [UNREACHED] * len(network.objects)
     unit_layer = [UNREACHED] * len(network)
@@ -65,9 +65,9 @@ def cycles(network: Network) -> list[list[int]]:
         stack.append(root)
         on_stack[root] = 1
         while path:
-            vertex, edges = path[-1]
-            for edge in edges:
-                target = edge + size if vertex < size else edge
+            vertex, neighbours = path[-1]
+            for neighbour in neighbours:
+                target = neighbour + size if vertex < size else neighbour
                 if not index[target]:
                     counter += 1
                     index[target] = low[target] = counter
@@ -96,11 +96,14 @@ def cycles(network: Network) -> list[list[int]]:
 
 
 def component_sizes(network: Network) -> list[int]:
-    """Return the number of units of each connected component, largest first (union-find)."""
+    """Return the number of units of each connected component, largest first, by union-find.
+
+    Units are connected if they share an object node.
+    """
     parent = list(range(len(network.objects)))
 
     def root(node: int) -> int:
-        """Return the representative node of a component, and shorten the path to it."""
+        """Return the node that represents the component of a node, and shorten the path to it."""
         while parent[node] != node:
             parent[node] = parent[parent[node]]
             node = parent[node]

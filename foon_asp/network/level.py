@@ -25,7 +25,10 @@ def node_at_level(node: ObjectNode, level: int) -> ObjectNode:
 
 
 def unit_at_level(unit: FunctionalUnit, level: int) -> FunctionalUnit:
-    """Return a unit whose nodes are reduced to a level; nodes that are then equal are listed once."""
+    """Return a unit whose nodes are reduced to a level; equal nodes of one side are then listed once.
+
+    At level 3, return it unchanged.
+    """
     if level == 3:
         return unit
     inputs, outputs = (
@@ -37,7 +40,7 @@ def unit_at_level(unit: FunctionalUnit, level: int) -> FunctionalUnit:
 def pattern_at_level(pattern: NodePattern, level: int) -> NodePattern:
     """Return an entry of a kitchen or goals file with only the parts that count at a level.
 
-    At level 2 it has no contents, at level 1 its label alone. At level 3, return it unchanged.
+    At level 2 it has no ingredients and contents, at level 1 its label alone. At level 3 it is unchanged.
     """
     if level == 3:
         return pattern

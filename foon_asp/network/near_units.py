@@ -14,12 +14,12 @@ _NodePart = tuple[str, str]
 class UnitDifference(NamedTuple):
     """A difference of two units, listed once even if it occurs in several nodes.
 
-    ``kind`` is motion, label, state, relation, ingredient, input or output. ``left`` and ``right`` are the
-    different texts of the first and the second unit; a text is empty if its unit has no counterpart. For
-    input and output, they are whole object nodes in one-line notation.
+    ``kind`` is motion, label, state, relation, ingredient, input or output. ``left`` is the text in the first
+    unit, and ``right`` the text in the second unit. A text is empty if its unit has no counterpart. For input
+    and output, the texts are whole object nodes in one-line notation.
 
-    ``of`` is the label of the first object with the difference. It is empty for the kinds motion, label,
-    input and output.
+    ``of`` is the label that the first unit has for the object with the difference. It is empty for the kinds
+    motion, label, input and output.
     """
 
     kind: str
@@ -29,10 +29,10 @@ class UnitDifference(NamedTuple):
 
     @property
     def is_slip(self) -> bool:
-        """Whether the two texts are spelled almost alike, so that one may be a typing error.
+        """Whether one of the two texts may be a typing error, since they are spelled almost alike.
 
-        They are one letter apart, or differ only in doubled letters, capitals, blanks and the like. Neither
-        is empty.
+        They are if they differ by one letter, or only in doubled letters, capitals, blanks and punctuation.
+        An empty text is like no other.
         """
         return bool(self.left and self.right) and (
             one_letter_apart(self.left, self.right)
@@ -51,8 +51,10 @@ class NearUnits(NamedTuple):
 def unit_differences(left: FunctionalUnit, right: FunctionalUnit) -> tuple[UnitDifference, ...]:
     """Return the differences of two units, each once.
 
-    Different nodes of one side are paired greedily, those with the fewest differences first. A node without a
-    partner is a difference as a whole. A different label is not listed again as a container or an ingredient.
+    Nodes that only one unit has are paired greedily with nodes of the same side of the other unit, those with
+    the fewest differences first. Paired nodes have the same label or at most two differences. A node without
+    a partner is a difference as a whole. A different label is not listed again as a container or an
+    ingredient.
     """
     differences: list[UnitDifference] = []
     if left.motion != right.motion:
@@ -65,14 +67,14 @@ def unit_differences(left: FunctionalUnit, right: FunctionalUnit) -> tuple[UnitD
         )
         ranked_pairs = sorted(
             (
-                len(pair_differences := _node_differences(one, other)),
-                one.label != other.label,
+                len(pair_differences := _node_differences(node, other_node)),
+                node.label != other_node.label,
                 i,
                 j,
                 pair_differences,
             )
-            for i, one in enumerate(unmatched)
-            for j, other in enumerate(other_unmatched)
+            for i, node in enumerate(unmatched)
+            for j, other_node in enumerate(other_unmatched)
         )
         paired: set[int] = set()
         other_paired: set[int] = set()
@@ -106,10 +108,11 @@ def unit_differences(left: FunctionalUnit, right: FunctionalUnit) -> tuple[UnitD
 
 
 def nearest_units(left: Iterable[FunctionalUnit], right: Iterable[FunctionalUnit]) -> list[NearUnits]:
-    """Return pairs of nearly equal units, one of each list, those with the fewest differences first.
+    """Return pairs of equal or nearly equal units, one of each list, those with the fewest differences first.
 
     Each unit is in at most one pair. The units of a pair have at most three differences, and more than half
-    of their features in common (:func:`_features`). They share a rare key (:func:`_candidate_indices`).
+    of their features in common (:func:`_features`). The right one is among the candidates for the left one
+    (:func:`_candidate_indices`).
     """
     lefts, rights = list(left), list(right)
     candidates = _candidate_indices(lefts, rights)
@@ -135,17 +138,18 @@ def units_with_one_difference(units: Iterable[FunctionalUnit]) -> list[NearUnits
 
     It is a difference of motion, state or relation, or of two names that are spelled almost alike. Quite
     different labels are taken to be intended. Both units have equally many inputs and equally many outputs.
+    The later unit is among the candidates for the earlier one (:func:`_candidate_indices`).
     """
-    listed = list(units)
+    all_units = list(units)
     pairs = []
-    for i, others in enumerate(_candidate_indices(listed, listed)):
-        for j in sorted(others):
-            one, other = listed[i], listed[j]
-            same_sizes = len(one.inputs) == len(other.inputs) and len(one.outputs) == len(other.outputs)
-            if i < j and same_sizes and len(differences := unit_differences(one, other)) == 1:
-                (only,) = differences
-                if only.kind in {"motion", "state", "relation"} or only.is_slip:
-                    pairs.append(NearUnits(one, other, differences))
+    for i, candidates in enumerate(_candidate_indices(all_units, all_units)):
+        for j in sorted(candidates):
+            unit, other = all_units[i], all_units[j]
+            same_sizes = len(unit.inputs) == len(other.inputs) and len(unit.outputs) == len(other.outputs)
+            if i < j and same_sizes and len(differences := unit_differences(unit, other)) == 1:
+                (difference,) = differences
+                if difference.kind in {"motion", "state", "relation"} or difference.is_slip:
+                    pairs.append(NearUnits(unit, other, differences))
     return pairs
 
 
@@ -157,8 +161,8 @@ def _candidate_indices(
 ) -> list[list[int]]:
     """Return for each unit of ``lefts`` the indices of up to ``max_candidates`` similar units of ``rights``.
 
-    These share the most rare keys with the unit (:func:`_index_keys`), most similar first. A key is rare if
-    at most ``max_sharing`` units of ``rights`` have it.
+    Units are similar if they share a rare key (:func:`_index_keys`); those that share the most come first. A
+    key is rare if at most ``max_sharing`` units of ``rights`` have it.
     """
     by_key: defaultdict[object, list[int]] = defaultdict(list)
     for j, unit in enumerate(rights):
@@ -166,12 +170,12 @@ def _candidate_indices(
             by_key[key].append(j)
     candidates = []
     for unit in lefts:
-        shared: Counter[int] = Counter()
+        shared_keys: Counter[int] = Counter()  # by index of a unit of ``rights``: their number
         for key in _index_keys(unit):
-            others = by_key.get(key, ())
-            if len(others) <= max_sharing:
-                shared.update(others)
-        ranked = [j for j, _ in sorted(shared.items(), key=lambda counted: (-counted[1], counted[0]))]
+            indices = by_key.get(key, ())
+            if len(indices) <= max_sharing:
+                shared_keys.update(indices)
+        ranked = [j for j, _ in sorted(shared_keys.items(), key=lambda counted: (-counted[1], counted[0]))]
         candidates.append(ranked[:max_candidates])
     return candidates
 
@@ -191,13 +195,13 @@ def _index_keys(unit: FunctionalUnit) -> set[object]:
 
 
 def _mostly_agree(left: FunctionalUnit, right: FunctionalUnit) -> bool:
-    """Whether more than half of the features of two units are common to both."""
+    """Whether two units have more than half of their features in common, with repetitions."""
     features, other_features = Counter(_features(left)), Counter(_features(right))
     return 4 * (features & other_features).total() > features.total() + other_features.total()
 
 
 def _features(unit: FunctionalUnit) -> Iterator[object]:
-    """Yield the features of a unit: motion, and each part of each node with side and label of the node."""
+    """Yield the features of a unit: its motion, and each name in a node with side and label of the node."""
     yield unit.motion
     for side, nodes in enumerate((unit.inputs, unit.outputs)):
         for node in nodes:
@@ -239,10 +243,10 @@ def _node_differences(node: ObjectNode, other: ObjectNode) -> tuple[UnitDifferen
 
 
 def _may_correspond(node: ObjectNode, other: ObjectNode, differences: Sequence[UnitDifference]) -> bool:
-    """Whether two nodes may be versions of one: they have the same label, or at most two differences."""
+    """Whether two nodes may be versions of one node: they have the same label, or at most two differences."""
     return node.label == other.label or len(differences) <= 2
 
 
-def _related_object(part: str) -> str:
+def _related_object(text: str) -> str:
     """Return the object in the text of a relation, such as ``in [bowl]``; return other texts unchanged."""
-    return part.partition(" [")[2].rstrip("]") or part
+    return text.partition(" [")[2].rstrip("]") or text

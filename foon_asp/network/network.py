@@ -33,9 +33,9 @@ class Network:
     for the detailed units with the ids ``stands_for[u]``, and node ``o`` for the detailed nodes with the ids
     ``objects_stand_for[o]``.
 
-    A network may be a part of a larger one that was not read in full. ``unit_numbers`` and
-    ``object_numbers`` then have the ids of its units and nodes in the larger one, in rising order. Users are
-    shown these ids. Both are empty if the network is whole.
+    A network may be a part of a larger one, the whole network, that was not read in full. ``unit_numbers``
+    and ``object_numbers`` then have the ids of its units and nodes in the whole network, in rising order.
+    Users are shown these ids. An empty tuple means that the ids are the same in both networks.
 
     Example:
         >>> network = foon_asp.load().network
@@ -80,7 +80,9 @@ class Network:
         return map(self.unit, range(len(self)))
 
     def is_like(self, other: "Network") -> bool:
-        """Whether another network has the same nodes and units under the same ids, read at the same places.
+        """Whether another network has the same level, and the same nodes and units, ids and sources.
+
+        For parts of networks, the ids in the whole network have to be the same, too.
 
         Parameters:
             other: The other network.
@@ -94,8 +96,10 @@ class Network:
     def to_networkx(self) -> Any:
         """Return the network as a directed graph of the package networkx.
 
-        Object nodes are nodes with their parts as attributes; units are nodes ``("unit", id)``, with edges
-        from their inputs and to their outputs. ``kind`` is ``object`` or ``unit``.
+        Nodes of the graph are each :class:`ObjectNode`, and a pair ``("unit", id)`` for each unit. Edges lead
+        from the inputs of a unit to the unit, and from the unit to its outputs. The attribute ``kind`` is
+        ``object`` or ``unit``. Object nodes have the attributes ``id`` and ``label``, and lists ``states``,
+        ``relations`` and ``contents`` of texts; units have ``motion``. Ids are those of the whole network.
 
         Raises:
             ImportError: if networkx is not installed.
@@ -110,10 +114,15 @@ class Network:
             raise ImportError("a graph needs networkx: pip install 'foon-asp[notebook]'") from None
         graph = networkx.DiGraph()
         for o, node in enumerate(self.objects):
-            contents = [str(holding) for holding in node.contents]
-            parts = sorted(node.states), [str(relation) for relation in sorted(node.relations)], contents
-            attributes = dict(zip(("states", "relations", "contents"), parts, strict=True))
-            graph.add_node(node, kind="object", id=self.object_number(o), label=node.label, **attributes)
+            graph.add_node(
+                node,
+                kind="object",
+                id=self.object_number(o),
+                label=node.label,
+                states=sorted(node.states),
+                relations=[str(relation) for relation in sorted(node.relations)],
+                contents=[str(contents) for contents in node.contents],
+            )
         for unit, motion in enumerate(self.motions):
             name = ("unit", self.unit_number(unit))
             graph.add_node(name, kind="unit", motion=motion)
@@ -138,12 +147,12 @@ class Network:
         """Return the id that a unit has in the whole network.
 
         Parameters:
-            unit_id: The id of the unit here.
+            unit_id: The id of the unit in this network.
         """
         return self.unit_numbers[unit_id] if self.unit_numbers else unit_id
 
     def unit_of_number(self, number: int) -> int | None:
-        """Return the id that a unit of the whole network has here, or ``None`` if it is not here.
+        """Return the id that a unit of the whole network has in this one, or ``None`` if it is not in it.
 
         Parameters:
             number: The id of the unit in the whole network.
@@ -154,9 +163,9 @@ class Network:
         return position if position < len(self) and self.unit_numbers[position] == number else None
 
     def units_of_numbers(self, numbers: Iterable[int]) -> tuple[int, ...]:
-        """Return the ids that units of the whole network have here, without those that are not here.
+        """Return the ids that units of the whole network have in this one, in the order of ``numbers``.
 
-        The order stays.
+        Units that are not in this network are left out.
 
         Parameters:
             numbers: The ids of the units in the whole network.
@@ -168,7 +177,7 @@ class Network:
         """Return the id that a node has in the whole network.
 
         Parameters:
-            object_id: The id of the node here.
+            object_id: The id of the node in this network.
         """
         return self.object_numbers[object_id] if self.object_numbers else object_id
 
@@ -218,14 +227,15 @@ class Network:
     def with_copies(self, units: Sequence[int]) -> "Network":
         """Return this network with some units a second time, after all others.
 
-        Only the ids distinguish a copy from its unit; :meth:`unit_id` returns the id of the unit.
+        Only the ids distinguish a copy from its unit; :meth:`unit_id` returns the id of the unit. If there
+        are ``unit_numbers``, those of the copies follow the last one.
 
         Parameters:
             units: The ids of the units to copy, in the order of the copies.
         """
 
         def extended(values: tuple[_Value, ...]) -> tuple[_Value, ...]:
-            """Return values of units followed by those of the copies; an empty tuple stays empty."""
+            """Return the values of units followed by those of the copies; an empty tuple stays empty."""
             return (*values, *(values[unit] for unit in units)) if values else ()
 
         numbers = self.unit_numbers
@@ -258,7 +268,7 @@ class Network:
 
     @cached_property
     def by_label(self) -> dict[str, tuple[int, ...]]:
-        """The ids of the object nodes with each label, in rising order."""
+        """For each label, the ids of the object nodes that have it, in rising order."""
         ids_by_label: defaultdict[str, list[int]] = defaultdict(list)
         for object_id, node in enumerate(self.objects):
             ids_by_label[node.label].append(object_id)
@@ -266,7 +276,7 @@ class Network:
 
     @cached_property
     def by_ingredient(self) -> dict[str, tuple[int, ...]]:
-        """The ids of the object nodes that contain each ingredient, in rising order."""
+        """For each ingredient, the ids of the object nodes that contain it, in rising order."""
         ids_by_ingredient: defaultdict[str, list[int]] = defaultdict(list)
         for object_id, node in enumerate(self.objects):
             if node.contents:
@@ -283,7 +293,7 @@ class Network:
         return self.objects[object_id]
 
     def labelled(self, label: str) -> tuple[int, tuple[int, ...]]:
-        """Return the number and the ids of the nodes that have a label.
+        """Return how many nodes have a label, and their ids in rising order.
 
         Parameters:
             label: The label.
@@ -320,7 +330,7 @@ class Network:
 
     @cached_property
     def _by_lookup_key(self) -> dict[LookupKey, list[int]]:
-        """The ids of the nodes by each of their lookup keys."""
+        """For each lookup key, the ids of the nodes that have it, in rising order."""
         ids: dict[LookupKey, list[int]] = {}
         for object_id, node in enumerate(self.objects):
             for key in lookup_keys(node):
@@ -375,7 +385,7 @@ class NetworkBuilder:
         return unit_id
 
     def build(self) -> Network:
-        """Return a network of the units that were added so far."""
+        """Return a network of level 3 with the units that were added so far."""
         return Network(
             tuple(self._object_ids),
             tuple(self._motions),

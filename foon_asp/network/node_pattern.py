@@ -36,7 +36,10 @@ class NodePattern(NamedTuple):
 
     @property
     def lookup_key(self) -> LookupKey:
-        """The key of the entry, which each matching node has among its :func:`lookup_keys`."""
+        """The key of the entry, which each matching node has among its :func:`lookup_keys`.
+
+        The related object in it is the container, or else the object of the alphabetically first relation.
+        """
         related_object = self.container
         if related_object is None and self.relations:
             related_object = min(self.relations).object

@@ -12,9 +12,10 @@ _NodePart = tuple[str, str]
 
 
 class Slip(NamedTuple):
-    """The only name in which two nodes differ, spelled ``name`` in the one and ``other`` in the other node.
+    """The only name in which two nodes differ: ``name`` in the first node, ``other`` in the second one.
 
-    ``kind`` is the kind of name: label, state, relation, container or ingredient.
+    ``kind`` is the kind of name: label, state, relation, container or ingredient. The name of a relation is
+    the whole relation, such as ``in [bowl]``.
     """
 
     kind: str
@@ -23,11 +24,12 @@ class Slip(NamedTuple):
 
 
 def slip_between(node: ObjectNode, other: ObjectNode | NodePattern) -> Slip | None:
-    """Return the only name in which two nodes differ if its spellings are one edit apart, else ``None``.
+    """Return the name in which two nodes differ if it is the only one and its spellings are one edit apart.
 
-    An edit adds, omits or changes a letter, or swaps it with the next. Differences in doubled letters,
-    capitals, blanks and hyphens count as one edit together. Two relations to one object by different words
-    (``in [bowl]``, ``on [bowl]``) are one edit apart, too.
+    Otherwise return ``None``. An edit adds, omits or changes a letter, or swaps it with the next. Differences
+    in doubled letters, capitals, blanks and punctuation count as one edit together. Two relations to one
+    object by different words (``in [bowl]``, ``on [bowl]``) are one edit apart, too. The words of contents
+    are not compared.
 
     If ``other`` is an entry of a kitchen or goals file without relations, only the objects of relations are
     compared, as containers.
@@ -59,7 +61,8 @@ def slip_between(node: ObjectNode, other: ObjectNode | NodePattern) -> Slip | No
 def nearest_nodes(node: ObjectNode, others: Iterable[ObjectNode], max_nodes: int) -> list[ObjectNode]:
     """Return up to ``max_nodes`` of the ``others`` with the label of a node, most similar first.
 
-    Nodes with the fewest different parts are the most similar. The node itself is left out.
+    Nodes with the fewest different states, relations and ingredients are the most similar. The node itself is
+    left out.
     """
     parts = set(_named_parts(node, as_containers=False))
     ranked = sorted(

@@ -24,7 +24,7 @@ class Source(NamedTuple):
 
     @property
     def short(self) -> str:
-        """The file and line, as steps of a tree have them; of an absolute path only the file name."""
+        """The file and the line, such as ``recipe.txt:12``; an absolute path is cut down to the file name."""
         file = _without_line_breaks(self.file)
         return f"{file.rpartition('/')[2] if file.startswith('/') else file}:{self.line}"
 

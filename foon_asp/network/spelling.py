@@ -17,14 +17,14 @@ def without_separators(name: str) -> str:
 
 
 def without_doubles(name: str) -> str:
-    """Return a name as :func:`without_separators` does, with repeated letters written once."""
+    """Return a name as :func:`without_separators` does, with doubled letters written once: ``egs``."""
     return re.sub(_DOUBLED, r"\1", without_separators(name))
 
 
 def one_letter_apart(word: str, other: str) -> bool:
     """Whether two words differ by one letter added, left out or changed, or by two neighbours swapped.
 
-    Only letters count: ``egg 1`` and ``egg 2`` are not one letter apart.
+    Other characters do not count: ``egg 1`` and ``egg 2`` are not one letter apart. Nor are equal words.
     """
     start = 0
     while start < min(len(word), len(other)) and word[start] == other[start]:
@@ -41,8 +41,8 @@ def one_letter_apart(word: str, other: str) -> bool:
 def near_labels(label: str, labels: Iterable[str], max_labels: int) -> list[str]:
     """Return up to ``max_labels`` labels similar to ``label``, most similar first.
 
-    Similarity is measured by :mod:`difflib`, in lower case. Labels that differ only in case count once, and
-    are all returned.
+    Similarity is measured by :mod:`difflib`, in lower case, and is at least 0.6. Labels that differ only in
+    case count once, and are all returned.
     """
     import difflib  # noqa: PLC0415 (for faults alone)
 

@@ -80,11 +80,13 @@ class StandInTable(NamedTuple):
 
     @classmethod
     def usual(cls) -> "StandInTable":
-        """Return the table that is used where no file changes it."""
+        """Return the table with the built-in prices, which is used where no file changes it."""
         return cls(dict(_EDITS), dict(_WORDS), {})
 
     def dissimilarity(self, serving: ObjectNode, served: ObjectNode) -> Fraction | None:
-        """Return the price of using a node in place of another; ``None`` if it never stands in.
+        """Return the sum of the prices of the edits between two nodes.
+
+        Return ``None`` if the one node never stands in for the other.
 
         Parameters:
             serving: The node that is used.
@@ -94,7 +96,9 @@ class StandInTable(NamedTuple):
         return None if edits is None else sum((edit.price for edit in edits), Fraction(0))
 
     def differences(self, serving: ObjectNode, served: ObjectNode) -> tuple[Difference, ...] | None:
-        """Return the edits that add up to the dissimilarity; ``None`` where a node never stands in.
+        """Return the edits between two nodes, whose prices add up to the dissimilarity.
+
+        Return ``None`` if the one node never stands in for the other.
 
         Parameters:
             serving: The node that is used.
@@ -108,21 +112,25 @@ class StandInTable(NamedTuple):
         return tuple(differences)
 
     def price(self, edit: Edit, name: str) -> Fraction | None:
-        """Return the price of an edit of a single state or ingredient; ``None`` for never.
+        """Return the price of an edit of a single state or ingredient, or ``None`` if it is never allowed.
+
+        If the table has no price for this name, it is the price of the kind of edit.
 
         Parameters:
             edit: The kind of the edit.
             name: The state or ingredient.
         """
-        word = edit, name
-        return self.words[word] if word in self.words else self.edits[edit]
+        key = edit, name
+        return self.words[key] if key in self.words else self.edits[edit]
 
     def _node_edits(
         self, serving: ObjectNode, served: ObjectNode
     ) -> Iterator[tuple[Edit, str, str, Fraction | None]]:
         """Yield the edits between two nodes: kind, part of the served node, part of the serving one, price.
 
-        The price is ``None`` if the edit is never allowed.
+        The price is ``None`` if the edit is never allowed. If the table has the pair of nodes, this is the
+        only edit. Different labels whose pair the table lacks are an edit of spelling if they are spelled
+        alike; otherwise they are never allowed.
         """
         if (serving, served) in self.pairs:
             yield Edit.NODE, str(served), str(serving), self.pairs[serving, served]
@@ -140,11 +148,11 @@ class StandInTable(NamedTuple):
         served_parts = sorted(served.relations - serving.relations)
         serving_parts = sorted(serving.relations - served.relations)
         for relation in list(served_parts):
-            other = next((part for part in serving_parts if part.object == relation.object), None)
-            if other is not None:
+            serving_relation = next((part for part in serving_parts if part.object == relation.object), None)
+            if serving_relation is not None:
                 served_parts.remove(relation)
-                serving_parts.remove(other)
-                yield Edit.WORD, str(relation), str(other), self.edits[Edit.WORD]
+                serving_parts.remove(serving_relation)
+                yield Edit.WORD, str(relation), str(serving_relation), self.edits[Edit.WORD]
         for position in range(max(len(served_parts), len(serving_parts))):
             texts = [
                 str(side[position]) if position < len(side) else "" for side in (served_parts, serving_parts)
@@ -154,7 +162,7 @@ class StandInTable(NamedTuple):
     def _content_edits(
         self, serving: ObjectNode, served: ObjectNode
     ) -> Iterator[tuple[Edit, str, str, Fraction | None]]:
-        """Yield the edits between the contents of two nodes, as :meth:`_node_edits` does."""
+        """Yield the edits between the contents of two nodes, each as :meth:`_node_edits` yields it."""
         if serving.contents == served.contents:
             return
         served_parts, serving_parts = Counter(served.ingredients), Counter(serving.ingredients)
@@ -176,14 +184,14 @@ _PLURALS = {"sses": "ss", "shes": "sh", "ches": "ch", "ies": "y", "oes": "o", "s
 
 
 def spelled_alike(label: str, other: str) -> bool:
-    """Whether two labels differ at most in singular or plural, blanks, hyphens and capitals."""
+    """Whether two labels differ at most in singular or plural, blanks, hyphens, underscores and capitals."""
     return spelling_key(label) == spelling_key(other)
 
 
 def spelling_key(label: str) -> str:
-    """Return a label in lower case and in the singular, without blanks and hyphens, to be compared.
+    """Return a label in lower case and in the singular, without blanks, hyphens and underscores.
 
-    The key of ``Cherry tomatoes`` is ``cherrytomato``.
+    Labels with the same key count as spelled alike. The key of ``Cherry tomatoes`` is ``cherrytomato``.
     """
     letters = label.casefold().replace(" ", "").replace("-", "").replace("_", "")
     for plural, singular in _PLURALS.items():

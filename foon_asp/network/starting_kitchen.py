@@ -24,8 +24,8 @@ def is_starting(kitchen: object) -> bool:
 class RecipeKitchen(NamedTuple):
     """The starting kitchen of one file, as ids of object nodes.
 
-    ``raw`` nodes are made by no unit out of others. ``granted`` nodes are made by a unit, but are assumed to
-    be available so that all units can execute.
+    No unit of the file makes a ``raw`` node, except units that need the node themselves. A unit of the file
+    makes each ``granted`` node, but these are assumed to be available so that all units can execute.
     """
 
     raw: list[int]
@@ -35,14 +35,14 @@ class RecipeKitchen(NamedTuple):
 def recipe_kitchen(
     units: Iterable[tuple[Sequence[int], Sequence[int]]], goals: Collection[int] = ()
 ) -> RecipeKitchen:
-    """Return the starting kitchen of one file, in time linear in its size; items are not used up.
+    """Return the starting kitchen of one file, in time linear in its size.
 
     ``units`` has the inputs and the outputs of each unit, in the order of the file. They are ids of object
-    nodes, as ``goals`` are.
+    nodes, as ``goals`` are. Inputs are not used up.
 
-    Nodes that no unit makes out of others are available. Then units execute as far as they can. When none
-    can, the first unit in the file that lacks inputs is granted these, except ``goals``. This repeats until
-    only goals are lacking. Then goals are granted in the same way, for example if two goals need each other.
+    Raw nodes are available. Then units execute as far as they can. When none can, the first unit in the file
+    that lacks inputs is granted these, except ``goals``. This repeats until only goals are lacking. Then
+    goals are granted in the same way, for example if two goals need each other.
     """
     unit_sides = list(units)
     missing = [len(inputs) for inputs, _ in unit_sides]  # by unit: how many inputs are not available yet
@@ -113,22 +113,23 @@ class StartingKitchen(ABC, Generic[File]):
     def changes_for_goals(self, goals: Iterable[int]) -> tuple[frozenset[int], frozenset[int]]:
         """Return the nodes that these goals add to the kitchen, and those that they remove from it.
 
-        A goal that a unit can make from other nodes is removed; other nodes may be granted in its place.
+        A goal is removed if the units of one file can make it from other nodes than goals. Other nodes of the
+        file may be granted in its place. Added nodes may be in the kitchen already.
         """
         goals = [goal for goal in goals if goal in self.nodes and self.makers(goal)]
         kitchens = {
             file: self._nodes_of_file(file, goals) for goal in goals for file in self.granting_files(goal)
         }
         added = {o for kitchen in kitchens.values() for o in kitchen}
-        lacking = set()
+        removed = set()
         for goal in goals:
             for file in self.files_of(self.makers(goal)):
                 if file not in kitchens:
                     kitchens[file] = self._nodes_of_file(file, goals)
                 if kitchens[file].isdisjoint(goals):  # this file alone makes it from the others
-                    lacking.add(goal)
+                    removed.add(goal)
                     break
-        return frozenset(added - lacking), frozenset(lacking)
+        return frozenset(added - removed), frozenset(removed)
 
     def _nodes_of_file(self, file: File, goals: Collection[int]) -> set[int]:
         """Return the nodes of the starting kitchen of one file for these goals."""
@@ -137,7 +138,7 @@ class StartingKitchen(ABC, Generic[File]):
 
 
 class NetworkStartingKitchen(StartingKitchen[str]):
-    """The starting kitchen of a network in memory. Units without a source count as one file."""
+    """The starting kitchen of a network in memory. Units without a source count as one file, named ``""``."""
 
     def __init__(self, network: Network) -> None:
         """Compute the starting kitchen of every file."""
@@ -213,7 +214,7 @@ def starting_kitchen(network: Network) -> NetworkStartingKitchen:
 
 
 def starting_nodes(network: Network, goals: Collection[int] = ()) -> frozenset[int]:
-    """Return the ids of the nodes that are assumed to be available for these goals."""
+    """Return the ids of the nodes of the starting kitchen, as these goals change it."""
     kitchen = starting_kitchen(network)
-    added, lacking = kitchen.changes_for_goals(goals)
-    return kitchen.nodes.union(added).difference(lacking)
+    added, removed = kitchen.changes_for_goals(goals)
+    return kitchen.nodes.union(added).difference(removed)

@@ -16,9 +16,11 @@ MANY = 4  # units that make a node; nodes with as many or more are counted toget
 class Statistics:
     """The counts of a network at one level; every mean is over units.
 
+    ``labels``, ``motions``, ``states``, ``relations`` and ``contents`` count different ones.
     ``producers[n]`` is the number of object nodes that exactly ``n`` units make; its last entry counts the
-    nodes that ``MANY`` or more units make. ``unused`` counts the object nodes that no unit needs, and
-    ``unchanged`` the units whose inputs are their outputs.
+    nodes that ``MANY`` or more units make. ``most_producers`` is the greatest number of units that make one
+    node. ``unused`` counts the object nodes that no unit needs, and ``unchanged`` the units whose inputs are
+    their outputs.
 
     A cycle is a set of object nodes that need each other. ``in_cycles`` counts the nodes in all cycles,
     ``largest_cycle`` those in the largest one. ``at_hand`` counts the available nodes. ``depth`` is the
@@ -55,9 +57,9 @@ class Statistics:
 
 
 def network_statistics(network: Network, at_hand: Iterable[int] | None = None) -> Statistics:
-    """Return the statistics of a network whose available nodes are ``at_hand``, by id.
+    """Return the statistics of a network.
 
-    ``None`` means the starting kitchen.
+    ``at_hand`` has the ids of the available nodes; ``None`` for those of the starting kitchen.
     """
     if at_hand is None:
         at_hand = starting_kitchen(network).nodes
@@ -85,8 +87,8 @@ def network_statistics(network: Network, at_hand: Iterable[int] | None = None) -
         mean_outputs=statistics.fmean(outputs) if outputs else 0.0,
         most_outputs=max(outputs, default=0),
         producers=tuple(
-            sum(1 for number in producers if min(number, MANY) == producer_count)
-            for producer_count in range(MANY + 1)
+            sum(1 for producer_count in producers if min(producer_count, MANY) == entry)
+            for entry in range(MANY + 1)
         ),
         most_producers=max(producers, default=0),
         unused=sum(1 for users in network.consumers if not users),
@@ -106,27 +108,27 @@ def network_statistics(network: Network, at_hand: Iterable[int] | None = None) -
     )
 
 
-def most_connected_labels(network: Network, shown: int) -> list[tuple[str, int]]:
-    """Return the ``shown`` labels that the most units have, each with the number of these units.
+def most_connected_labels(network: Network, max_labels: int) -> list[tuple[str, int]]:
+    """Return up to ``max_labels`` labels that the most units have, each with the number of these units.
 
-    Labels with equal numbers are in alphabetical order.
+    A unit has the labels of its inputs and outputs. Labels with equal numbers are in alphabetical order.
     """
     unit_counts: Counter[str] = Counter()
     objects = network.objects
     for inputs, outputs in zip(network.inputs, network.outputs, strict=True):
         unit_counts.update({objects[node].label for node in (*inputs, *outputs)})
-    return sorted(unit_counts.items(), key=lambda label: (-label[1], label[0]))[:shown]
+    return sorted(unit_counts.items(), key=lambda label: (-label[1], label[0]))[:max_labels]
 
 
-def most_connected_objects(network: Network, shown: int) -> list[tuple[int, int, int]]:
-    """Return the ``shown`` object nodes that the most units need or make.
+def most_connected_objects(network: Network, max_nodes: int) -> list[tuple[int, int, int]]:
+    """Return up to ``max_nodes`` object nodes that the most units need or make.
 
-    Each is an id, the number of units that need the node, and the number of units that make it. Nodes with
-    equal numbers are in order of id.
+    Each is an id, the number of units that need the node, and the number of units that make it. Nodes that
+    equally many units need or make are in order of id.
     """
-    sizes = [
-        (len({*users, *makers}), -node)
-        for node, (users, makers) in enumerate(zip(network.consumers, network.producers, strict=True))
+    unit_counts = [
+        (len({*consumers, *producers}), -node)
+        for node, (consumers, producers) in enumerate(zip(network.consumers, network.producers, strict=True))
     ]
-    top = (-node for _, node in sorted(sizes, reverse=True)[:shown])
+    top = (-node for _, node in sorted(unit_counts, reverse=True)[:max_nodes])
     return [(node, len(network.consumers[node]), len(network.producers[node])) for node in top]

@@ -15,7 +15,7 @@ class UnitAmounts(NamedTuple):
     outputs: Mapping[ObjectNode, int] = MappingProxyType({})
 
     def __bool__(self) -> bool:
-        """Whether some amount is not 1."""
+        """Whether an amount is listed; those that are not are 1."""
         return bool(self.inputs or self.outputs)
 
 
@@ -27,7 +27,7 @@ Amounts = Mapping[FunctionalUnit, UnitAmounts]
 
 
 class DataAmounts(NamedTuple):
-    """The amounts of units; ``conflict`` is a message about contradictory amounts, empty for none."""
+    """The amounts of units. ``conflict`` is a message about contradictory amounts, or empty."""
 
     units: Amounts
     conflict: str = ""

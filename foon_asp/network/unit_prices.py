@@ -11,17 +11,18 @@ from foon_asp.network.network import Network
 class UnitPrices(NamedTuple):
     """Exact prices of units, none below 0.
 
-    ``units`` has the prices of single units of level 3, ``motions`` those of all other units by motion.
+    ``units`` has the prices of single units of level 3. All other units have the price of their motion, which
+    is in ``motions``; a motion may have none.
     """
 
     motions: Mapping[str, Fraction]
     units: Mapping[FunctionalUnit, Fraction]
 
     def of_units(self, network: Network) -> tuple[Fraction | None, ...]:
-        """Return the price of every unit of a network, in order of id; ``None`` for a unit without one.
+        """Return the price of every unit of a network, in order of id; ``None`` for a unit without a price.
 
         A unit below level 3 has the least price of the units that it stands for, or ``None`` if one of them
-        has none.
+        has no price.
         """
         if network.detailed is None:
             return self._own_level_prices(network)
@@ -30,9 +31,11 @@ class UnitPrices(NamedTuple):
         return tuple(map(_least_price, prices_by_unit))
 
     def price(self, unit: FunctionalUnit, network: Network | None = None) -> Fraction | None:
-        """Return the price of a unit at the level of a network; ``None`` if it has none.
+        """Return the price of a unit, or ``None`` if it has none.
 
-        Without a network, the level is 3. A unit that is not in the network has the price of its motion.
+        In a network below level 3, it is the least price of the units that the unit stands for, or ``None``
+        if one of them has no price. A unit that is not in the network has the price of its motion. Without a
+        network, the unit is taken to be of level 3.
         """
         if network is None or network.detailed is None:
             return self.units.get(unit, self.motions.get(unit.motion))
@@ -44,7 +47,7 @@ class UnitPrices(NamedTuple):
         )
 
     def _own_level_prices(self, network: Network) -> tuple[Fraction | None, ...]:
-        """Return the price of each unit of a network, looked up by the unit itself; ``None`` for none."""
+        """Return the price of each unit of a network as if this were of level 3; ``None`` if it has none."""
         priced_motions = {unit.motion for unit in self.units}  # spares looking up units of other motions
         return tuple(
             self.price(network.unit(unit)) if motion in priced_motions else self.motions.get(motion)

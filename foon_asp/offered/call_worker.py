@@ -12,7 +12,10 @@ from foon_asp.processes.pipe import become_worker, receive_pickled, write
 
 
 def serve() -> None:
-    """Call the functions that requests on standard input name, and write their replies, without end."""
+    """Call the functions that requests on standard input name, and write their replies to standard output.
+
+    A request is a pickled offer with arguments; a reply is a line of JSON (:func:`_call`). Never returns.
+    """
     received, answers = become_worker(receive_pickled)
     functions: dict[Offer, Callable[..., object]] = {}
     while True:
@@ -25,8 +28,10 @@ def _call(
 ) -> bytes:
     """Call the function of an offer, and return a line of JSON with a kind and a value.
 
-    The kind is ``reply``, ``raised`` for an exception, or ``fault`` for a function or reply that cannot be
-    used. ``functions`` are those imported so far; a new one is added.
+    The kind ``reply`` has the value that the function returned. ``raised`` has the parts of
+    :class:`Raised`, if the function raised an exception. ``fault`` has a complaint and a traceback, if the
+    function or its reply cannot be used; the traceback may be empty. ``functions`` are those imported so
+    far; a new one is added.
     """
     if offer not in functions:
         try:
@@ -63,12 +68,12 @@ def _message_line(kind: str, value: object) -> bytes:
 
 
 def _error_text(error: BaseException) -> str:
-    """Return the class and the message of an exception."""
+    """Return the class of an exception and the beginning of its message, with a colon between them."""
     return f"{type(error).__name__}: {_error_message(error)}"
 
 
 def _error_message(error: BaseException) -> str:
-    """Return the beginning of the message of an exception; empty if this raises itself."""
+    """Return the beginning of the message of an exception; empty if its ``__str__`` raises, too."""
     try:
         return _first_letters(str(error))
     except Exception:
@@ -76,7 +81,7 @@ def _error_message(error: BaseException) -> str:
 
 
 def _shortened_repr(value: object) -> str:
-    """Return the beginning of the ``repr`` of a value; if this raises, the value's class."""
+    """Return the beginning of the ``repr`` of a value; if ``repr`` raises, return the value's class."""
     try:
         return _first_letters(repr(value))
     except Exception:
@@ -84,5 +89,5 @@ def _shortened_repr(value: object) -> str:
 
 
 def _first_letters(message: str, max_letters: int = 1000) -> str:
-    """Return the beginning of a message, since some messages contain all data."""
+    """Return the first ``max_letters`` letters of a message, since some messages contain all data."""
     return message[:max_letters]

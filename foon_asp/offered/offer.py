@@ -13,8 +13,9 @@ _OFFER_NAME = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9_.-]{0,38}[A-Za-z0-9])?", re.
 class Raised(NamedTuple):
     """An exception that a function of another package raised.
 
-    ``classes`` are the names of its classes, the most specific first, each with its module. ``raised_at`` is
-    the file and line that raised it, or empty, and ``trace`` the traceback.
+    ``classes`` are the names of its class and base classes, the most specific first, each with its module.
+    ``message`` is cut off where it is long. ``raised_at`` is the file and line that raised the exception, or
+    empty. ``trace`` is the traceback.
     """
 
     classes: tuple[str, ...]
@@ -24,7 +25,7 @@ class Raised(NamedTuple):
 
     @property
     def text(self) -> str:
-        """The exception in one line: class, message and place."""
+        """The exception in one line, without the modules: ``raised ValueError: no tree (file.py:7)``."""
         name = self.classes[0].rpartition(".")[2]
         message = f": {self.message}" if self.message else ""
         return f"raised {name}{message}{self.raised_at and f' ({self.raised_at})'}"
@@ -33,7 +34,8 @@ class Raised(NamedTuple):
 class Offer(NamedTuple):
     """An entry point of an installed package, by which the package offers a function.
 
-    ``function`` is written ``module:function``. ``package`` is the name of a distribution with its version.
+    ``group`` and ``name`` are those of the entry point. ``function`` is written ``module:function``.
+    ``package`` is the name of the package with its version.
     """
 
     group: str
@@ -42,9 +44,10 @@ class Offer(NamedTuple):
     package: str
 
     def fault(self, complaint: str, trace: str = "") -> UserError:
-        """Return the error that the package of an offer did something wrong, which ``complaint`` tells.
+        """Return an error that names the offer and says what its package did wrong.
 
-        With ``--debug``, users see the ``trace``, too.
+        The error has the first 300 letters of ``complaint``. With ``--debug``, users see the traceback
+        ``trace``, too.
         """
         if len(complaint) > 300:  # a package may say any amount
             complaint = f"{complaint[:300]}..."
@@ -58,23 +61,23 @@ class Offer(NamedTuple):
         return error
 
     def raised_error(self, exception: Raised) -> UserError:
-        """Return the error that the function of an offer raised an exception.
+        """Return an error that says that the function of the offer raised an exception.
 
-        Of a ``UserError`` the message alone is shown, of other exceptions class, message and place.
+        It has the message alone of a :class:`UserError`, and class, message and place of other exceptions.
         """
         is_user_error = f"{UserError.__module__}.{UserError.__name__}" in exception.classes
         return self.fault(exception.message if is_user_error else exception.text, exception.trace)
 
-    def units(self, reply: object, number: int) -> tuple[int, ...]:
-        """Return a reply of an offer as a tree, given by ids of units from 0 to ``number`` - 1.
+    def tree_of_reply(self, reply: object, unit_count: int) -> tuple[int, ...]:
+        """Return a reply of the function, which has to be a list of ids of units, as a tuple.
 
-        Raises :class:`UserError` for a reply that is not a list of distinct ids.
+        Raises :class:`UserError` for anything but a list of different numbers from 0 to ``unit_count`` - 1.
         """
         if not isinstance(reply, list):
             raise self.fault(f"gave {reply!r}, expected the units of a tree")
         for unit in reply:
-            if type(unit) is not int or not 0 <= unit < number:
-                raise self.fault(f"gave a tree with the unit {unit!r}; units are 0 to {number - 1}")
+            if type(unit) is not int or not 0 <= unit < unit_count:
+                raise self.fault(f"gave a tree with the unit {unit!r}; units are 0 to {unit_count - 1}")
         if len(set(reply)) < len(reply):
             raise self.fault("gave a tree that lists a unit twice")
         return tuple(reply)
@@ -83,8 +86,8 @@ class Offer(NamedTuple):
 def find_offers(group: str) -> list[Offer]:
     """Return the offers of installed packages in a group, sorted by package and name; none is imported.
 
-    Of a package that is installed twice, the installation counts that Python would import. Raises
-    :class:`UserError` where the entry points of a package that mentions the group cannot be read.
+    Of a package that is installed twice, only the first installation on Python's path counts. Raises
+    :class:`UserError` if a package mentions the group, and its entry points cannot be read.
     """
     from importlib import metadata  # noqa: PLC0415 (slow to import, and seldom needed)
 
@@ -112,9 +115,9 @@ def find_offers(group: str) -> list[Offer]:
 def offers_by_name(offers: Iterable[Offer], reserved: Iterable[str]) -> dict[str, Offer]:
     """Return offers by name.
 
-    Raises :class:`UserError` for a name that two offers have or that is ``reserved``, ignoring case. Raises
-    :class:`UserError` for a name of another form than up to 40 letters and digits, with ``-``, ``_`` and
-    ``.`` between them.
+    Raises :class:`UserError` for a name that two offers have or that is ``reserved``; case is ignored. A name
+    has to consist of at most 40 ASCII letters and digits, with ``-``, ``_`` and ``.`` between them. Raises
+    :class:`UserError` for any other name.
     """
     owners = {name.lower(): "foon-asp" for name in reserved}
     by_name: dict[str, Offer] = {}

@@ -16,11 +16,12 @@ from foon_asp.processes.worker import DiedError, Worker, give_back_worker, take_
 
 
 def ask_offered(offer: Offer, deadline: Deadline, *arguments: object) -> Any:
-    """Call the function of an offer in the process of its package, and return the reply as plain values.
+    """Call the function of an offer in the process of its package, and return the reply as values of JSON.
 
-    Returns :class:`Raised` if the function raised an exception. Raises
-    :class:`~foon_asp.deadline.LimitError` at a limit. Raises :class:`UserError` where the function cannot be
-    imported, ends its process, or returns anything but plain values.
+    The process is started if there is none, and kept for later calls. Returns :class:`Raised` if the function
+    raised an exception. Raises :class:`~foon_asp.deadline.LimitError` at a limit and at ctrl-C, which end the
+    process. Raises :class:`UserError` if the function cannot be imported, ends its process, or returns
+    anything but values of JSON.
     """
     key = (offer.package, *sys.path)  # with the path, another version of the package may be found
     worker = take_worker(key, _start_worker)
@@ -42,16 +43,15 @@ def ask_offered(offer: Offer, deadline: Deadline, *arguments: object) -> Any:
 
 
 def _start_worker() -> Worker:
-    """Start a process in which a package's functions are called."""
+    """Start a process that calls the functions of one package."""
     return Worker("foon_asp.offered.call_worker", "what other packages offer is run", read=_read_message)
 
 
 def _read_message(pipe: RawIOBase, max_bytes: int = 64 * 2**20) -> tuple[str, bytes]:
-    """Return the kind and the bytes of the next line of a pipe; the kind is ``line``.
+    """Read the next line of a pipe, and return ``"line"`` and its bytes.
 
-    For a line of more than ``max_bytes``, it is ``endless``, without bytes: such a line would fill the
-    memory. A tree of a million units takes some megabytes. Raises ``EOFError`` where the pipe ends within
-    the line.
+    A line of more than ``max_bytes`` would fill the memory: return ``"endless"`` without bytes. A tree of a
+    million units takes some megabytes. Raises ``EOFError`` if the pipe ends before the line does.
     """
     line = bytearray()
     while not line.endswith(b"\n"):

@@ -45,7 +45,7 @@ def _validate(offer: Offer, problem: Problem, reply: Any) -> Retrieval:
     except (ValueError, TypeError):
         raise fault from None
     network = problem.network
-    tree = offer.units(units, len(network))
+    tree = offer.tree_of_reply(units, len(network))
     if tree and ending is not Ending.TREE:
         raise offer.fault(f"gave units, and the ending {ending}")
     if (stuck_at is not None) != (ending is Ending.STUCK):

@@ -16,16 +16,16 @@ def is_amount(comment: str) -> bool:
 def read_amount(comment: str) -> int:
     """Return the amount in a comment line for which :func:`is_amount` is true: 2 for ``# Amount:⇥2``.
 
-    Raises :class:`LineError` if anything but an amount follows the colon.
+    Blanks around the amount are ignored. Raises :class:`LineError` if anything else follows the colon.
     """
     written = comment[len(_MARK) :].strip()
     return parse_amount(written, len(_MARK) + 1 + comment[len(_MARK) :].find(written))
 
 
 def parse_amount(written: str, column: int) -> int:
-    """Return the amount that digits state, from 1 to ``MAX_AMOUNT``.
+    """Return the amount that digits state, from 1 to 1,000,000 (``MAX_AMOUNT``).
 
-    Raises :class:`LineError` at ``column``, which is that of ``written`` in its line, for any other text.
+    Raises :class:`LineError` for any other text. ``column`` is where ``written`` begins in its line.
     """
     if not is_number(written) or len(written) > len(str(MAX_AMOUNT)) or not 1 <= int(written) <= MAX_AMOUNT:
         raise LineError(column, f"the amount {written[:40]!r}", (EXPECTED_AMOUNT,))

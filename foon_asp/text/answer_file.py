@@ -66,11 +66,12 @@ class ListedTree(NamedTuple):
 
 
 def read_listed_tree(file: Path, reader: FoonReader) -> ListedTree:
-    """Return the tree that a file lists, in any of the forms that the module names.
+    """Return the tree that a file lists: as FOON units in text or JSON, as an answer, or as atoms of clingo.
 
-    Of clingo's output, the last answer with units is read, which is the best. Diagnostics of FOON text are
-    added to those of ``reader``. Raises :class:`UserError` for a missing file, and for JSON without a field
-    for a tree, of another version, or not as ``docs/json.md`` describes.
+    Of clingo's output, the last answer with units is read, which is the best. Units of FOON are read by
+    ``reader``, which records diagnostics and amounts. Raises :class:`InputError` for errors in them. Raises
+    :class:`UserError` for a missing file, and for JSON of foon-asp that has no field for a tree, is of
+    another version, or is not as ``docs/json.md`` describes.
     """
     if not file.exists():
         raise UserError(f"{file}: no such file")
@@ -80,8 +81,9 @@ def read_listed_tree(file: Path, reader: FoonReader) -> ListedTree:
         return ListedTree((), numbers=numbers)
     if document is None:
         is_tree = _TREE_COMMENT in text.partition("//")[0]
-        listed = tuple(reader.tree_units(text, str(file)))
-        return ListedTree(listed, is_tree=is_tree, amounts=reader.amounts.amounts_by_unit().units)
+        units_and_sources = tuple(reader.tree_units(text, str(file)))
+        amounts = reader.amounts.amounts_by_unit().units
+        return ListedTree(units_and_sources, is_tree=is_tree, amounts=amounts)
     try:
         answer = _answer_with_tree(document)
         steps = answer["units"]
@@ -97,13 +99,19 @@ def read_listed_tree(file: Path, reader: FoonReader) -> ListedTree:
 
 
 def _used_ids(text: str) -> tuple[int, ...]:
-    """Return the ids U in the atoms ``use(U)`` of the last answer of clingo; empty for any other text."""
+    """Return the ids U in the atoms ``use(U)`` of the last answer of clingo that has any.
+
+    Return an empty tuple for any other text.
+    """
     answers = [tuple(map(int, _USE.findall(block))) for block in _ATOMS.findall(text)]
     return next((numbers for numbers in reversed(answers) if numbers), ())
 
 
 def _foon_asp_document(text: str) -> Json | None:
-    """Return a text's JSON object if it has a key ``schema`` or ``units``; ``None`` for any other text."""
+    """Return a text's JSON object if it has a key ``schema`` or ``units``.
+
+    Return ``None`` for any other text, also for JSON with a fault.
+    """
     if not text.lstrip().startswith("{"):
         return None
     try:
@@ -135,7 +143,10 @@ def _executions(value: Json) -> Iterator[tuple[FunctionalUnit, Source]]:
 
 
 def _unit(value: Json) -> tuple[FunctionalUnit, Source]:
-    """Return a unit and its first source from its JSON in an answer."""
+    """Return a unit and its first source from its JSON in an answer.
+
+    Other JSON raises the errors that :func:`read_listed_tree` catches.
+    """
     inputs, outputs = (tuple(map(read_node_json, value[key])) for key in ("inputs", "outputs"))
     source = value["source"][0]
     if not isinstance(value["motion"], str) or not isinstance(source, dict):

@@ -20,14 +20,15 @@ def final_outputs(inputs: Sequence[int], outputs: Sequence[int], needed: Iterabl
 
 
 def goal_entry(node: ObjectNode, source: Source) -> ListedObject:
-    """Return the entry of a goals file that matches a node alone; its source is ``source`` without videos."""
+    """Return an entry of a goals file that matches only this node; it gets the source, without videos."""
     return ListedObject(NodePattern.of(node), source._replace(videos=()))
 
 
 def last_goals(network: Network, last_units: Mapping[int, Source]) -> list[ListedObject]:
     """Return the final outputs of the last unit of each file, each once, as entries of a goals file.
 
-    ``last_units`` maps the id of the last unit of each file to its source, which the entries get.
+    ``last_units`` maps the id of the last unit of each file to its source. An entry gets the source of the
+    first of these units that makes its node.
     """
     outputs = {o for unit in last_units for o in network.outputs[unit]}
     needed = {o for inputs in network.inputs for o in inputs if o in outputs}

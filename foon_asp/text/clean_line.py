@@ -21,10 +21,10 @@ _LABEL = re.compile(r' *[^ ";\t\r\n\[\]{}][^;\t\r\n\[\]{}]*')
 
 
 def clean_line(text: str) -> Line | None:
-    """Return the parsed line of a text without line end, or ``None`` where the parser has to read it.
+    """Return the parsed line of a text without line end, or ``None`` if the parser has to read it.
 
-    ``None`` also stands for faulty lines. Only slips in ingredients, and a space for the tab before a
-    bracket, are read here; the line then has remarks.
+    The parser has to read lines with faults and with most slips. Slips in ingredients, and a space for the
+    tab before a bracket, are read here; the line then has remarks.
     """
     if match := _STATE_LINE.fullmatch(text):
         return _matched_state_line(match)
@@ -38,7 +38,10 @@ def clean_line(text: str) -> Line | None:
 
 
 def clean_node(notation: str) -> ObjectNode | None:
-    """Return the node of a notation that is a label alone, without quotes; ``None`` for another notation."""
+    """Return the node of a one-line notation that is a label alone, without quotes.
+
+    Return ``None`` for any other notation.
+    """
     return ObjectNode(notation.strip(" ")) if _LABEL.fullmatch(notation) else None
 
 
@@ -62,15 +65,17 @@ def no_tab_remark(bracket: str, column: int) -> Remark:
     return Remark(column, "space-for-tab", f"no tab before {bracket}; read as if there were one")
 
 
-def split_ingredients(listed: str, column: int, remarks: list[Remark]) -> tuple[str, ...]:
-    """Return the ingredients between brackets, split at commas, without spaces around them.
+def split_ingredients(text: str, column: int, remarks: list[Remark]) -> tuple[str, ...]:
+    """Return the ingredients in the text between brackets, split at commas and without spaces around them.
 
-    Empty ingredients are left out, repeated ones stay. ``column`` is that of the first letter of ``listed``.
+    Empty ingredients are left out, repeated ones stay. ``column`` is that of the first letter of the text.
     Adds to ``remarks`` at most one remark each on empty, on spaced and on repeated ingredients.
     """
-    split = listed.split(",")
-    if len(set(split)) == len(split) and all(item and item[0] != " " != item[-1] for item in split):
-        return tuple(split)
+    raw_items = text.split(",")
+    if len(set(raw_items)) == len(raw_items) and all(
+        item and item[0] != " " != item[-1] for item in raw_items
+    ):
+        return tuple(raw_items)
     kept: list[str] = []
     seen: set[str] = set()
     remarked: set[str] = set()
@@ -81,16 +86,16 @@ def split_ingredients(listed: str, column: int, remarks: list[Remark]) -> tuple[
             remarks.append(Remark(column, code, message))
             remarked.add(code)
 
-    for raw in split:
-        item = raw.strip(" ")
+    for raw_item in raw_items:
+        item = raw_item.strip(" ")
         if not item:
             add_remark("empty-ingredient", "empty ingredient left out")
         else:
-            if item != raw:
+            if item != raw_item:
                 add_remark("outer-space", f"spaces around {item!r} left out")
             if item in seen:
                 add_remark("repeated-ingredient", f"ingredient {item!r} is listed twice")
             kept.append(item)
             seen.add(item)
-        column += len(raw) + 1
+        column += len(raw_item) + 1
     return tuple(kept)

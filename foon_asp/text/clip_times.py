@@ -49,8 +49,8 @@ def median_clips(files: Iterable[Path], lenient: bool = False) -> dict[str, Frac
     The duration of a unit is the total length of its clips. Raises as :func:`listed_clips` does.
     """
     seconds: dict[str, list[Fraction]] = {}
-    for listed in listed_clips(files, lenient):
-        seconds.setdefault(listed.motion, []).append(Fraction(listed.seconds))
+    for unit_clips in listed_clips(files, lenient):
+        seconds.setdefault(unit_clips.motion, []).append(Fraction(unit_clips.seconds))
     return {motion: median(times) for motion, times in seconds.items()}
 
 

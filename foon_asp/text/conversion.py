@@ -36,10 +36,11 @@ class Converted(NamedTuple):
 
 
 class Converter:
-    """A converter of any number of files to one dialect, with the same ids for equal names in all of them.
+    """A converter of any number of files to the dialect ``target``; equal names get equal ids in all of them.
 
     If ``lenient``, a part that cannot be understood, or that the dialect cannot hold, causes a warning in
-    ``diagnostics`` instead of an error. It is left out; in a conversion from text to text it stays unchanged.
+    ``diagnostics`` instead of an error. It is left out. In a conversion from FOON text to FOON text, it stays
+    unchanged, without a warning.
     """
 
     def __init__(self, target: Dialect, lenient: bool = False) -> None:
@@ -61,22 +62,23 @@ class Converter:
         return self._reading.left_out
 
     def learn(self, text: str) -> None:
-        """Record the ids in a text that will be converted, so that new ids differ from them.
+        """Record the ids in a text that will be converted: equal names get them, and new ids differ.
 
-        Does nothing unless the target is the dialect ``ids``.
+        Has to be called with all texts before the first one is converted. Does nothing unless the target is
+        the dialect ``ids``.
         """
         if self.target is Dialect.IDS:
             for line in format_of(text).lines(text):
                 self._numbering.learn(line)
 
     def convert(self, text: str, file: str) -> Converted:
-        """Return a converted text, which has the same functional units or listed objects, and its losses.
+        """Return a converted text with the same functional units or listed objects, and what it has lost.
 
-        JSON or neutral lines that are in the target dialect already are laid out anew. Raises
-        :class:`InputError` with the places of all parts that cannot be understood, or whose meaning the
-        target cannot hold.
+        ``file`` is the name of the file in messages. JSON or neutral lines that are in the target dialect
+        already are laid out anew. Raises :class:`InputError` with the places of all parts that cannot be
+        understood, or whose meaning the target cannot hold.
         """
-        earlier = len(self.diagnostics)
+        earlier_count = len(self.diagnostics)
         lost = _Tally(file)
         format_ = format_of(text, file)
         dialect = format_.dialect(text)
@@ -88,18 +90,19 @@ class Converter:
             converted = self._converted_objects(text, file, format_, lost)
         else:
             converted = self._converted_network(text, file, format_, lost)
-        self._reading.raise_errors(earlier)
-        return Converted(converted, dialect, lost.found)
+        self._reading.raise_errors(earlier_count)
+        return Converted(converted, dialect, lost.by_kind)
 
     def _converted_lines(self, text: str, file: str, writer: TextWriter, lost: "_Tally") -> str:
-        """Return FOON text in another dialect of FOON text; losses go to ``lost``.
+        """Return FOON text in another dialect of FOON text; losses are added to ``lost``.
 
-        Comments and blank lines stay.
+        Comments and blank lines stay. Raises :class:`InputError` for lines that cannot be understood, unless
+        ``lenient``.
         """
         losses_by_line: dict[str, list[Loss]] = {}
 
         def rewrite(line: Line, written: str) -> str:
-            """Return a line as the target writes it, and record its losses under the text that it had."""
+            """Return a line as the target writes it, and record its losses under its old text ``written``."""
             target_line = writer.in_dialect(line)
             losses_by_line[written] = lost_in_line(line, target_line)
             return write_line(target_line)
@@ -110,7 +113,7 @@ class Converter:
         return protect_byte_order_mark(converted)
 
     def _converted_objects(self, text: str, file: str, format_: Format, lost: "_Tally") -> str:
-        """Return a list of objects in the other dialect; losses go to ``lost``.
+        """Return a list of objects in the other dialect; losses are added to ``lost``, comments among them.
 
         Objects that the dialect cannot hold are left out, and recorded as faults.
         """
@@ -126,10 +129,11 @@ class Converter:
         return self._writer.objects(texts)
 
     def _converted_network(self, text: str, file: str, format_: Format, lost: "_Tally") -> str:
-        """Return a network in the other dialect; losses go to ``lost``.
+        """Return a network in the other dialect; losses are added to ``lost``.
 
-        A node that a unit lists twice is written once. Its amounts are added up in machine-written formats;
-        elsewhere the greatest of them counts.
+        A node that a unit lists twice is written once. Its amounts are added up if ``format_`` is a
+        machine-written format; otherwise the greatest of them counts. Units that the dialect cannot hold are
+        left out, and recorded as faults.
         """
         units = list(format_.listed_units(text, file, self._reading))
         videos = self._kept_videos(text, format_, units, lost)
@@ -140,7 +144,7 @@ class Converter:
         return self._writer.network([unit for unit in unit_texts if unit], videos)
 
     def _converted_unit(self, unit: ListedUnit, lost: "_Tally") -> str:
-        """Return the text of a unit; losses go to ``lost``.
+        """Return the text of a unit; losses are added to ``lost``.
 
         If the target cannot hold the unit, the text is empty, and a fault is recorded.
         """
@@ -161,9 +165,10 @@ class Converter:
     def _element_text(
         self, element: ObjectBlock | MotionLine, source: Source, lost: "_Tally", in_list: bool = False
     ) -> str:
-        """Return the text of an object or a motion, cached for equal ones; losses go to ``lost``.
+        """Return the text of an object or a motion, cached for equal ones; losses are added to ``lost``.
 
-        Raises :class:`CannotHoldError` if the target cannot hold it.
+        ``in_list`` is true in a list of objects, and false in a unit. Raises :class:`CannotHoldError` if the
+        target cannot hold the element.
         """
         key = (
             element
@@ -183,9 +188,9 @@ class Converter:
     def _kept_videos(
         self, text: str, format_: Format, units: list[ListedUnit], lost: "_Tally"
     ) -> tuple[str, ...]:
-        """Return the source videos that all units share and the target can name; other videos go to ``lost``.
+        """Return the source videos that all units share and that the target can name.
 
-        The other comments of the file go to ``lost``, too.
+        Other videos and the comments of the file are added to ``lost``.
         """
         video_lists = {unit.sources[0].videos for unit in units}
         shared_videos = video_lists.pop() if len(video_lists) == 1 else ()
@@ -203,20 +208,23 @@ class Converter:
 
 
 class _Tally:
-    """The losses of one file so far, by kind."""
+    """The losses of one file so far; ``by_kind`` has their numbers and first places."""
 
     def __init__(self, file: str) -> None:
         self.file = file
-        self.found: dict[Loss, Lost] = {}
+        self.by_kind: dict[Loss, Lost] = {}
 
     def add(self, losses: list[Loss] | tuple[()], source: Source) -> None:
-        """Count losses at a place; the first place in the file is kept for each kind."""
+        """Count losses at a place, and keep the first place in the file for each kind."""
         for loss in losses:
-            count, first = self.found.get(loss, (0, source))
-            self.found[loss] = Lost(count + 1, min(first, source))
+            count, first = self.by_kind.get(loss, (0, source))
+            self.by_kind[loss] = Lost(count + 1, min(first, source))
 
     def add_comments(self, text: str, kept: tuple[str, ...]) -> None:
-        """Count the comments of a text as lost, except amounts and the names of ``kept`` videos."""
+        """Count the comments of a text as lost, except amounts and those that name ``kept`` videos.
+
+        Each counts as a video, as a copy that a unit was merged from, or as another comment.
+        """
         for number, line in enumerate(split_lines(text), 1):
             if line[:1] == "#" and not is_amount(line) and read_video(line) not in kept:
                 kind = Loss.VIDEOS if is_video(line) else Loss.COPIES if read_copy(line) else Loss.COMMENTS

@@ -1,4 +1,4 @@
-"""Ids for lines that have none."""
+"""Ids for lines of FOON text that have none."""
 
 from foon_asp.text.line import Line, name_of
 
@@ -6,9 +6,10 @@ from foon_asp.text.line import Line, name_of
 class Numbering:
     """The ids of names, by which lines without an id get one.
 
-    Names are the labels of objects, motions, and states with the words of relations and contents. A name
-    keeps the first id that is learnt for it. A name without an id gets a new one, higher than all ids of its
-    kind of up to 15 digits. So all lines must be learnt before the first line is numbered.
+    There are three kinds of names: labels of objects; motions; and states, with words of relations and
+    contents among them. A name keeps the first id that is learnt for it. A name without an id gets a new
+    one, higher than all ids of its kind of up to 15 digits. So all lines must be learnt before the first line
+    is numbered.
     """
 
     def __init__(self) -> None:

@@ -38,42 +38,42 @@ class CannotHoldError(Exception):
     """A part of a file that a dialect cannot hold, since it would be read back with another meaning."""
 
 
-def lost_in_line(before: Line, after: Line) -> list[Loss]:
-    """Return what a converted line lacks: parts of ``before`` that ``after`` has not, one entry for each.
+def lost_in_line(line: Line, converted: Line) -> list[Loss]:
+    """Return a loss for each part of ``line`` that the ``converted`` line has not.
 
     Raises :class:`CannotHoldError` if the lines differ in meaning.
     """
-    lost = [Loss.IDS] if before.id and not after.id else []
-    if isinstance(before, ObjectLine) and isinstance(after, ObjectLine):
-        if before.label != after.label:
-            raise CannotHoldError(f"the label {before.label!r} would be read as {after.label!r}")
-        lost += _lost_fields(before.fields, after.fields)
-    elif isinstance(before, MotionLine) and isinstance(after, MotionLine):
-        if before.motion != after.motion:
-            raise CannotHoldError(f"the motion {before.motion!r} would be read as {after.motion!r}")
-        lost += [Loss.COMPOSITE] if before.composite and not after.composite else []
-        lost += _lost_times(MotionFields.of(before.fields), MotionFields.of(after.fields))
-    elif isinstance(before, StateLine) and isinstance(after, StateLine):
-        lost += _lost_attributes((before,), (after,))
+    lost = [Loss.IDS] if line.id and not converted.id else []
+    if isinstance(line, ObjectLine) and isinstance(converted, ObjectLine):
+        if line.label != converted.label:
+            raise CannotHoldError(f"the label {line.label!r} would be read as {converted.label!r}")
+        lost += _lost_fields(line.fields, converted.fields)
+    elif isinstance(line, MotionLine) and isinstance(converted, MotionLine):
+        if line.motion != converted.motion:
+            raise CannotHoldError(f"the motion {line.motion!r} would be read as {converted.motion!r}")
+        lost += [Loss.COMPOSITE] if line.composite and not converted.composite else []
+        lost += _lost_times(MotionFields.of(line.fields), MotionFields.of(converted.fields))
+    elif isinstance(line, StateLine) and isinstance(converted, StateLine):
+        lost += _lost_attributes((line,), (converted,))
     else:
         raise CannotHoldError("one kind of line would be read as another")
     return lost
 
 
-def lost_in_states(before: tuple[StateLine, ...], after: tuple[StateLine, ...]) -> list[Loss]:
-    """Return what the converted state lines of an object lack, one entry for each part.
+def lost_in_states(states: tuple[StateLine, ...], converted: tuple[StateLine, ...]) -> list[Loss]:
+    """Return a loss for each part of the state lines of an object that the ``converted`` lines have not.
 
-    A relation without a word is a container, and stands for a relation with any word. Raises
+    A relation without a word is a container: it stands for a relation by any word. Raises
     :class:`CannotHoldError` if the object would be read back with other states, relations or ingredients.
     """
-    ids = Counter(s.id for s in before if s.id) - Counter(s.id for s in after)
-    return [Loss.IDS] * ids.total() + _lost_attributes(before, after)
+    ids = Counter(state.id for state in states if state.id) - Counter(state.id for state in converted)
+    return [Loss.IDS] * ids.total() + _lost_attributes(states, converted)
 
 
-def _lost_fields(before: tuple[str, ...], after: tuple[str, ...]) -> Iterator[Loss]:
+def _lost_fields(fields: tuple[str, ...], converted: tuple[str, ...]) -> Iterator[Loss]:
     """Yield a loss for each field of an object line that the converted line has not."""
-    missing = Counter(before) - Counter(after)
-    for index, field in enumerate(before):
+    missing = Counter(fields) - Counter(converted)
+    for index, field in enumerate(fields):
         if not missing[field]:
             continue
         missing[field] -= 1
@@ -85,17 +85,17 @@ def _lost_fields(before: tuple[str, ...], after: tuple[str, ...]) -> Iterator[Lo
             yield Loss.CATEGORIES if index and is_number(field) else Loss.FIELDS
 
 
-def _lost_times(before: MotionFields, after: MotionFields) -> Iterator[Loss]:
+def _lost_times(fields: MotionFields, converted: MotionFields) -> Iterator[Loss]:
     """Yield ``TIMES`` if the times of two motion lines differ, and ``RATES`` if entity or success rate do."""
-    if in_two_fields(before.times) != in_two_fields(after.times):
+    if in_two_fields(fields.times) != in_two_fields(converted.times):
         yield Loss.TIMES
-    if before[1:] != after[1:]:
+    if fields[1:] != converted[1:]:
         yield Loss.RATES
 
 
-def _lost_attributes(before: tuple[StateLine, ...], after: tuple[StateLine, ...]) -> list[Loss]:
-    """Return what converted state lines lack, ids aside; raises as :func:`lost_in_states` does."""
-    old_attributes, new_attributes = [s.attribute for s in before], [s.attribute for s in after]
+def _lost_attributes(states: tuple[StateLine, ...], converted: tuple[StateLine, ...]) -> list[Loss]:
+    """Return the losses of state lines, without those of ids; raises as :func:`lost_in_states` does."""
+    old_attributes, new_attributes = [s.attribute for s in states], [s.attribute for s in converted]
     missing, extra = (
         Counter(old_attributes) - Counter(new_attributes),
         Counter(new_attributes) - Counter(old_attributes),
@@ -126,16 +126,17 @@ def _lost_attributes(before: tuple[StateLine, ...], after: tuple[StateLine, ...]
         raise CannotHoldError(
             f"{_attributes_text(old_attributes)} would be read as {_attributes_text(new_attributes)}"
         )
-    if _kept_in_order(before, kept) != _kept_in_order(after, kept):
+    if _kept_in_order(states, kept) != _kept_in_order(converted, kept):
         lost.append(Loss.ORDER)
     return lost
 
 
 def _lost_relation(relation: Relation, extra: Counter[str | Relation | Contents]) -> Loss:
-    """Return the loss of a relation: of its word, or of all of it.
+    """Return the kind of loss of a relation that the converted lines have not.
 
-    Only the word is lost if the result relates to the same object by another word. ``extra`` counts the
-    attributes that only the result has; that other relation is removed from it.
+    If they relate to the same object by another word, only the word is lost: return ``RELATION_WORDS``, or
+    ``CONTAINERS`` for a relation without a word. Otherwise return ``RELATIONS``. ``extra`` counts the
+    attributes that only the converted lines have; the relation by another word is removed from it.
     """
     for other_relation in list(extra):
         if isinstance(other_relation, Relation) and other_relation.object == relation.object:
@@ -155,7 +156,7 @@ def _all_ingredients(attributes: list[str | Relation | Contents]) -> list[str]:
 def _kept_in_order(
     states: tuple[StateLine, ...], kept: Counter[str | Relation | Contents]
 ) -> list[tuple[object, tuple[str, ...]]]:
-    """Return the attributes that are ``kept``, each with its listed ingredients, in line order."""
+    """Return the attributes that are ``kept``, each with its listed ingredients, in the order of lines."""
     return [(state.attribute, state.listed) for state in states if state.attribute in kept]
 
 

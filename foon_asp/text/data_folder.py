@@ -50,8 +50,8 @@ _SIDE_TABLES = {*_TABLES, *_KITCHENS, *_GOALS, *_FOR_SCHEDULES}
 class DataFiles(NamedTuple):
     """The files of the network and of the data beside it; ``None`` for a file that does not exist.
 
-    ``kitchen`` may be ``STARTING`` in place of a file. ``stand_ins``, a table of items that replace others,
-    is read only by questions that ask for them.
+    ``kitchen`` may be ``STARTING`` in place of a file. ``stand_ins`` is a table of items that replace others;
+    only questions about stand-ins read it.
     """
 
     network: tuple[Path, ...]
@@ -72,7 +72,7 @@ class Data(NamedTuple):
     ``warnings``: the assumptions made while reading.
     ``left_out``: the number of lines that were left out.
     ``unit_prices``: the prices of units; ``None`` without any price.
-    ``starting``: whether the kitchen is the starting kitchen, since there is no kitchen file.
+    ``starting``: true if the kitchen is the starting kitchen.
     ``goals_from``: empty if a file lists the goals; *marked* if they are the nodes marked with ``!`` in the
     network; *last* if they are outputs of the last unit of each file.
     ``repeated``: the nodes that a unit lists twice.
@@ -107,7 +107,8 @@ def find_data(
     """Return the files of a question; a named file takes precedence over the folder's file of its kind.
 
     Without a folder and a network, the files are those of the bundled kitchen. A network without a folder
-    gets no bundled kitchen or rates, since those belong to the bundled network.
+    gets no bundled kitchen or rates, since those belong to the bundled network. A file that is named as a
+    kitchen or as other data is not read as a network of its folder.
 
     A folder has its network in ``FOON.txt`` or else in its other ``*.txt``, ``*.json`` and ``*.jsonl``
     files. It may have ``kitchen.json`` or ``kitchen.txt``, ``motion.txt``, ``utensils.txt``,
@@ -153,15 +154,15 @@ def find_data(
 
 
 def kitchen_file(folder: Path) -> Path | None:
-    """Return the kitchen file of a folder, ``None`` if it has none."""
+    """Return the kitchen file of a folder, ``kitchen.json`` before ``kitchen.txt``; ``None`` without one."""
     return next((folder / name for name in _KITCHENS if (folder / name).is_file()), None)
 
 
 def network_files(path: Path) -> list[Path]:
-    """Return the network files of a path; of a path that is no folder, the path itself.
+    """Return the network files of a folder; for a path that is no folder, return the path itself.
 
-    Of a folder, this is ``FOON.txt`` alone, or without it all files that may be networks, by name. Raises
-    :class:`UserError` for a folder without a network.
+    These are ``FOON.txt`` alone, or without it all files that may be networks, by name. Kitchens, goals
+    and tables are left out. Raises :class:`UserError` for a folder without a network.
     """
     if not path.is_dir():
         return [path]
@@ -175,9 +176,10 @@ def network_files(path: Path) -> list[Path]:
 
 
 def _may_be_network(file: Path) -> bool:
-    """Whether a file of a folder may be a network, by its suffix and content; hidden files are none.
+    """Whether a file of a folder may be a network, by its suffix and content; a hidden file is no network.
 
-    JSON has to name an object, and neutral lines have to begin with a unit.
+    A ``*.txt`` file may have any content. JSON has to name an object, and a file with a suffix of neutral
+    files has to be of that format.
     """
     if file.name[0] == "." or not file.is_file():
         return False
@@ -189,12 +191,12 @@ def _may_be_network(file: Path) -> bool:
 
 
 def read_data(files: DataFiles, lenient: bool = False, level: int = 3) -> Data:
-    """Read the network and the data beside it; raises :class:`InputError` for input that is not understood.
+    """Read the network and the data beside it, except ``stand_ins``.
 
-    With ``lenient`` the lines of a network that are not understood are left out with a warning. Below
+    If ``lenient``, the lines of a network that are not understood are left out with a warning. Below
     ``level`` 3, network, kitchen and goals are reduced to that level. An entry then matches all nodes that
     agree with it in the remaining parts. Kitchen items, prices and amounts that match nothing in the network
-    cause warnings.
+    cause warnings. Raises :class:`InputError` for other input that is not understood.
     """
     with without_garbage_collection():
         reader = FoonReader(lenient)
@@ -268,9 +270,9 @@ def amounts_of_items(names: NodeNames, items: Iterable[ListedObject]) -> dict[Ob
 
 
 def unit_prices(stated: StatedPrices, price_list: UnitPriceList | None) -> UnitPrices | None:
-    """Return the prices of units, ``None`` if there are none.
+    """Return the prices of units, or ``None`` if there are none.
 
-    A price in ``price_list``, which a file has, takes precedence over one ``stated`` in networks. Raises
+    ``price_list`` has the prices of a file. They take precedence over those ``stated`` in networks. Raises
     :class:`InputError` if copies of a unit state different prices and the list has none for the unit.
     """
     prices_of_file = price_list.units if price_list else {}
@@ -285,7 +287,8 @@ def amounts_of_units(
 ) -> DataAmounts:
     """Return the amounts that networks state for their units, overridden by those of the table in ``file``.
 
-    Appends to ``warnings`` a warning for each row of the table that matches no unit.
+    Appends to ``warnings`` a warning for each row of the table that matches no unit. ``file`` is ``None`` if
+    there is no table.
     """
     stated_amounts = stated.amounts_by_unit(network)
     if file is None:

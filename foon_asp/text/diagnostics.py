@@ -85,7 +85,10 @@ class InputError(UserError):
 
 
 def brief_summary(diagnostics: Sequence[Diagnostic]) -> list[str]:
-    """Return the texts of :func:`summarize`; if they have more than six lines, one line of counts by code."""
+    """Return the texts of :func:`summarize`; if they have more than six lines, return one line of counts.
+
+    That line counts the diagnostics by code and names their files.
+    """
     summary = summarize(diagnostics)
     if sum(1 + text.count("\n") for text in summary) <= 6:
         return summary
@@ -98,7 +101,7 @@ def brief_summary(diagnostics: Sequence[Diagnostic]) -> list[str]:
 
 
 def summarize(diagnostics: Sequence[Diagnostic], max_lines: int = 5) -> list[str]:
-    """Return one text for all warnings of a file with the same code: the first in full, then their count.
+    """Return one text for all diagnostics of a file with the same code: the first in full, then their count.
 
     Behind the count stand the line numbers of up to ``max_lines`` others.
     """

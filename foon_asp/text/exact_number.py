@@ -11,17 +11,19 @@ MAX_LETTERS = 1000
 
 
 def read_price(written: str, column: int = 1) -> Fraction:
-    """Return a price, a decimal from 0 such as ``1.99``, exactly.
+    """Return the exact price that a text states: a decimal from 0, such as ``1.99``.
 
-    Raises :class:`LineError` at ``column``, where the price is in its line, for any other text.
+    Raises :class:`LineError` for any other text, and for more than ``MAX_LETTERS`` letters. ``column`` is
+    where the price begins in its line.
     """
     return read_decimal(written, column, "a price from 0, as a decimal such as 1.99")
 
 
 def read_decimal(written: str, column: int, expected: str) -> Fraction:
-    """Return the number of a decimal from 0, exactly; ``expected`` describes it in messages.
+    """Return the exact number that a text states: a decimal from 0, without sign and exponent.
 
-    Raises :class:`LineError` at ``column``, where the decimal is in its line, for any other text.
+    Raises :class:`LineError` for any other text, and for more than ``MAX_LETTERS`` letters. ``column`` is
+    where the decimal begins in its line; ``expected`` describes the decimal in messages.
     """
     if len(written) > MAX_LETTERS:
         raise LineError(column, f"a number of {len(written)} letters", (f"at most {MAX_LETTERS}",))

@@ -15,7 +15,7 @@ _JSON_KEY = re.compile(rb'"(?:input_nodes|object_label|label)"\s*:')
 
 
 class FolderFile(NamedTuple):
-    """A file of a folder that was named, and its path relative to this folder.
+    """A file in a named folder, and its path relative to this folder.
 
     For a file that was named itself, ``relative`` is its name.
     """
@@ -27,9 +27,9 @@ class FolderFile(NamedTuple):
 def foon_files(paths: Iterable[Path]) -> list[FolderFile]:
     """Return the named files, and the FOON files of named folders and their sub-folders, each once.
 
-    Files are in the order of ``paths``, and by name within a folder. From a folder come the ``*.txt``,
-    ``*.json`` and ``*.jsonl`` files with FOON content: networks and lists of objects. Raises
-    :class:`UserError` for a path that does not exist, and for a folder without such files.
+    Files are in the order of ``paths``, and by name within a folder. A named file may have any content. From
+    a folder come the ``*.txt``, ``*.json`` and ``*.jsonl`` files with FOON content: networks and lists of
+    objects. Raises :class:`UserError` for a path that does not exist, and for a folder without such files.
     """
     files_by_path: dict[Path, FolderFile] = {}
     for path in paths:
@@ -50,7 +50,7 @@ def foon_files(paths: Iterable[Path]) -> list[FolderFile]:
 def _is_foon(file: Path, relative: Path) -> bool:
     """Whether a file of a folder has a suffix and content of FOON; hidden files and folders are no FOON.
 
-    Text in UTF-16 counts as FOON, so that its reading reports the wrong encoding.
+    Text in UTF-16 counts as FOON: reading it then reports the wrong encoding.
     """
     if any(name[:1] == "." for name in relative.parts) or not file.is_file():
         return False

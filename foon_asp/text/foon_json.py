@@ -31,7 +31,7 @@ class FoonJson(Format):
     machine_written = True
 
     def recognises(self, text: str, file: str) -> bool:
-        """Whether the text begins with a bracket, after blanks."""
+        """Whether the text begins with ``{`` or ``[``, after blanks."""
         return begins_json(text)
 
     def dialect(self, text: str) -> Dialect:
@@ -43,7 +43,7 @@ class FoonJson(Format):
         return Dialect.JSON if by_its_name or text.lstrip(" \t\r\n")[0] == "{" else Dialect.JSON_LIST
 
     def lists_objects(self, text: str) -> bool:
-        """Whether the text is a list that begins with a text, or with an object without ``input_nodes``."""
+        """Whether the text is a list whose first value is a text, or an object without ``input_nodes``."""
         first = next(iter(JsonList(text, Path())), None) if text.lstrip(" \t\r\n")[0] == "[" else None
         if first is None or not isinstance(first.value, dict | str):
             return False
@@ -52,7 +52,7 @@ class FoonJson(Format):
     def listed_units(self, text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
         """Yield the units of a text in order, with equivalent lines of FOON text.
 
-        Their prices are recorded in ``reading``.
+        Prices and diagnostics are recorded in ``reading``.
         """
         for unit in read_json_units(text, file, reading):
             if unit.price:
@@ -110,7 +110,10 @@ class FoonJson(Format):
 
 
 def _objects_telling_form(text: str) -> Iterator[dict[str, object]]:
-    """Yield the objects whose keys tell the form: inputs of the first unit, or the first listed object."""
+    """Yield the objects whose keys tell the form: the inputs of the first unit, or the first listed object.
+
+    A text without such objects yields none.
+    """
     first = next(iter(JsonList(text, Path(), "functional_units")), None)
     value = first.value if first else None
     if not isinstance(value, dict):

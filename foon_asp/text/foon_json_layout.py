@@ -15,8 +15,8 @@ TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[\[\]{}:,]|[^\s\[\]{}:,"]+')
 def lay_out(text: str, level: int = 0) -> str:
     """Return a JSON text with one value a line; only the blanks between its tokens change.
 
-    Strings and numbers stay as they are written. ``level`` is the depth at which the text will be nested.
-    The text has to be JSON: see :func:`check_json`.
+    Strings and numbers stay as they are written. ``level`` is the depth at which the text will be nested: all
+    lines but the first are indented by it. The text has to be JSON: see :func:`check_json`.
     """
     parts: list[str] = []
     previous = ""

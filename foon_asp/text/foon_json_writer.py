@@ -39,10 +39,10 @@ class JsonWriter:
         self._level = 1 if self._is_list else 2  # at which a unit stands
 
     def block(self, block: ObjectBlock, in_list: bool) -> WrittenPart:
-        """Return the JSON of an object, laid out for its place, and its losses.
+        """Return the JSON of an object, laid out for a list or a unit, and its losses.
 
-        An amount is written in a list, and above 1 in a unit. Raises :class:`CannotHoldError` where the text
-        would be read as another object.
+        An amount is written in a list; in a unit, only if it is above 1. Raises :class:`CannotHoldError` if
+        the text would be read as another object.
         """
         line, states = block.object, block.states
         text = (object_without_ids if self._is_list else object_with_ids)(line, states)
@@ -53,9 +53,9 @@ class JsonWriter:
         return lay_out(text, 1 if in_list else self._level + 2), losses
 
     def motion(self, line: MotionLine) -> WrittenPart:
-        """Return the JSON of a motion, laid out for its place in a unit, and its losses.
+        """Return the JSON of a motion, laid out for a unit, and its losses.
 
-        Raises :class:`CannotHoldError` where the text would be read as another motion.
+        Raises :class:`CannotHoldError` if the text would be read as another motion.
         """
         text = (motion_without_ids if self._is_list else motion_with_ids)(line)
         read_back = _read_back_unit('{"label":"x"}', text).motion
@@ -77,10 +77,10 @@ class JsonWriter:
         return list_text(parts, 0) + "\n"
 
     def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
-        """Return ``videos`` if the file can name them as its own, else none.
+        """Return ``videos`` if the written file can name them as its own, else an empty tuple.
 
-        The form has to have a key for videos, and the comments have to name these videos and no copies of
-        units.
+        It can if the form has a key for videos, and if the comments name exactly these videos and no copies
+        of units.
         """
         named = tuple(video for video in map(read_video, comments) if video)
         return videos if not self._is_list and named == videos and not any(map(read_copy, comments)) else ()
@@ -108,7 +108,7 @@ def _read_back_object(text: str) -> ObjectBlock:
 
 
 def _read_back_unit(node: str, motion: str) -> ListedUnit:
-    """Return the unit that the JSON of a node and of a motion is read as; the node is input and output.
+    """Return the unit that is read from the JSON of a motion and of a node, which is its input and output.
 
     Raises :class:`CannotHoldError` if it is read with an error.
     """
@@ -130,7 +130,8 @@ def object_with_ids(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
     """Return the JSON of an object in the form ``json``: with ids, flag, and each state line as a state.
 
     A relation without a word becomes the ``container``. The first contents with the word ``contains`` become
-    the ingredients. Other contents become a state such as ``coated {salt}``.
+    the ingredients. Other contents become a state such as ``coated {salt}``. A recipe category without a
+    motion flag is left out, and so are further fields.
     """
     ingredients: tuple[str, ...] = ()
     container = None
@@ -144,7 +145,7 @@ def object_with_ids(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
                 continue
             label, related = attribute
         elif isinstance(attribute, Contents):
-            has_contents = any(earlier["state_label"] == "contains" for earlier in state_values)
+            has_contents = any(state_value["state_label"] == "contains" for state_value in state_values)
             if attribute.word == "contains" and state.listed and not has_contents:
                 label, ingredients = "contains", state.listed
             else:
@@ -169,7 +170,7 @@ def object_with_ids(line: ObjectLine, states: tuple[StateLine, ...]) -> str:
 def motion_with_ids(line: MotionLine) -> str:
     """Return the JSON of a motion in the form ``json``: with id, times, moving entity and success rate.
 
-    Parts that the line does not have are null.
+    Parts that the line does not have are null. Times after the second are left out.
     """
     times, entity, rate = MotionFields.of(line.fields)
     begin, end, *_ = (*in_two_fields(times), None, None)
@@ -213,8 +214,8 @@ def motion_without_ids(line: MotionLine) -> str:
 def unit_text(inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str, level: int) -> str:
     """Return the JSON of a unit, laid out for nesting ``level``, from that of its parts.
 
-    The motion is laid out one level deeper, the objects two levels. ``price`` is empty for a unit without
-    one.
+    The motion has to be laid out one level deeper, the objects two levels. ``price`` is a decimal text, empty
+    for a unit without a price.
     """
     key_indent = "\n" + STEP * (level + 1)
     lists = (list_text(objects, level + 1) for objects in (inputs, outputs))
@@ -225,7 +226,10 @@ def unit_text(inputs: Sequence[str], motion: str, outputs: Sequence[str], price:
 
 
 def network_text(videos: Sequence[str], units: Sequence[str]) -> str:
-    """Return the JSON of a file in the form ``json``; its ``units`` are JSON laid out for level 2."""
+    """Return the JSON of a file in the form ``json``; its ``units`` are JSON laid out for level 2.
+
+    Without ``videos``, the key ``source`` is left out.
+    """
     source = f'    "source": {list_text(list(map(_compact_json, videos)), 1)},\n' if videos else ""
     return f'{{\n{source}    "functional_units": {list_text(units, 1)}\n}}\n'
 
@@ -239,7 +243,7 @@ def list_text(values: Sequence[str], level: int) -> str:
 
 
 def _json_number(digits: str) -> object:
-    """Return digits as a number of JSON, or as a text where JSON has no such number; ``None`` for none."""
+    """Return digits as a number of JSON, or as a text if JSON has no such number; ``None`` without digits."""
     if not digits:
         return None
     return JsonNumber(digits) if _JSON_NUMBER.fullmatch(digits) else digits

@@ -50,7 +50,7 @@ class FoonText(Format):
         return dialect
 
     def lists_objects(self, text: str) -> bool:
-        """Whether there are object lines and no motion lines."""
+        """Whether the text has object lines and no motion lines."""
         starts = {line[:1] for line in split_lines(text)}
         return "O" in starts and "M" not in starts
 
@@ -59,7 +59,10 @@ class FoonText(Format):
         return TextUnits(text_pieces(file, self.piece_letters), str(file), reading).units()
 
     def units(self, text: str, file: str, reading: Reading) -> Iterator[ReadUnit]:
-        """Yield the units of a text in order; a node that a unit lists twice counts once."""
+        """Yield the units of a text in order, without their lines but with their amounts.
+
+        A node that a unit lists twice counts once, with the greatest of its amounts.
+        """
         return _text_units(text, file, reading).units()
 
     def listed_units(self, text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
@@ -67,12 +70,12 @@ class FoonText(Format):
         return _text_units(text, file, reading).listed_units()
 
     def objects(self, text: str, file: str, reading: Reading) -> Iterator[tuple[ObjectBlock, NodePattern]]:
-        """Yield the objects of a kitchen or of goals."""
+        """Yield the objects of a kitchen or of goals, each with a pattern that only its node matches."""
         for block in _text_units(text, file, reading).objects():
             yield block, NodePattern.of(block.node)
 
     def lines(self, text: str) -> Iterator[Line]:
-        """Yield the lines that can be understood."""
+        """Yield the object, state and motion lines that can be understood."""
         for written in split_lines(text):
             if written[:1] in {"O", "S", "M"} and not isinstance(line := read_line(written), LineError):
                 yield line
@@ -108,8 +111,9 @@ def _text_units(text: str, file: str, reading: Reading) -> TextUnits:
 def rewrite_lines(text: str, file: str, lenient: bool, rewrite: Rewrite) -> str:
     """Return a text in which ``rewrite`` has rewritten each object, state and motion line.
 
-    Comments, blank lines and the order of lines stay, also where lines form no unit. Blanks at the ends of
-    lines are removed. All lines get the most frequent line end. A last unit without ``//`` gets it.
+    ``rewrite`` is called once for equal lines. Comments and the order of lines stay, also where lines form no
+    unit. Blank lines become empty, and blanks after ``//`` are removed. All lines get the most frequent line
+    end. A last unit without ``//`` gets it.
 
     Raises one :class:`InputError` with all lines that cannot be understood; if ``lenient``, these stay
     unchanged.
@@ -153,7 +157,7 @@ def _mend_line(line: Line, written: str) -> str:
 
 
 def _rewrite_line(line: str, rewrite: Rewrite) -> tuple[str, LineError | None]:
-    """Return a line as ``rewrite`` writes it, and ``None`` for no error.
+    """Return a line as ``rewrite`` writes it, and ``None`` as its error.
 
     A line that cannot be understood is returned unchanged, with its error. Comments stay. Blanks are removed
     from blank lines and behind ``//``.

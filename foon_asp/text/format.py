@@ -41,7 +41,7 @@ class Format(Protocol):
     ``dialects`` are its dialects. File names of its networks end with ``suffix``, those of its lists of
     objects with ``list_suffix``. ``has_comments`` says whether files may have comments. If
     ``machine_written``, a node that a unit lists twice means two copies of the node. The parameter ``file``
-    of methods is the name of the file in messages.
+    of most methods is the name of the file, by which messages name it.
     """
 
     dialects: tuple[Dialect, ...] = ()
@@ -64,7 +64,7 @@ class Format(Protocol):
         yield from self.units(read_plain_text(file), str(file), reading)
 
     def units(self, text: str, file: str, reading: Reading) -> Iterator[ReadUnit]:
-        """Yield the units of a text in order, without their lines.
+        """Yield the units of a text in order, without their lines but with their amounts.
 
         The diagnostics of the text are added to ``reading``.
         """
@@ -119,15 +119,16 @@ class Writer(Protocol):
     holds_no_inputs: bool
 
     def block(self, block: ObjectBlock, in_list: bool) -> WrittenPart:
-        """Return the text of an object and its losses; ``in_list`` tells a list of objects from a unit.
+        """Return the text of an object and its losses.
 
-        Raises :class:`CannotHoldError` where the text would be read as another object.
+        ``in_list`` is true in a list of objects, and false in a unit. Raises :class:`CannotHoldError` if the
+        text would be read as another object.
         """
 
     def motion(self, line: MotionLine) -> WrittenPart:
         """Return the text of a motion and its losses.
 
-        Raises :class:`CannotHoldError` where the text would be read as another motion.
+        Raises :class:`CannotHoldError` if the text would be read as another motion.
         """
 
     def unit(self, inputs: Sequence[str], motion: str, outputs: Sequence[str], price: str) -> str:
@@ -140,7 +141,7 @@ class Writer(Protocol):
         """Return the text of a list of objects from the texts of these objects."""
 
     def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
-        """Return the ``videos`` of a file that the written file can name.
+        """Return those of ``videos``, the videos of all units, that the written file can name.
 
-        ``comments`` are the comment lines of the file that is read.
+        ``comments`` are the comment lines of the file that is converted.
         """

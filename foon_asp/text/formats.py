@@ -16,7 +16,7 @@ FORMATS: Final[tuple[Format, ...]] = (SideTable(), NEUTRAL, JSON, TEXT)
 
 
 def format_of(text: str, file: str = "") -> Format:
-    """Return the format of a text: the first that recognises it, by its beginning or its file's name."""
+    """Return the first format that recognises a text, by its beginning or by the name of its ``file``."""
     return next(format_ for format_ in FORMATS if format_.recognises(text, file))
 
 

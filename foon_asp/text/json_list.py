@@ -59,7 +59,7 @@ class JsonList:
         self.errors.append(Diagnostic(Severity.ERROR, "json", message, source, excerpt))
 
     def position_of(self, offset: int) -> Source:
-        """Return the line and column, from 1, of an offset in the text; fastest for ascending offsets."""
+        """Return the source of an offset in the text, with line and column; fastest for ascending offsets."""
         if offset < self._counted:
             self._line, self._counted = 1, 0
         self._line += self._text.count("\n", self._counted, offset)
@@ -78,7 +78,8 @@ class JsonList:
     def _elements_under_key(self, position: int) -> Iterator[tuple[int, object]]:
         """Yield the elements of the list under the key; values of other keys go to ``others``.
 
-        ``position`` is the one after the opening bracket of the object.
+        ``position`` is the one after the opening bracket of the object. Raises :class:`JsonFaultError` for a
+        fault, also for an object without the key.
         """
         seen: set[str] = set()
         position = self._skip_blanks(position)
@@ -230,8 +231,8 @@ class JsonFault(NamedTuple):
 def json_fault(error: json.JSONDecodeError) -> JsonFault:
     """Return the fault that the standard library found in a JSON text.
 
-    A comma before the end of a list or an object is reported at the comma, since Python versions report
-    different places.
+    A comma before the end of a list or an object is reported at the comma in words of our own, since Python
+    versions report different places.
     """
     text, offset, message = error.doc, error.pos, error.msg
     start = offset

@@ -39,7 +39,7 @@ def rename_in_json(text: str, renaming: "Renaming") -> str:
     """Return a JSON text in which ``renaming`` has replaced the name and, beside it, its id.
 
     Everything else stays as it is written. Raises :class:`UserError` if the word ``contains`` is to be
-    renamed where JSON lists ingredients, which stand under this word alone.
+    renamed and the text lists ingredients, since these are always read under this word.
     """
     edits: list[tuple[int, int, str]] = []
     names = _json_names(text)
@@ -52,18 +52,18 @@ def rename_in_json(text: str, renaming: "Renaming") -> str:
     for json_name in names:
         name = json_name.name
         if _is_state_line(json_name):
-            spelt = renaming.line(f"S\t{name}").removeprefix("S\t").replace("\t", " ")
+            new_name = renaming.line(f"S\t{name}").removeprefix("S\t").replace("\t", " ")
         else:
-            spelt = renaming.name(json_name.kind, name)
-        if spelt != name:
-            edits.append((json_name.start, json_name.end, json_line(spelt + json_name.suffix)))
+            new_name = renaming.name(json_name.kind, name)
+        if new_name != name:
+            edits.append((json_name.start, json_name.end, json_line(new_name + json_name.suffix)))
             if json_name.id_span:
                 start, end = json_name.id_span
                 edits.append((start, end, text[start:end].replace(json_name.id, renaming.id(json_name.id))))
     parts: list[str] = []
     copied = 0
-    for start, end, spelt in sorted(edits):
-        parts += text[copied:start], spelt
+    for start, end, new_text in sorted(edits):
+        parts += text[copied:start], new_text
         copied = end
     return "".join((*parts, text[copied:]))
 
@@ -87,9 +87,9 @@ class _JsonName(NamedTuple):
 class _Level:
     """A list or an object while JSON is read.
 
-    ``owner`` is the key that it is under, ``key`` the key whose value is read. ``names_before`` is the
-    number of names that were read before it. ``lists_ingredients`` is true for an object with ingredients.
-    ``names`` and ``ids`` are those directly in it, each with its key.
+    ``owner`` is the key that it is under. ``key`` is the key whose value is read; in a list, it is the
+    ``owner``. ``names_before`` is the number of names that were read before it. ``lists_ingredients`` is true
+    for an object with ingredients. ``names`` and ``ids`` are those directly in it, each with its key.
     """
 
     def __init__(self, owner: str, is_list: bool, names_before: int = 0) -> None:
@@ -101,7 +101,7 @@ class _Level:
 
 
 def _json_names(text: str) -> list[_JsonName]:
-    """Return the names of a JSON text.
+    """Return the names of a JSON text, with their kinds, positions and ids.
 
     Names directly in an object come after names that are nested deeper in it.
     """
@@ -137,9 +137,10 @@ def _json_names(text: str) -> list[_JsonName]:
 
 
 def _names_with_ids(level: _Level) -> Iterator[_JsonName]:
-    """Yield the names directly in an object, with their ids; a container has no id.
+    """Yield the names directly in an object or a list, with the ids that stand beside them.
 
-    A state beside a related object becomes the word of a relation.
+    Only labels of objects, states and motions have ids; containers, related objects and ingredients have
+    none. A state beside a related object becomes the word of a relation.
     """
     related = any(key in _RELATED and not is_none(name.name) for key, name in level.names)
     for key, name in level.names:

@@ -47,8 +47,9 @@ def read_object(value: object, keys: set[str] = KEYS) -> JsonObject:
     """Return the node of a JSON object, in either form; ``keys`` are the allowed keys.
 
     States are names, also ``in [bowl]``, or objects with ``state_label`` and ``relative_object``. Listed
-    ingredients become contents with the word ``contains``; a state with this name may be missing. A missing,
-    null or empty value and ``"None"`` are no value. Raises :class:`ValueError` for a value of another form.
+    ingredients become contents with the word ``contains``, whether or not there is a state with this name. A
+    key without a value may be missing or null. As a container, related object, id or flag, an empty text and
+    ``"None"`` are no value, either. Raises :class:`ValueError` for a value of another form.
     """
     if not isinstance(value, dict):
         raise ValueError(f'found {excerpt_of(value)}, expected an object {{"label": ..., "states": [...]}}')
@@ -79,7 +80,7 @@ def read_object(value: object, keys: set[str] = KEYS) -> JsonObject:
 def read_json_objects(text: str, file: str, reading: Reading) -> Iterator[tuple[ObjectBlock, NodePattern]]:
     """Yield the objects of a JSON list with their patterns; diagnostics are added to ``reading``.
 
-    A ``container`` is in the pattern of an object, and not among its states.
+    The patterns are those of :func:`read_objects`. Errors are added after the last object.
     """
     elements = JsonList(text, Path(file))
     for block, pattern, remarks in read_objects(elements):
@@ -93,7 +94,8 @@ def read_objects(elements: JsonList) -> Iterator[tuple[ObjectBlock, NodePattern,
     """Yield the entries of a list, each with its pattern and the messages on its repairs.
 
     An entry is a node as :func:`read_object` reads it, a node in one-line notation, or a node of an answer
-    in JSON. Faulty entries are left out, and become errors of the list.
+    in JSON. A ``container`` is in the pattern of an entry, and not among its states. Listed ingredients match
+    contents with any words. Faulty entries are left out, and become errors of the list.
     """
     for value, source in elements:
         try:
@@ -161,9 +163,10 @@ def key_and_value(value: dict[str, object], keys: tuple[str, ...]) -> tuple[str,
 
 
 def optional_name(value: object, key: str) -> str | None:
-    """Return a value that is a name, without blanks around it; ``None`` for null and where :func:`is_none`.
+    """Return a value that is a name, without blanks around it.
 
-    Raises :class:`ValueError`, which names ``key``, for a value that is no text.
+    Return ``None`` for null and for a text that means no value (:func:`is_none`). Raises
+    :class:`ValueError`, which names ``key``, for any other value.
     """
     if value is None:
         return None
@@ -177,9 +180,10 @@ def is_none(name: str) -> bool:
 
 
 def digits_under(value: dict[str, object], key: str) -> str:
-    """Return the digits of the number under a key, which may be a text; empty if the key has no value.
+    """Return the digits of the number under a key, which may be written as a text.
 
-    Raises :class:`ValueError` for any other value.
+    Return an empty text if the key is missing, null, or a text that means no value (:func:`is_none`). Raises
+    :class:`ValueError` for any other value.
     """
     value_of_key = value.get(key)
     if value_of_key is None or (isinstance(value_of_key, str) and is_none(value_of_key)):
@@ -203,7 +207,7 @@ def amount_from_json(value: object) -> int:
 
 
 def stated_amount(value: dict[str, object]) -> int | None:
-    """Return the value of the key ``amount`` of an object, ``None`` without it.
+    """Return the value of the key ``amount`` of an object, or ``None`` if it is missing or null.
 
     Raises :class:`ValueError` for a value that is no amount.
     """
@@ -214,8 +218,8 @@ def stated_amount(value: dict[str, object]) -> int | None:
 def price_from_json(value: object, exponents: bool = False) -> str:
     """Return a price as a decimal text, from a number or a text of JSON; empty for null.
 
-    If the form has ``exponents``, a number may have one: ``1e2`` becomes ``100``. Raises :class:`ValueError`
-    for a value that is no price.
+    If ``exponents``, a number may have an exponent: ``1e2`` becomes ``100``. Raises :class:`ValueError` for a
+    value that is no price.
     """
     if value is None:
         return ""
@@ -263,7 +267,10 @@ def _state_line(value: object) -> StateLine:
 
 
 def _add_contents(states: list[StateLine], ingredients: tuple[str, ...]) -> list[StateLine]:
-    """Return the states with ``contains`` and the ingredients, in place of the state ``contains`` or last."""
+    """Return the states with contents of the word ``contains``.
+
+    The contents take the place of the first state ``contains``, or come last if there is none.
+    """
     contents = Contents(LISTED_UNDER, tuple(sorted(ingredients)))
     for index, state in enumerate(states):
         if state.attribute == contents.word:
@@ -276,7 +283,7 @@ def _remarks_on_losses(
 ) -> Iterator[str]:
     """Yield messages on parts of an object that lines cannot hold, or that are unusual there.
 
-    ``flag``, ``category`` and ``ingredients`` are parts of the object ``value`` that have been read before.
+    ``flag``, ``category`` and ``ingredients`` are parts of the object ``value`` that have been read already.
     """
     if flag not in {"", *MOTION_FLAGS}:
         yield f"the motion flag {flag!r} is not 0 or 1"
@@ -290,7 +297,10 @@ def _remarks_on_losses(
 
 
 def _ingredient_name(value: object) -> str:
-    """Return the name of an ingredient, without blanks around it; an object is named by its label."""
+    """Return the name of an ingredient, without blanks around it, which may be empty.
+
+    An ingredient that is an object is named by its label. Raises :class:`ValueError` for another value.
+    """
     if isinstance(value, dict):
         return read_object(value).line.label
     return _checked_name(value, "ingredients").strip(" ")

@@ -51,7 +51,7 @@ def _laid_out(value: object, newline: str) -> str:
 
 
 def json_line(value: object, default: Callable[[Any], object] | None = None) -> str:
-    """Return plain values as JSON on one line; ``default`` converts values that JSON has not.
+    """Return plain values as JSON on one line; ``default`` converts values of types that JSON has not.
 
     If the text has half a character, which UTF-8 cannot hold, all letters beyond ASCII are escaped.
     """
@@ -64,10 +64,11 @@ def json_line(value: object, default: Callable[[Any], object] | None = None) -> 
 
 
 def read_json(text: str | bytes, pairs: Callable[[list[tuple[str, Any]]], object] | None = None) -> Any:
-    """Return the value of a JSON text; ``pairs`` makes its objects from pairs of keys and values.
+    """Return the value of a JSON text.
 
-    Raises :class:`ValueError` for any fault, also for lists nested too deeply and numbers too long for
-    Python.
+    ``pairs`` is a function that makes the objects from pairs of keys and values; ``None`` for plain
+    dictionaries. Raises :class:`ValueError` for any fault, also for lists nested too deeply and numbers too
+    long for Python.
     """
     try:
         return json.loads(text, object_pairs_hook=pairs)

@@ -35,16 +35,17 @@ _MOTION_KEYS = {"motion_id", "motion_label", "start_time", "end_time", "robot_ty
 def read_json_units(text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
     """Yield the units of a JSON text in order; diagnostics are added to ``reading``.
 
-    A ``container`` without a word is read as the relation ``in``. Units without input objects are left out,
-    with a warning. A list of objects alone has no units, and causes a warning.
+    A ``container`` becomes the relation ``in``, unless another relation of the object names it. Units without
+    input objects are left out, with a warning. Units without output objects only cause a warning. A list of
+    objects alone has no units, and causes a warning.
     """
     elements = JsonList(text, Path(file), "functional_units")
-    listed = list(elements)
+    all_elements = list(elements)
     videos = _videos(elements.others.get("source"))
-    if listed and not elements.errors and all(_is_object(element.value) for element in listed):
-        reading.warn("no-motion", no_motion_message(len(listed)), listed[0].source)
+    if all_elements and not elements.errors and all(_is_object(element.value) for element in all_elements):
+        reading.warn("no-motion", no_motion_message(len(all_elements)), all_elements[0].source)
         return
-    for element in listed:
+    for element in all_elements:
         try:
             unit, remarks = _unit(element, videos)
         except ValueError as problem:
@@ -94,8 +95,9 @@ def _unit(element: JsonElement, videos: tuple[str, ...]) -> tuple[ListedUnit, li
 def _blocks(unit: dict[str, object], key: str, source: Source, remarks: list[str]) -> tuple[ObjectBlock, ...]:
     """Return the object blocks of a side of a unit, which is the list under ``key``.
 
-    Messages on what was left out or assumed are added to ``remarks``. Raises :class:`ValueError` for objects
-    of another form.
+    A ``container`` becomes the relation ``in``, unless another relation of the object names it. Messages on
+    what was left out or assumed are added to ``remarks``. Raises :class:`ValueError` for objects of another
+    form.
     """
     objects = unit[key]
     if not isinstance(objects, list):
@@ -118,8 +120,9 @@ def _relates_to(state: StateLine, container: str) -> bool:
 def _motion_line(value: object, remarks: list[str]) -> MotionLine:
     """Return the motion line of a unit, with the times, entity and success rate that its JSON has.
 
-    ``value`` is the JSON object of the motion, or its label alone. Messages on what was left out or assumed
-    are added to ``remarks``. Raises :class:`ValueError` for a motion without a label, and for other faults.
+    ``value`` is the JSON object of the motion, or its label alone. A success rate without an entity is that
+    of ``Robot``; an entity without a success rate is left out. Messages on what was left out or assumed are
+    added to ``remarks``. Raises :class:`ValueError` for a motion without a label, and for other faults.
     """
     if not isinstance(value, dict):
         value = {"motion_label": value}

@@ -64,7 +64,7 @@ class ObjectLine(NamedTuple):
 
     @property
     def category(self) -> str | None:
-        """The recipe category of a goal, which is a number; ``None`` for a line without one."""
+        """The recipe category of a goal, a number other than ``00`` and ``01``; ``None`` without one."""
         fields = self.fields if self.motion_flag is None else self.fields[1:]
         return next((field for field in fields if is_number(field) and field not in SLIPPED_FLAGS), None)
 
@@ -135,7 +135,7 @@ def line_names(line: Line) -> Iterator[Mention]:
 class LineError(Exception):
     """A text that the grammar does not accept: the column (from 1), what was found, and what was expected.
 
-    ``advice`` is a correction that is added to the message; empty for none.
+    ``advice`` is a correction that is added to the message, or empty.
     """
 
     def __init__(self, column: int, found: str, expected: tuple[str, ...], advice: str = "") -> None:

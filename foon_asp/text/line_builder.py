@@ -246,8 +246,8 @@ def _bracketed_line(name: str, bracket: Token, id_: str, remarks: list[Remark]) 
     """Return the state line of ``word [object]`` or ``word {list}``.
 
     A list in ``[]``, and anything in ``[]`` after the word ``contains``, is read as if it were in ``{}``.
-    With empty ``[]``, the word alone is a state, such as ``on``. A bracket that is not closed, or by the
-    wrong one, is closed. Adds a remark for each slip.
+    With empty ``[]``, the word alone is a state, such as ``on``. A bracket that is not closed, or is closed
+    by one of the other kind, is read as if it were closed. Adds a remark for each slip.
     """
     closing = "]" if bracket[0] == "[" else "}"
     if bracket[-1] != closing or len(bracket) == 1:
@@ -267,9 +267,9 @@ def _bracketed_line(name: str, bracket: Token, id_: str, remarks: list[Remark]) 
 
 
 def _relation_line(name: str, bracket: Token, id_: str, remarks: list[Remark]) -> StateLine:
-    """Return the line of a relation; with empty brackets, the word is a state.
+    """Return the line of a relation; with empty brackets, the word alone is a state.
 
-    Adds a remark for each slip.
+    Adds a remark on empty brackets and on spaces in them.
     """
     related = bracket[1:-1].strip(" ")
     if not related:
@@ -334,7 +334,10 @@ def _line_error(error: UnexpectedInput, text: str, in_file: bool) -> LineError:
 
 
 def _advice(line: str) -> str:
-    """Return advice on a line that does not begin with the letter of a line; empty if none can be guessed."""
+    """Return advice on a line that does not begin with ``O``, ``S`` or ``M``, or an empty text.
+
+    There is advice on a code fence, on a small letter in place of a capital one, and on a name alone.
+    """
     if not line.replace("\t", " ").isprintable():
         return ""
     if line.startswith(FENCE):

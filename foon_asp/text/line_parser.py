@@ -74,8 +74,8 @@ def parse_name(text: str) -> str | ObjectNode:
 def read_state(text: str) -> StateLine:
     """Return the state line of a state in a JSON file: ``whole``, ``in [bowl]``, ``coated {a,b}``.
 
-    A blank before a bracket is no slip there. Raises :class:`LineError`, with the column in ``text``, when
-    the grammar does not accept it.
+    A blank before a bracket is no slip in JSON. Raises :class:`LineError`, with the column in ``text``, when
+    the grammar does not accept the state.
     """
     for column, letter in enumerate(text, 1):
         if letter in "\t\r\n":
@@ -89,7 +89,7 @@ def read_state(text: str) -> StateLine:
 
 
 def _parse_by_grammar(start: str, text: str) -> object:
-    """Call the function of this name in ``line_builder``, whose import takes long, since it imports Lark."""
+    """Call ``parse_by_grammar`` of ``line_builder``, which is imported here, since its import takes long."""
     from foon_asp.text.line_builder import parse_by_grammar  # noqa: PLC0415 (imports Lark)
 
     return parse_by_grammar(start, text)

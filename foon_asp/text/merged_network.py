@@ -17,13 +17,14 @@ def merged_text(network: Network, comment: str, amounts: Amounts = MappingProxyT
     Above each unit stands a line ``# From:`` for every copy of the unit, with file, line and videos. A copy
     that was read twice, from a file and from a merge of that file, is listed once. The text is read back as
     the same network with the same ``amounts`` and sources, but without the columns of sources. Raises
-    :class:`UserError` for a name that a line of text cannot hold, and for a unit without inputs.
+    :class:`UserError` for a name of the network or of a file that a line of text cannot hold, and for a unit
+    without inputs.
     """
     blocks = list(map(write_node, network.objects))
     motions = {motion: write_motion(motion) for motion in dict.fromkeys(network.motions)}
     comments: dict[Source, str] = {}
     yield f"# {comment}\n//\n"
-    counted_motions = {unit.motion for unit in amounts}
+    motions_with_amounts = {unit.motion for unit in amounts}
     for unit_id, (motion, inputs, outputs, sources) in enumerate(
         zip(network.motions, network.inputs, network.outputs, network.sources, strict=True)
     ):
@@ -31,7 +32,8 @@ def merged_text(network: Network, comment: str, amounts: Amounts = MappingProxyT
             raise UserError(f"the unit {motion!r} has no inputs, which FOON text cannot hold; a store can")
         for source in dict.fromkeys(source._replace(column=1) for source in sources):
             yield comments.get(source) or comments.setdefault(source, _checked_copy_comment(source))
-        amounts_of_unit = amounts.get(network.unit(unit_id), ALL_ONE) if motion in counted_motions else None
+        has_amounts = motion in motions_with_amounts
+        amounts_of_unit = amounts.get(network.unit(unit_id), ALL_ONE) if has_amounts else None
         for side, nodes in enumerate((inputs, outputs)):
             yield motions[motion] if side else ""
             for node in nodes:

@@ -63,7 +63,10 @@ class MotionFields(NamedTuple):
 
 
 def in_two_fields(times: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the time ``<0:14,0:20>`` as two fields, ``0:14`` and ``0:20``; other times as they are."""
+    """Return the time ``<0:14,0:20>`` as two fields, ``0:14`` and ``0:20``.
+
+    ``<Assumed>`` becomes two fields ``Assumed``. All other times are returned as they are.
+    """
     if len(times) == 1:
         span = _SPAN_OF_TWO.fullmatch(times[0]) or _ASSUMED.fullmatch(times[0])
         if span and is_time(times[0]):
@@ -72,7 +75,10 @@ def in_two_fields(times: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def in_one_field(times: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the two fields ``0:14`` and ``0:20`` as one, ``<0:14,0:20>``; other times as they are."""
+    """Return the two fields ``0:14`` and ``0:20`` as one, ``<0:14,0:20>``.
+
+    Two fields ``Assumed`` become ``<Assumed>``. All other times are returned as they are.
+    """
     if len(times) == 2 and not any(time[:1] == "<" for time in times):
         begin, end = times
         field = f"<{begin}>" if begin == end and begin[:1] in {"A", "a"} else f"<{begin},{end}>"

@@ -68,7 +68,10 @@ class NeutralLines(FoonJson):
         return _record_prices(_units_and_prices(split_lines(text), file, reading), reading)
 
     def listed_units(self, text: str, file: str, reading: Reading) -> Iterator[ListedUnit]:
-        """Yield the units of a text in order, with the lines that they would have in FOON text."""
+        """Yield the units of a text in order, with the lines that they would have in FOON text.
+
+        Prices are in the units alone, and are not recorded in ``reading``.
+        """
         for unit, price in _units_and_prices(split_lines(text), file, reading):
             inputs, outputs = (
                 tuple(
@@ -80,9 +83,10 @@ class NeutralLines(FoonJson):
             yield ListedUnit(MotionLine(unit.motion), inputs, outputs, unit.sources, unit.source, price)
 
     def canonical_text(self, text: str, file: str, lenient: bool = False) -> str:
-        """Return each line laid out anew, without the blanks that are not needed.
+        """Return the text with each unit laid out anew, with a blank behind each comma and colon.
 
-        Raises :class:`InputError` for lines that cannot be understood; if ``lenient``, they stay unchanged.
+        All lines get the most frequent line end. Raises :class:`InputError` for lines that cannot be
+        understood; if ``lenient``, they stay unchanged.
         """
         lines = split_lines(text.removeprefix("\ufeff"))
         reading = Reading(lenient)
@@ -107,12 +111,12 @@ class NeutralLines(FoonJson):
 
 
 def _record_prices(units: Iterable[tuple[ReadUnit, str]], reading: Reading) -> Iterator[ReadUnit]:
-    """Yield the units, and record their prices in ``reading``, where the cheapest copy of a unit counts."""
-    exact = cache(read_price)
+    """Yield the units, and record their prices in ``reading``; of equal units, the cheapest one counts."""
+    cached_read_price = cache(read_price)
     for unit, price in units:
         if price:
             copy = FunctionalUnit.of(unit.motion, unit.inputs, unit.outputs)
-            reading.prices.add_least(copy, exact(price))
+            reading.prices.add_least(copy, cached_read_price(price))
         yield unit
 
 
@@ -137,9 +141,10 @@ def _read_lines(file: Path) -> Iterator[str]:
 
 
 def _units_and_prices(lines: Iterable[str], file: str, reading: Reading) -> Iterator[tuple[ReadUnit, str]]:
-    """Yield the units in order, each with its price as an exact decimal text, empty for none.
+    """Yield the units in order, each with its price as an exact decimal text, empty for a unit without one.
 
-    Faulty lines are recorded in ``reading`` and left out. Blank lines are skipped.
+    Faulty lines are recorded in ``reading`` and left out. Blank lines are skipped. A unit without outputs
+    causes a warning.
     """
     nodes: dict[str, ObjectNode] = {}
     for number, line in enumerate(lines, 1):
@@ -165,9 +170,9 @@ class _NeutralFaultError(Exception):
 
 
 def _unit_and_price(line: str, source: Source, nodes: dict[str, ObjectNode]) -> tuple[ReadUnit, str]:
-    """Return the unit of a line, and its price as an exact decimal text, empty for none.
+    """Return the unit of a line, and its price as an exact decimal text, empty for a unit without one.
 
-    ``nodes`` has the nodes read before, by name; new nodes are added. Raises :class:`_NeutralFaultError` for
+    ``nodes`` has the nodes read so far, by name; new nodes are added. Raises :class:`_NeutralFaultError` for
     a line of another form.
     """
     try:
@@ -213,20 +218,21 @@ def _nodes_and_amounts(
 ) -> tuple[list[ObjectNode], dict[ObjectNode, int]]:
     """Return the nodes of a side of a unit, each once, and the amounts above 1.
 
-    The side is a list of names, or an object of amounts by name. ``nodes`` has the nodes read before, by
-    name; new nodes are added. Raises :class:`ValueError`, which names ``key``, for a side of another form.
+    The side is a list of names, or an object of amounts by name. A name that is listed n times has the amount
+    n. ``nodes`` has the nodes read so far, by name; new nodes are added. Raises :class:`ValueError`, which
+    names ``key``, for a side of another form.
     """
     if not isinstance(value, list | dict):
         raise ValueError(
             f'found {excerpt_of(value)} as "{key}", expected a list of names, or amounts by name'
         )
-    listed: dict[ObjectNode, int] = {}
+    amounts: dict[ObjectNode, int] = {}
     for name in value:
         if not isinstance(name, str) or name not in nodes:
             nodes[name] = ObjectNode(_checked_name(name, key))
         amount = amount_from_json(value[name]) if isinstance(value, dict) else 1
-        listed[nodes[name]] = listed.get(nodes[name], 0) + amount
-    return list(listed), {node: amount for node, amount in listed.items() if amount > 1}
+        amounts[nodes[name]] = amounts.get(nodes[name], 0) + amount
+    return list(amounts), {node: amount for node, amount in amounts.items() if amount > 1}
 
 
 def _checked_name(value: object, key: str) -> str:

@@ -15,7 +15,10 @@ from foon_asp.text.text_writer import with_container_word
 
 
 def write_neutral_unit(id_: str, inputs: Iterable[str], outputs: Iterable[str], price: str) -> str:
-    """Return the line of a unit, with its line end, from plain names; ``price`` is empty for none."""
+    """Return the line of a unit, with its line end, from plain names.
+
+    ``price`` is a decimal text, empty for a unit without a price.
+    """
     sides = ([(json_line(name), 1) for name in names] for names in (inputs, outputs))
     return _unit_line(id_, price, *sides)
 
@@ -32,7 +35,7 @@ def _unit_line(
 def _side_text(names: Sequence[tuple[str, int]]) -> str:
     """Return a side of a unit in JSON: a list of names, or amounts by name if some amount is not 1.
 
-    The amounts of a name that comes twice are added up.
+    The ``names`` are JSON already, each with its amount. The amounts of a name that comes twice are added up.
     """
     if all(amount == 1 for _, amount in names):
         return f"[{', '.join(name for name, _ in names)}]"
@@ -54,10 +57,11 @@ class NeutralWriter:
         self._names: dict[str, ObjectNode] = {}
 
     def block(self, block: ObjectBlock, in_list: bool) -> WrittenPart:
-        """Return the name of an object node in JSON, with its amount unless this is one, and its losses.
+        """Return the name of an object node in JSON, and its losses.
 
-        In a list it is an object with ``label`` and, where stated, ``amount``. Raises
-        :class:`CannotHoldError` for blanks around the name, and if another node has the same name.
+        In a unit, the name is followed by an amount above 1: ``"egg": 2``. In a list, the text is an object
+        with ``label`` and, where stated, ``amount``. Raises :class:`CannotHoldError` for blanks around the
+        name, and if an earlier node has the same name.
         """
         states = tuple(map(with_container_word, block.states))
         node = block._replace(states=states).node

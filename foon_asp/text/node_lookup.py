@@ -24,18 +24,19 @@ _IN_QUOTES = re.compile(r' *"(?:\\(?:["\\/bfnrt]|u[0-9a-fA-F]{4})|[^"\\])*("?)')
 def find_goal(
     name: str,
     names: NodeNames,
-    listed: Sequence[ListedObject] = (),
+    goal_entries: Sequence[ListedObject] = (),
     wording: Wording = GOAL,
 ) -> int:
-    """Return the id of the object node that a goal names.
+    """Return the id of the object node that a goal names in ``names``, which is a network or a store.
 
-    A name is tried in this order: as the one-line notation of a node (``sweet potato; chopped; in [cutting
-    board]``); as the label of an entry of the goals file ``listed``; as the label of a single node.
+    The name is tried in this order: as the one-line notation of a node (``sweet potato; chopped; in [cutting
+    board]``); as the label of one of ``goal_entries``, those of the goals file; as the label of a single
+    node.
 
     A text that is no notation, or the notation of no node, is also tried literally as a label. A label with
-    a semicolon after it (``onion;``) is only tried as notation: it is the node without states. Raises
-    :class:`GoalError` with candidates ready to paste if the name is unknown or means several nodes.
-    ``wording`` has the words for a goal in messages.
+    a semicolon after it (``onion;``) is only tried as notation: it is the node without states. Notation is
+    reduced to the level of ``names``. Raises :class:`GoalError` with candidates ready to paste if the name is
+    unknown or means several nodes. ``wording`` has the words for a goal in messages.
     """
     parsed_name: str | ObjectNode = name
     fault = None
@@ -52,7 +53,7 @@ def find_goal(
         if (object_id := names.object_id(candidate)) is not None:
             return object_id
     label = parsed_name if isinstance(parsed_name, str) else literal_node.label
-    entries = [entry for entry in listed if entry.pattern.label == label]
+    entries = [entry for entry in goal_entries if entry.pattern.label == label]
     if entries:
         matching_nodes = list(dict.fromkeys(o for entry in entries for o in nodes_of_entry(entry, names)))
         return _only_node(name, names, len(matching_nodes), matching_nodes, wording)
@@ -92,13 +93,14 @@ def nodes_beginning(start: str, names: NodeNames, max_nodes: int) -> list[int]:
     return [*nodes][:max_nodes]
 
 
-def entry_names(listed: Sequence[ListedObject], names: NodeNames) -> Iterator[str]:
+def entry_names(goal_entries: Sequence[ListedObject], names: NodeNames) -> Iterator[str]:
     """Yield a name for each entry of a goals file, by which :func:`find_goal` finds the entry's node.
 
-    It is the label, or the notation of the node if the label also means another node.
+    It is the label, or the notation of the node if the label also means another node. An entry that does not
+    match exactly one node has its label.
     """
-    counts = Counter(entry.pattern.label for entry in listed)
-    for entry in listed:
+    counts = Counter(entry.pattern.label for entry in goal_entries)
+    for entry in goal_entries:
         label = entry.pattern.label
         nodes = names.find(entry.pattern)
         bare_node = names.object_id(ObjectNode(label))

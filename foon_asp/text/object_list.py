@@ -25,8 +25,9 @@ def read_object_list(file: Path, warnings: list[Diagnostic] | None = None) -> li
     """Return the entries of a kitchen or goals file, in JSON or as object blocks of FOON text.
 
     In JSON, it is a list of ``{"label", "states", "ingredients", "container", "amount"}``, of which only the
-    label is required. Warnings are added to ``warnings``. Raises :class:`InputError` with the line and
-    column of every entry of another form, and of every entry that is listed before with another amount.
+    label is required. A ``*.json`` file is read as JSON, any other by its content. Warnings are added to
+    ``warnings``, and dropped if this is ``None``. Raises :class:`InputError` with the line and column of
+    every entry of another form, and of every entry that is listed a second time with another amount.
     """
     text = read_plain_text(file)
     format_ = JSON if file.suffix == JSON.list_suffix else format_of(text, str(file))

@@ -28,7 +28,7 @@ def is_store(file: Path) -> bool:
 
 
 def read_beginning(file: Path, length: int) -> bytes:
-    """Return the first bytes of a file; empty for an unreadable file or a pipe."""
+    """Return the first ``length`` bytes of a file; empty for an unreadable file or a pipe."""
     if not file.is_file():
         return b""
     try:
@@ -62,7 +62,8 @@ def _unreadable_error(file: Path, error: OSError) -> UserError:
 def text_pieces(file: Path, size: int) -> Iterator[str]:
     """Yield the text of a file in pieces of about ``size`` letters, with line feeds as line ends.
 
-    Raises as :func:`read_plain_text` does, before it yields a piece.
+    The file is first read as a whole to see whether it is UTF-8; for other files, this raises as
+    :func:`read_plain_text` does. A byte order mark is left out.
     """
     with open_bytes(file) as stream:
         first_bytes = stream.read(len(STORE_MAGIC))
@@ -96,7 +97,7 @@ def map_lines(text: str, write: Callable[[str], str]) -> str:
 
 
 def usual_line_end(text: str) -> str:
-    """Return the line end that most lines of a text have."""
+    """Return the line end that most lines of a text have; a line feed if there is none."""
     ends = _LINE_END.findall(text)
     return max(("\n", "\r\n", "\r"), key=ends.count)
 

@@ -13,7 +13,7 @@ _COPY = "# From:"
 def read_video(comment: str) -> str | None:
     """Return the video that a comment line ``# Source:`` names.
 
-    ``None`` stands for another comment, and for one that names no video.
+    Return ``None`` for another comment, and for a comment that names no video.
     """
     if not comment.startswith(_VIDEO):
         return None
@@ -26,7 +26,10 @@ def is_video(comment: str) -> bool:
 
 
 def read_copy(comment: str) -> Source | None:
-    """Return the source that a comment line ``# From:`` names; ``None`` for any other comment."""
+    """Return the source that a comment line ``# From:`` names, with its videos and with column 1.
+
+    Return ``None`` for any other comment.
+    """
     if not comment.startswith(_COPY):
         return None
     position, *videos = comment[len(_COPY) :].lstrip("\t ").split("\t")

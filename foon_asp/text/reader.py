@@ -59,7 +59,7 @@ class FoonReader(Reading):
             InputError: with all errors of all files.
         """
         builder = NetworkBuilder()
-        earlier = len(self.diagnostics)
+        earlier_count = len(self.diagnostics)
         for file in files:
             last: tuple[int, Source] | None = None
             for motion, inputs, outputs, sources, _ in self.file_units(file):
@@ -67,7 +67,7 @@ class FoonReader(Reading):
                 last = (unit, sources[0]) if outputs else last
             if last:
                 self.last_units.setdefault(*last)
-        self.raise_errors(earlier)
+        self.raise_errors(earlier_count)
         return builder.build()
 
     def tree_units(self, text: str, file: str) -> list[tuple[FunctionalUnit, Source]]:
@@ -82,20 +82,21 @@ class FoonReader(Reading):
         Raises:
             InputError: with all errors of the text.
         """
-        earlier = len(self.diagnostics)
+        earlier_count = len(self.diagnostics)
         units = []
         for motion, inputs, outputs, sources, amounts in self.units(text, file):
             unit = FunctionalUnit.of(motion, inputs, outputs)
             units.append((unit, sources[0]))
             if amounts:
                 self.amounts.add(unit, amounts, sources[0])
-        self.raise_errors(earlier)
+        self.raise_errors(earlier_count)
         return units
 
     def file_units(self, file: Path) -> Iterator[ReadUnit]:
         """Yield the units of a file in order; FOON text and neutral files are read piece by piece.
 
-        Amounts and repeated nodes are recorded. A file that is not text adds an error to ``diagnostics``.
+        Amounts and prices are recorded in this reader, and so are repeated nodes of FOON text. A file that is
+        not text adds an error to ``diagnostics``.
 
         Parameters:
             file: The path of the file.
@@ -124,6 +125,9 @@ class FoonReader(Reading):
         Parameters:
             file: The path of the file.
             content: Its bytes, if they are known; ``None`` to read the file.
+
+        Raises:
+            UserError: if the file cannot be read, or is a store.
         """
         try:
             return read_plain_text(file) if content is None else plain_text(content, file)
@@ -132,7 +136,7 @@ class FoonReader(Reading):
             return ""
 
     def units(self, text: str, file: str) -> Iterator[ReadUnit]:
-        """Yield the units of a text in order.
+        """Yield the units of a text in order; findings are added to ``diagnostics``.
 
         Parameters:
             text: The FOON text.
@@ -151,6 +155,8 @@ class FoonReader(Reading):
 
     def object_blocks(self, text: str, file: str) -> list[ObjectBlock]:
         """Return the object blocks of FOON text without motions: a kitchen, or goals.
+
+        A motion is added to ``diagnostics`` as an error.
 
         Parameters:
             text: The text.

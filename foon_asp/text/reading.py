@@ -41,7 +41,7 @@ class Reading:
         self.amounts = StatedAmounts()
 
     def reject(self, code: str, message: str, source: Source, excerpt: str = "") -> None:
-        """Record a fault as an error, or with ``lenient`` as a warning that its line was left out."""
+        """Record a fault as an error; if ``lenient``, as a warning whose message ends in ``; left out``."""
         severity = Severity.WARNING if self.lenient else Severity.ERROR
         message += "; left out" if self.lenient else ""
         self.diagnostics.append(Diagnostic(severity, code, message, source, excerpt))
@@ -53,10 +53,10 @@ class Reading:
         self.diagnostics.append(Diagnostic(Severity.WARNING, code, message, source, excerpt, fix))
 
     def raise_errors(self, earlier: int = 0) -> None:
-        """Raise the errors found, if any.
+        """Raise the errors among the diagnostics, if there are any.
 
         Parameters:
-            earlier: The number of diagnostics, from the first on, to ignore.
+            earlier: How many diagnostics, from the first on, are ignored.
 
         Raises:
             InputError: if another diagnostic is an error.
@@ -68,7 +68,7 @@ class Reading:
 
 @contextlib.contextmanager
 def reporting_to(report: Report) -> Iterator[None]:
-    """Return a context in which the reading of networks calls ``report``, see ``Report``."""
+    """Return a context in which the reading of networks calls ``report`` with numbers of bytes."""
     token = _report.set(report)
     try:
         yield

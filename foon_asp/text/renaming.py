@@ -27,12 +27,12 @@ class Renaming:
     """A renaming of one name, to be applied after :meth:`learn` has read all mentions in all files.
 
     If the new name already has an id, lines with the old name get this id; else they keep their own.
-    ``mentions`` counts the mentions of the old name, ``already`` the mentions of the new name.
+    ``mentions`` counts the mentions of the old name, ``new_mentions`` the mentions of the new name.
     """
 
     def __init__(self, rename: Rename) -> None:
         self.rename = rename
-        self.mentions = self.already = 0
+        self.mentions = self.new_mentions = 0
         self._ids: Counter[str] = Counter()
 
     def learn(self, mentions: Iterable[Mention]) -> None:
@@ -40,7 +40,7 @@ class Renaming:
         kind, old, new = self.rename
         for name_kind, name, id_ in mentions:
             if name_kind == kind and name == new:
-                self.already += 1
+                self.new_mentions += 1
                 self._ids[id_] += bool(id_)
             self.mentions += name_kind == kind and name == old
 

@@ -67,7 +67,7 @@ class SideTable(FoonText):
 def _renamed_row(line: str, table: str, renaming: "Renaming") -> str:
     """Return a line of the table file ``table`` with the new name; blank lines and comments stay.
 
-    Nodes in one-line notation are renamed in the tables of tools, prices and amounts.
+    In the tables of tools, prices and amounts, the name is also replaced in nodes in one-line notation.
     """
     if line.lstrip()[:1] in {"", "#"}:
         return line

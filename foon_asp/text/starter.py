@@ -37,10 +37,11 @@ def starter_files(
     goals: Iterable[ObjectNode],
     rates: Mapping[str, Fraction] | None = None,
 ) -> dict[str, str]:
-    """Return the texts of the files of a data folder by file name.
+    """Return the texts of the files of a new data folder, by file name.
 
-    ``recipe`` is the text of the network. ``kitchen`` are ids of nodes. Motions without a rate get 1.
-    Without ``rates``, a comment says that the rates are not known.
+    ``recipe`` is the text of the network; ``kitchen`` has ids of nodes. A motion without a rate gets 1. If
+    there are no ``rates`` at all, a comment says that nothing is known yet. Utensils are guessed from the
+    nodes.
     """
     motions = sorted(dict.fromkeys(network.motions))
     all_rates = {motion: (rates or {}).get(motion, Fraction(1)) for motion in motions}
@@ -60,6 +61,7 @@ def _utensils(nodes: Sequence[ObjectNode]) -> list[str]:
 
     Labels that are also ingredients are left out.
     """
-    holding = {node.label for node in nodes if node.ingredients}
-    places = {relation.object for node in nodes for relation in node.relations}
-    return sorted((holding & places).difference(item for node in nodes for item in node.ingredients))
+    labels_with_contents = {node.label for node in nodes if node.ingredients}
+    related_objects = {relation.object for node in nodes for relation in node.relations}
+    ingredients = {item for node in nodes for item in node.ingredients}
+    return sorted((labels_with_contents & related_objects) - ingredients)

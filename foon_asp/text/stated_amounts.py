@@ -26,11 +26,11 @@ class StatedAmounts:
         self._copies.setdefault(unit, {})[source] = amounts
 
     def amounts_by_unit(self, network: Network | None = None) -> DataAmounts:
-        """Return the amounts of the first copy of each unit, and a message if another copy disagrees.
+        """Return the amounts of units of which a copy states amounts, and a message if copies disagree.
 
-        A copy that states no amounts has the amount 1 of each node. With ``network``, such copies are
-        compared, too; without it, only copies that state amounts are. The message is about the first
-        disagreement.
+        The amounts are those of the first copy of a unit. A copy that states none has the amount 1 of each
+        node. Such copies only count if a ``network`` names the sources of all copies. The message is about
+        the first disagreement.
         """
         amounts: dict[FunctionalUnit, UnitAmounts] = {}
         conflict = ""
@@ -41,7 +41,7 @@ class StatedAmounts:
             amounts_of_copies = [(copies.get(source, UnitAmounts()), source) for source in sources]
             amounts[unit] = amounts_of_copies[0][0]
             differing_source = next(
-                (source for counted, source in amounts_of_copies if counted != amounts[unit]), None
+                (source for unit_amounts, source in amounts_of_copies if unit_amounts != amounts[unit]), None
             )
             if differing_source is not None and not conflict:
                 conflict = (
@@ -57,7 +57,8 @@ def apply_amount_table(
 ) -> tuple[DataAmounts, list[Diagnostic]]:
     """Return stated amounts overridden by a table, and warnings about rows that match no unit.
 
-    ``rows`` are those of the table. ``units`` are all units whose motion is in the table.
+    ``rows`` are those of the table. ``units`` are all units whose motion is in the table. Units whose amounts
+    are then all 1 are left out.
     """
     amounts = dict(stated.units)
     matched_names: set[UnitAmount] = set()

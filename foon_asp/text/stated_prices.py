@@ -28,10 +28,10 @@ class StatedPrices:
             self._least[unit] = price
 
     def price_by_unit(self, chosen: Mapping[FunctionalUnit, Fraction]) -> dict[FunctionalUnit, Fraction]:
-        """Return the price of each unit; where copies disagree, it is the ``chosen`` one.
+        """Return the price of each unit that was recorded; if its copies disagree, it is the ``chosen`` one.
 
-        For a unit recorded with :meth:`add_least`, it is the least price. Raises :class:`InputError` if
-        copies of a unit disagree and ``chosen`` has no price for the unit.
+        For a unit of which a copy was recorded with :meth:`add_least`, it is the least price of all copies.
+        Raises :class:`InputError` if copies of another unit disagree and ``chosen`` has no price for it.
         """
         errors: list[Diagnostic] = []
         settled_prices = dict(self._least)

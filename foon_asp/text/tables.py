@@ -38,9 +38,9 @@ class Duration(NamedTuple):
 
 
 def motion_in_first_column(name: str, found: str) -> str:
-    """Return ``name``, the motion in the first column of a row.
+    """Return ``name``, the motion in the first column of a row, unchanged.
 
-    Raises :class:`LineError` if it is empty; ``found`` describes the column behind it.
+    Raises :class:`LineError` if it is empty; ``found`` describes in the message what stands behind it.
     """
     if not name:
         raise LineError(1, found, ("the motion before it",))
@@ -65,7 +65,10 @@ def stated_name(name: str) -> str | ObjectNode:
 
 
 def _rate_row(name: str, value: str, column: int) -> tuple[str, Fraction]:
-    """Return the motion and the exact success rate of a row; raises :class:`LineError` at a fault."""
+    """Return the motion of a row and its exact success rate, above 0 and at most 1.
+
+    Raises :class:`LineError` at a fault.
+    """
     motion = motion_in_first_column(name, "a success rate")
     rate = read_decimal(value, column, "a success rate as a decimal such as 0.85")
     if not 0 < rate <= 1:
@@ -74,7 +77,10 @@ def _rate_row(name: str, value: str, column: int) -> tuple[str, Fraction]:
 
 
 def _duration_row(name: str, value: str, column: int) -> tuple[str, Duration]:
-    """Return the motion and the duration of a row; raises :class:`LineError` at a fault."""
+    """Return the motion of a row and its duration, which is passive if another tab and ``passive`` follow.
+
+    Raises :class:`LineError` at a fault.
+    """
     motion = motion_in_first_column(name, "a duration")
     written, tab, word = value.partition("\t")
     if tab and word.strip() != "passive":
@@ -98,9 +104,9 @@ def _seconds(written: str, column: int) -> Fraction:
 
 
 def _tool_row(name: str, value: str, column: int) -> tuple[str | ObjectNode, int | None]:
-    """Return the tool of a row, as a label or a node, and its number; ``None`` for the word ``free``.
+    """Return the tool of a row, as a label or a node, and how many there are, from 1 to 999,999.
 
-    Raises :class:`LineError` at the column of another value.
+    Return ``None`` as the number for the word ``free``. Raises :class:`LineError` at a fault.
     """
     if value != "free" and not _TOOLS.fullmatch(value):
         raise LineError(column, repr(value), ("a number from 1", "free"))
@@ -118,7 +124,10 @@ def _stays_row(name: str, value: str, column: int) -> tuple[str | ObjectNode, bo
 
 
 def _copies_row(name: str, value: str, column: int) -> tuple[ObjectNode, int]:
-    """Return the node of a row and how many copies of it there are; raises :class:`LineError` at a fault."""
+    """Return the node of a row and how many copies of it there are, from 0 to 1,000,000.
+
+    Raises :class:`LineError` at a fault.
+    """
     max_copies = 1_000_000  # of a node; clingo's integers are limited
     if not _COPIES.fullmatch(value) or len(value) > len(str(max_copies)) or int(value) > max_copies:
         raise LineError(column, repr(value), (f"a number of copies, from 0 to {max_copies}",))
@@ -126,9 +135,9 @@ def _copies_row(name: str, value: str, column: int) -> tuple[ObjectNode, int]:
 
 
 def _price_row(name: str, value: str, column: int) -> tuple[str | ObjectNode, Fraction]:
-    """Return the item of a row, as a label or a node, and its exact price.
+    """Return the item of a row, as a label or a node, and its exact price from 0.
 
-    Raises :class:`LineError` at a fault.
+    The price has up to nine digits before the point and six behind it. Raises :class:`LineError` at a fault.
     """
     if not _PRICE.fullmatch(value):
         raise LineError(column, repr(value[:40]), ("a price as a decimal such as 1.99",))
@@ -172,10 +181,11 @@ def read_utensils(file: Path) -> frozenset[str]:
 
 
 def read_stock(file: Path) -> dict[ObjectNode, int]:
-    """Return how many copies of nodes there are, from a table, or from FOON text.
+    """Return how many copies of nodes there are, from a table, or from FOON text if it has an object line.
 
-    In FOON text, each object block counts as one copy, or as its amount. Raises :class:`InputError` for a
-    line of another form, and for a node with two different counts in a table.
+    In FOON text, each object block counts as one copy, or as its amount; those of equal nodes are added up.
+    Raises :class:`InputError` for a line of another form, and for a node with two different counts in a
+    table.
     """
     text = "\n".join(split_lines(read_plain_text(file)))
     if not _OBJECT_LINE.search(text):
@@ -190,9 +200,9 @@ def read_stock(file: Path) -> dict[ObjectNode, int]:
 
 
 def read_default_duration(written: str) -> Fraction:
-    """Return the seconds of the default duration, ``90`` or ``25 min``.
+    """Return the seconds of the default duration, written as ``90``, ``25 min`` or ``1.5 h``.
 
-    Raises :class:`UserError` for another form.
+    Raises :class:`UserError` for another form, and for 0.
     """
     try:
         return _seconds(written.strip(), 1)
@@ -201,7 +211,7 @@ def read_default_duration(written: str) -> Fraction:
 
 
 def duration_template(motions: Mapping[str, Duration | None]) -> str:
-    """Return the text of a file of durations, with the placeholder SECONDS for each ``None``."""
+    """Return the text of a file of durations; a motion with ``None`` gets the placeholder ``SECONDS``."""
     lines = ["# motion, tab, seconds (or 25 min, 1.5 h); behind another tab passive, if nobody stands by"]
     for motion, duration in motions.items():
         seconds = "SECONDS" if duration is None else decimal_text(Fraction(duration.seconds))

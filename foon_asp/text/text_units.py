@@ -38,7 +38,7 @@ class _OpenBlock:
 def _node_of_clean_block(block: str) -> ObjectNode | None:
     """Return the node of a well-formed object block, given without its first ``O``; results are cached.
 
-    ``None`` stands for a block with remarks, and for a goal, whose source has to be recorded.
+    Return ``None`` for a block with faults or remarks, and for a goal, whose source has to be recorded.
     """
     head, line_end, states = block.partition("\n")
     line = read_line(f"O{head}")
@@ -46,15 +46,15 @@ def _node_of_clean_block(block: str) -> ObjectNode | None:
         return None
     if not line_end:
         return ObjectNode(line.label)
-    blank = _blank_of_clean_states(states)
-    return None if blank is None else ObjectNode(line.label, *blank[1:])
+    node = _unlabelled_node_of_clean_states(states)
+    return None if node is None else ObjectNode(line.label, *node[1:])
 
 
 @lru_cache(50_000)  # the states under very many objects are the same
-def _blank_of_clean_states(states: str) -> ObjectNode | None:
+def _unlabelled_node_of_clean_states(states: str) -> ObjectNode | None:
     """Return a node with an empty label and the attributes of state lines; results are cached.
 
-    Returns ``None`` if one of the lines has a remark or is no state line.
+    Return ``None`` if one of the lines has a remark or is no state line.
     """
     lines = map(read_line, states.split("\n"))
     attributes = [line.attribute for line in lines if isinstance(line, StateLine) and not line.remarks]
@@ -64,14 +64,14 @@ def _blank_of_clean_states(states: str) -> ObjectNode | None:
 def _nodes_of_clean_blocks(blocks: str) -> list[ObjectNode] | None:
     """Return the nodes of object blocks, given without the first ``O``.
 
-    Returns ``None`` if one of the blocks is not well-formed.
+    Return ``None`` if one of the blocks is not well-formed, or is a goal.
     """
     nodes = list(map(_node_of_clean_block, blocks.split("\nO")))
     return cast(list[ObjectNode], nodes) if all(nodes) else None
 
 
 class TextUnits:
-    """A reader of one FOON text, given in pieces, which can be read once.
+    """A reader of one FOON text, given in pieces; only one of its methods can be called, and only once.
 
     All line ends have to be line feeds. ``file`` is the name of the file in sources. Diagnostics and goal
     marks are recorded in ``reading``.
@@ -114,7 +114,8 @@ class TextUnits:
     def _chunks(self) -> Iterator[tuple[str, bool]]:
         """Yield the chunks between lines ``//``, each with whether it is the last; progress is reported.
 
-        If the text is JSON behind other text, this fault is recorded, and there are no chunks.
+        A line ``//`` with blanks behind it ends no chunk. If the text is JSON behind other text, this fault
+        is recorded, and there are no chunks.
         """
         report, unreported = progress_report(), 0
         pieces = [next(self._pieces, "")]
@@ -175,7 +176,8 @@ class TextUnits:
         """Yield the units of a chunk, read line by line; remarks and faults are recorded.
 
         A chunk has several units where blanks stand behind ``//``. ``last`` is true for the last chunk of a
-        file. Videos that comments name are those of the units after them.
+        file; a unit without ``//`` at its end then causes a warning. Lines ``# Source:`` name the videos of
+        all units up to the next such lines.
         """
         self._lines = lines = chunk.split("\n")
         start = 0
@@ -297,7 +299,10 @@ class TextUnits:
             section.has_error = True
 
     def _warn_of_no_unit(self, section: "_Section") -> None:
-        """Warn that lines are no unit, and count them as left out, unless a recorded error explains it."""
+        """Warn that lines are no unit, and count them as left out.
+
+        Do nothing if an error that explains it is recorded already; if ``lenient``, this was no error.
+        """
         if section.has_error and not self.reading.lenient:
             return
         lines, first = self._lines, section.first_index
@@ -367,10 +372,10 @@ class _Section:
         self.object_unreadable = self.has_error = False
 
 
-def no_motion_message(objects: int) -> str:
+def no_motion_message(object_count: int) -> str:
     """Return the warning that a file of objects alone stands where a network was expected."""
-    listed = "one object" if objects == 1 else f"{objects} objects"
-    return f"{listed} and no motion: a list such as a kitchen or goals, without units"
+    objects = "one object" if object_count == 1 else f"{object_count} objects"
+    return f"{objects} and no motion: a list such as a kitchen or goals, without units"
 
 
 def _closed_blocks(open_blocks: list[_OpenBlock]) -> tuple[ObjectBlock, ...]:

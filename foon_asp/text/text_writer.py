@@ -59,7 +59,8 @@ class TextWriter:
     def in_dialect(self, line: Line) -> Line:
         """Return a line with only the parts that the dialect can hold, and in ``IDS`` with an id.
 
-        Remarks are removed. Times become one field or two, as the dialect has them.
+        Remarks are removed. Times become one field or two, as the dialect has them. A relation without a word
+        gets the word ``in``.
         """
         line = line._replace(remarks=())
         line = with_container_word(line) if isinstance(line, StateLine) else line
@@ -89,7 +90,7 @@ class TextWriter:
 
 
 def with_container_word(line: StateLine) -> StateLine:
-    """Return a state line in which a relation without a word, a container, has the word ``in``."""
+    """Return a state line; if it is a relation without a word, return it with the word ``in``."""
     if isinstance(line.attribute, Relation) and not line.attribute.word:
         return line._replace(attribute=line.attribute._replace(word="in"))
     return line

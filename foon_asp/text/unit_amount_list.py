@@ -14,7 +14,10 @@ _AMOUNT = re.compile(r"[1-9]\d{0,6}", re.ASCII)
 
 
 def _amount_row(name: str, value: str, column: int) -> tuple[UnitAmount, int]:
-    """Return motion, side and node of a row, and the amount; raises :class:`LineError` at a fault."""
+    """Return motion, side and node of a row, and the amount, from 1 to 1,000,000.
+
+    The node is an output behind an arrow, otherwise an input. Raises :class:`LineError` at a fault.
+    """
     motion = motion_in_first_column(name, "an object node")
     *fields, written = value.split("\t")
     written = written.strip()
@@ -35,4 +38,4 @@ UNIT_AMOUNTS = Table(
     _amount_row,
     "a second amount for {name!r}",
 )
-"""``motion⇥NODE⇥2`` and ``motion⇥→⇥NODE⇥4``: how many of an input or output units of a motion have."""
+"""``motion⇥NODE⇥2`` and ``motion⇥→⇥NODE⇥4``: how many copies of a node the units of a motion take or make."""

@@ -15,7 +15,7 @@ _ARROWS = ("→", "->")
 
 
 class UnitPriceList(NamedTuple):
-    """The prices of a file by motion and by single unit, and the sources of the prices by unit."""
+    """The prices of a file by motion and by single unit, and the ``sources`` of those of single units."""
 
     motions: dict[str, Fraction]
     units: dict[FunctionalUnit, Fraction]
@@ -47,6 +47,7 @@ def _price_row(name: str, value: str, column: int) -> tuple[str | FunctionalUnit
 
 
 UNIT_PRICES = Table("unit-price", NameKind.MOTION, "a price", _price_row, "a second price for {name!r}")
+"""``motion⇥1.99`` and ``motion⇥input⇥→⇥output⇥1.99``: prices of motions and of single units, from 0."""
 
 
 def write_unit_prices(prices: UnitPrices) -> str:
@@ -70,7 +71,7 @@ def _node_field(node: ObjectNode) -> str:
 
 
 def _parse_unit(motion: str, fields: list[str], column: int) -> FunctionalUnit:
-    """Return the unit of a motion and the fields of its inputs, an arrow and its outputs.
+    """Return the unit of a motion whose ``fields`` are one or more inputs, an arrow, and any outputs.
 
     ``column`` is where the fields begin. Raises :class:`LineError` at a fault.
     """

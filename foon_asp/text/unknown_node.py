@@ -52,7 +52,10 @@ def most_similar_first(node: ObjectNode, nodes: Sequence[int], names: NodeNames)
 
 
 def unknown_error(message: str, node: ObjectNode, names: NodeNames, wording: Wording) -> GoalError:
-    """Return the error about an unknown node, with some nodes of each similar label as candidates."""
+    """Return the error about an unknown node, with some nodes of each similar label as candidates.
+
+    Labels are similar if they begin with the label of the node, or are spelled nearly like it.
+    """
     labels = dict.fromkeys((*names.beginning(node.label, _MAX_CANDIDATES), *names.near(node.label, 3)))
     counted_nodes = [names.labelled(label) for label in labels]
     if not counted_nodes:
@@ -68,6 +71,9 @@ def unknown_error(message: str, node: ObjectNode, names: NodeNames, wording: Wor
 def error_with_candidates(
     message: str, names: NodeNames, count: int, candidates: Iterable[int], wording: Wording
 ) -> GoalError:
-    """Return an error with up to twelve of the candidates, which are ids; ``count`` is their number."""
+    """Return an error with up to twelve of the candidates, which are ids of nodes.
+
+    ``count`` is the number of all candidates, given or not; the error counts those that it does not show.
+    """
     shown = [str(names.node(o)) for o in [*candidates][:_MAX_CANDIDATES]]
     return GoalError(message, shown, count - len(shown), wording.option)
