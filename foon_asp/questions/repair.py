@@ -50,7 +50,7 @@ class Repaired(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("r
         stand_ins: What is used in place of what.
         added: The numbers of the steps, from 1, that the tree did not have; stand-ins are not counted.
         order: For each step of the given tree, its number in the repaired one; empty without one.
-        lacking: Without a repair: object nodes that nothing makes and nothing stands in for.
+        lacking: If no repair exists: object nodes that nothing makes and nothing stands in for.
         units: The steps of the repaired tree; null without one.
 
     Example:
@@ -155,8 +155,8 @@ def repair(
         The repair, with its ``stand_ins``, ``added`` steps and the repaired ``tree``.
 
     Raises:
-        UserError: if the file cannot be read, for a problem in which items are used up, or for a certificate
-            about units that the network does not have.
+        UserError: if the file cannot be read, for a problem in which items are used up, for constraints or
+            encodings, or for a certificate about units that the network does not have.
 
     Example:
         >>> problem = foon_asp.load().problem("ice")
@@ -218,7 +218,7 @@ def _certify_repair(
 ) -> tuple[Outcome, Certificate | None]:
     """Return the outcome of a repair, and a certificate that no tree with all steps of the repair is better.
 
-    The outcome has the certificate as its proof if that covers all objectives. The certificate is ``None`` if
+    If the certificate covers all objectives, it is the proof of the outcome. The certificate is ``None`` if
     the repair is not proved, or if none is found in time. Raises :class:`BugError` if a better tree exists.
     """
     covered = Coverage(({"rule": ALL_STEPS, "units": sorted(needed.steps)},))
@@ -241,7 +241,7 @@ def _certify_repair(
 def _kitchen_lists(problem: Problem) -> Callable[[ObjectNode], bool]:
     """Return a function that says whether an entry of the kitchen file matches a node.
 
-    The node may be absent from the network.
+    The network need not have the node. Without a kitchen file, no entry matches.
     """
     data = problem.origin.data if isinstance(problem.origin, Dataset) else None
     items = () if data is None else data.kitchen_items

@@ -77,8 +77,8 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
         Parameters:
             problem: The problem.
             search: The search.
-            ended: How it ended.
-            ids: The units of its tree, by id in the network of the problem; ignored without a tree.
+            ended: How the search ended.
+            ids: The units of its tree, by id in the network of the problem; empty without a tree.
             stuck_at: The object that cannot be had, if the search was stuck.
         """
         tree = Tree.of(problem, ids) if ended is Searched.TREE else None
@@ -179,9 +179,10 @@ def search(
 ) -> Retrieved:
     """Retrieve a task tree with a published search, and find out whether it executes.
 
-    ``bfs``, ``dfs``, ``greedy-success`` and ``greedy-inputs`` choose one unit for each object and never look
-    back; ``ids`` backtracks, and returns a tree of least depth that executes or says that none does. The
-    searches ignore that items are used up. If they are, a tree executes if it runs as a plan in some order.
+    ``bfs``, ``dfs``, ``greedy-success`` and ``greedy-inputs`` choose one unit for each object, and do not
+    backtrack. ``ids`` backtracks: it returns a tree of least depth that executes, or says that none does. All
+    searches run as if items last. Where items are used up, the tree executes if it runs as a plan in some
+    order.
 
     Parameters:
         search: ``bfs``, ``dfs``, ``ids``, ``greedy-success``, ``greedy-inputs``, or the name of a search

@@ -43,7 +43,7 @@ def solve_or_each(
 ) -> Result:
     """Return the best tree for all goals, or with ``all_goals`` the best tree for each goal by itself.
 
-    Raises :class:`UserError` for options that do not go with ``all_goals``.
+    Raises :class:`UserError` for options that do not go with ``all_goals``; some others are then ignored.
     """
     if not all_goals:
         return solve(
