@@ -476,10 +476,9 @@ def _known_durations(
 
 
 def _tool_counts(stated: Tools | None) -> dict[ToolName, int | None]:
-    """Return the stated numbers of tools by label or node, read from a file or checked; empty if none are
-    stated.
+    """Return the stated numbers of tools by label or node; ``None`` for an unlimited number.
 
-    The number ``None`` means an unlimited number. Raises :class:`UserError` for a wrong number or label.
+    They are read from a file, or checked. Raises :class:`UserError` for a wrong number or label.
     """
     if stated is None:
         return {}

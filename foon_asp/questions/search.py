@@ -42,7 +42,8 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
         verdict: Whether the tree executes; null without a tree.
         as_listed: What stops the tree in the order listed, if anything.
         in_any_order: What stops every order, if anything.
-        order: An order that executes, in positions from 1; null without a tree.
+        order: Positions of steps, from 1, in an order in which they run: all steps if the tree executes, else
+            at most those that can run. Null without a tree.
         used_up: Whether the tree, each step done once, runs where items are used up; null without a tree, and
             where items are used up anyway.
         costs: What the tree costs by every objective; null without a tree.

@@ -82,8 +82,8 @@ class ShoppingList(Value, frozen=True):
 
     Attributes:
         price: The sum of prices; without a price list, the number of items, or of copies if they are used up.
-        proved: Whether it is proved that no list is cheaper, except lists that contain all items of an earlier
-            list.
+        proved: Whether it is proved that no list is cheaper, except lists that contain all items of an
+            earlier list.
         costs: What the best tree costs with these items; null where a limit came first.
     """
 
@@ -97,9 +97,9 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
     """Lists of things to add to the kitchen, and the best tree with the first list.
 
     Attributes:
-        offer: The nodes that could be bought. With a price list: those with a price (priced). Without one, the
-            first of these sets that is enough: those for sale (for sale), also nodes of a cycle that feeds
-            only itself (cycle), all but the dish (processed), all but the goals (dish), or all (goal).
+        offer: The nodes that could be bought. With a price list: those with a price (priced). Without one,
+            the first of these sets that is enough: those for sale (for sale), also nodes of a cycle that
+            feeds only itself (cycle), all but the dish (processed), all but the goals (dish), or all (goal).
         lists: The lists, the cheapest first. Of lists with one price and number of items, those with the
             fewest mixtures and made things come first, then that with the best tree. Empty if no list helps.
         complete: Whether it is proved that there are no more lists.
@@ -330,9 +330,7 @@ def _shopping_with_copies(
         second_choices = frozenset(filter(shop.is_second_choice, wares))
 
         def purchases(left_out: Collection[int]) -> Purchases:
-            """Return the purchases that remain possible without the wares ``left_out``, which are ids of
-            nodes.
-            """
+            """Return the purchases that remain possible without wares, by id, that are left out."""
             offered = {o: price for o, price in wares.items() if o not in left_out}  # noqa: B023 (called here)
             return Purchases(problem, offered, second_choices.intersection(offered), objectives)  # noqa: B023
 
@@ -380,7 +378,10 @@ class _PricedList(NamedTuple):
 
 
 class _Lists(NamedTuple):
-    """Shopping lists, the cheapest first, and whether it is proved that there are no others (``complete``)."""
+    """Shopping lists, the cheapest first.
+
+    ``complete``: whether it is proved that there are no others.
+    """
 
     lists: list[_PricedList]
     complete: bool
@@ -578,10 +579,10 @@ class _Shopper:
         return outcome.status in {Status.OPTIMAL, Status.INFEASIBLE}
 
     def _bought_list(self, outcome: Outcome, purchases: Purchases) -> _PricedList:
-        """Return the list that a tree or plan with purchases buys; its outcome is the tree or plan without
-        them.
+        """Return the list that a tree or plan with purchases buys, and as its outcome the tree or plan.
 
-        Raises :class:`BugError` if the tree or plan does not execute with what is bought.
+        The outcome has no purchases among its units: the items are in the kitchen of its problem. Raises
+        :class:`BugError` if the tree or plan does not execute with them.
         """
         assert outcome.units is not None
         bought, units = purchases.split(outcome.units)

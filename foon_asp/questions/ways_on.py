@@ -147,7 +147,8 @@ def ways_on(
 def _units_to_goals(problem: Problem, stocked: Problem, answer: Answer | None) -> Iterator[WayOn]:
     """Yield the units that lead to the goals, in the order of :class:`WaysOn`, with the inputs they lack.
 
-    ``stocked`` is the problem with the lacking nodes added to its kitchen.
+    ``stocked`` is the problem with the nodes that the state lacks added to its kitchen. ``answer`` has the
+    best tree from there; ``None`` without one.
     """
     best = frozenset() if answer is None else frozenset(answer.ids or ())
     lacking = {
