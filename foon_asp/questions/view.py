@@ -452,11 +452,11 @@ def pages(
     keywords of questions. The first page has the network and, unless items are used up, the proof. Other
     parts come in this order:
 
-    - Where items are used up and there are no rules: the answer for lasting items, and its proof. No plan costs
-      less than this answer, except by ``kitchen``; there is no proof by ``kitchen``.
+    - Where items are used up and there are no rules: the answer for lasting items, and its proof. No plan
+      costs less than this answer, except by ``kitchen``; there is no proof by ``kitchen``.
     - Under rules: the answer without them.
-    - If there is no tree: why, and a shopping list unless rules are the reason. This is the last part. It is left
-      out if there is no plan only because items run out.
+    - If there is no tree: why, and a shopping list unless rules are the reason. This is the last part. It is
+      left out if there is no plan only because items run out.
     - The searches, the alternatives and the front, as far as they are wanted.
     """
     deadline = settings.begun
