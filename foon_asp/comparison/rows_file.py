@@ -101,8 +101,8 @@ class RowsFile(Generic[Row]):
     def _read_rows(self, content: bytes, question: Json) -> int:
         """Read the rows of an existing file into ``done``; return the length of its complete lines, in bytes.
 
-        A row with the key of an earlier row causes a warning. Raises :class:`UserError` for other contents,
-        and for a file that was begun for another question.
+        A row with the key of an earlier row adds to ``duplicate_warnings``. Raises :class:`UserError` for
+        other contents, and for a file that was begun for another question.
         """
         first_line, newline, rows = content.partition(b"\n")
         header = self._read_line(first_line, 1, dict) if newline else {}

@@ -77,14 +77,14 @@ class Point(Value, frozen=True):
 
 
 class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pareto")):
-    """The Pareto front: the costs that no other tree dominates. Each point has one tree with these costs.
+    """The Pareto front: its points are the costs that no tree dominates, each with one tree of these costs.
 
     Attributes:
         encodings: The folder that replaced the built-in encodings, if any.
         complete: Whether it is proved that there are no other points. If not, a limit came first; the points
             found by then are on the front, too.
         points: The points, the best by the first objective first.
-        seconds: The time it took.
+        seconds: The time that the question took, in seconds.
 
     Example:
         >>> front = foon_asp.pareto(foon_asp.load().problem("ice"))

@@ -38,7 +38,8 @@ def usual_objectives(
 ) -> Objectives:
     """Return the names if there are any, or else the ``usual`` objectives of a question.
 
-    If no success rates are known, the usual objectives are ``instead``, and a warning says so.
+    If success rates are not known for all motions, the usual objectives are ``instead``, and a warning says
+    so.
     """
     if names:
         return names

@@ -96,7 +96,7 @@ class Question:
     """The description of a question for a command line.
 
     ``options``: the options of the command.
-    ``help``: the text below the line of the index, with examples and exit codes.
+    ``help``: the text of ``--help`` below its first line, with examples and exit codes.
     ``formats``: the formats of the result, the default first.
     ``suffixes``: the format that each ending of a file name stands for; empty if no file can be written.
     ``pose``: a function from the options of the problem to the first arguments of the question.

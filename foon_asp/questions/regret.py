@@ -138,7 +138,7 @@ class Regrets(WithAnswer, frozen=True, kw_only=True, tag=schema_name("regret")):
     def show(self) -> Iterator[Block]:
         """Return the best tree's costs, and the regrets under a heading for each kind of part.
 
-        Regrets are by the first objective, the greatest loss first.
+        The line of a regret has the loss by the first objective. The greatest loss comes first.
         """
         yield from (*self.goal_lines(), *self.answer.headlines())
         what = "tree" if self.items == "lasting" else "plan"

@@ -50,7 +50,7 @@ class Relaxed(Result, frozen=True, kw_only=True, tag=schema_name("relax")):
         facts: The number of facts.
         actions: The number of reachable actions.
         status: optimal: proved that no plan is cheaper, however many actions it has; infeasible: proved that
-            there is no plan; feasible and unknown: stopped at a limit with or without one.
+            there is no plan; feasible and unknown: stopped at a limit with or without a plan.
         stopped: For feasible and unknown: at which limit, and while doing what.
         certificate: The file with a proof, where one was written.
         cost: The cost of the plan; null without a plan.

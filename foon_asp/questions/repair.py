@@ -44,14 +44,15 @@ class Repaired(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("r
     Attributes:
         verdict: Whether the tree executes as it is.
         status: optimal: proved cheapest; feasible: stopped at a limit with a repair; infeasible: proved that
-            no repair exists; unknown: stopped without one.
-        proof: What proves it; null where nothing is proved.
-        costs: What the repaired tree costs; null without one.
+            no repair exists; unknown: stopped without a repair.
+        proof: What proves the status; null where nothing is proved.
+        costs: What the repaired tree costs; null without a repair.
         stand_ins: What is used in place of what.
-        added: The numbers of the steps, from 1, that the tree did not have; stand-ins are not counted.
-        order: For each step of the given tree, its number in the repaired one; empty without one.
+        added: The numbers, from 1, of the steps that the given tree did not have; stand-ins are not counted.
+        order: For each step of the given tree, its number in the repaired tree, from 1; empty without a
+            repair.
         lacking: If no repair exists: object nodes that nothing makes and nothing stands in for.
-        units: The steps of the repaired tree; null without one.
+        units: The steps of the repaired tree; null without a repair.
 
     Example:
         >>> tree = foon_asp.search(foon_asp.load().problem("macaroni"), "bfs").tree
@@ -94,7 +95,7 @@ class Repaired(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("r
         return "\n".join(self.notes)
 
     def foon(self) -> str:
-        """Return the repaired tree as FOON text; empty without one."""
+        """Return the repaired tree as FOON text; empty without a repair."""
         if self.tree is None:
             return ""
         comments = [f"Repaired tree for: {' + '.join(map(str, self.goals))}"]

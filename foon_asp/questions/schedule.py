@@ -90,7 +90,7 @@ class Schedule(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("s
         lower_bound: A proved lower bound on the makespan, in seconds.
         agents: The number of agents.
         durations: The duration of each motion of the plan.
-        timetable: The steps of the plan, in its order; empty without a schedule.
+        timetable: The steps, in the order of the plan; empty without a schedule.
         lacking: Without a schedule, the tools of which there are too few.
 
     Example:

@@ -78,8 +78,8 @@ class RateInterval(Value, frozen=True):
     Attributes:
         rate: The rate that is given.
         units: How many units of the best tree have the motion.
-        below: The end below; without one, the interval goes down to 0, which is not in it.
-        above: The end above; without one, the interval goes up to 1.
+        below: The end below the rate. If it has no rate, the interval goes down to 0, which is not in it.
+        above: The end above the rate. If it has no rate, the interval goes up to 1.
     """
 
     motion: str

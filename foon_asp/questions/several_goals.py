@@ -26,8 +26,8 @@ def with_goals_apart(answer: Answer, settings: Settings, posed: Problem) -> Answ
     """Return an answer with the goals that each unit of its tree is needed for.
 
     For up to eight goals, the answer also has the optimum for each goal by itself, and the sum of these
-    costs. ``posed`` is the problem before the answer was searched for; of a large store, it has not read all
-    units that the goals can need. The units for each goal are then read by themselves.
+    costs. ``posed`` is the problem that was asked about. If it is over a large store and not all of its units
+    were read, the units for each goal are read separately.
     """
     problem, network = answer.problem, answer.problem.network
     serves = tuple(

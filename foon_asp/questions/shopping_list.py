@@ -351,7 +351,7 @@ class _PricedList(NamedTuple):
     """A shopping list by ids, its price, and whether it is proved to be the cheapest.
 
     ``bought`` has the number of copies to buy by id of the object node; the number is 1 where items last.
-    ``outcome`` has the best tree with these items, if it is known.
+    ``outcome`` has the best tree with these items; ``None`` if it is not known.
     """
 
     bought: Mapping[int, int]
@@ -497,8 +497,9 @@ def _lists_without_copies(
 ) -> _Lists:
     """Return the cheapest lists of ``wares``, which are prices by id of the node, where items last.
 
-    Without rules, :class:`_Shopper` finds them; under rules, clingo does. There is no list if the goals
-    cannot be made even with all wares; this is proved unless a limit came first.
+    Without rules, :class:`_Shopper` finds them. Under rules, clingo does; if ``objectives`` are more than
+    ``units``, further lists of the same price are returned, for the caller to compare. There is no list if
+    the goals cannot be made even with all wares; this is proved unless a limit came first.
     """
     if prepared.tree is None:
         return _Lists([], complete=not prepared.stopped)

@@ -16,10 +16,10 @@ from foon_asp.rules.passed_constraint import Constraint
 def solve_under_soft_constraints(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, weights: Mapping[Constraint, int]
 ) -> Answer:
-    """Return the answer with the least penalty, which is the best by the objectives among such trees.
+    """Return the answer of least penalty and, among trees of this penalty, the best by the objectives.
 
     Each way to break a constraint costs its weight (``weights``). The answer has the total penalty, and for
-    each constraint in how many ways it is broken.
+    each constraint in how many ways it is broken. The whole network is read.
     """
     current_caller = caller()
     outcome, penalty, constraints = find(

@@ -17,7 +17,7 @@ class NodeEdit(Value, frozen=True):
         edit: The kind of edit in the table of stand-ins.
         served: The differing part of the node that is replaced; empty where it has none.
         serving: The differing part of the node that is used; empty where it has none.
-        price: The price in the table.
+        price: The price in the table of stand-ins.
     """
 
     edit: Edit
@@ -43,7 +43,7 @@ class StandIn(Value, frozen=True):
     """One node that is used in place of another.
 
     Attributes:
-        unit: The id of the stand-in among the units.
+        unit: The id of the unit that is the stand-in in the network.
         used: The node that is used.
         stands_in_for: The node in whose place it is used.
         dissimilarity: What it costs by the table of stand-ins: the sum of the prices of ``edits``.

@@ -31,7 +31,7 @@ from foon_asp.text.writer import write_counted_node, write_node
 from foon_asp.whole_file import utf_8, write_whole
 
 States = tuple[dict[ObjectNode, int], ...]
-"""The number of copies of each consumable object node, initially and after each step."""
+"""The number of copies of each object node that can run out, initially and after each step."""
 
 
 class TracedStep(Value, frozen=True):
@@ -42,7 +42,7 @@ class TracedStep(Value, frozen=True):
         gone: The copies that it uses up.
         stayed: The copies that it needs and does not use up.
         came: The copies that it makes.
-        there: The number of copies of each consumable object node after the step.
+        there: The number of copies of each object node that can run out, after the step.
     """
 
     step: int
@@ -84,7 +84,7 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
     """The plan that was traced."""
 
     states = Unserialized[States]()
-    """The number of copies of each consumable object node, initially and after each step."""
+    """The number of copies of each object node that can run out, initially and after each step."""
 
     @property
     def ending(self) -> Ending:
@@ -94,7 +94,7 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
         return Ending.DONE if self.stopped is None else Ending.NEGATIVE
 
     def copies(self, after: int) -> dict[ObjectNode, int]:
-        """Return the number of copies of each consumable object node after a step.
+        """Return the number of copies of each object node that can run out, after a step.
 
         Parameters:
             after: The number of steps that were done, from 0.
@@ -123,7 +123,7 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
         return "".join(map(write_node, endless)) + self.stock_text(after)
 
     def stock_text(self, after: int) -> str:
-        """Return the stock after a step as FOON text: each consumable object node, with its amount.
+        """Return the stock after a step as FOON text: the nodes that can run out, with amounts.
 
         Parameters:
             after: The number of steps that were done, from 0.
@@ -176,10 +176,9 @@ def _stated_stock(problem: Problem) -> dict[ObjectNode, int]:
 
 
 def _copies_after_steps(problem: Problem, replay: Replay) -> Iterator[dict[ObjectNode, int]]:
-    """Yield the number of copies by consumable node: before the first step, and after each step.
+    """Yield the number of copies by node: before the first step, and after each step.
 
-    Nodes without a copy are left out. Available nodes without a stock never run out, so that they are no
-    consumable nodes.
+    Nodes without a copy are left out. Available nodes without a stock never run out, and are left out, too.
     """
     stock = _stated_stock(problem)
     counts = Counter({node: n for node, n in stock.items() if problem.at_hand(node)})

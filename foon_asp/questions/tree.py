@@ -207,8 +207,8 @@ def read_listed_units(
     """Return the units that a file lists, each with its place, and the goals if the file is an answer.
 
     ``network`` returns the network that ids in the file refer to; it is called only if there are ids.
-    Assumptions of the reader are warnings. Raises :class:`UserError` for a file that is not understood or has
-    no tree.
+    Assumptions of the reader are reported as warnings. Raises :class:`UserError` for a file that is not
+    understood or has no tree.
     """
     listed = read_answer(file).with_units(file, network)
     return listed.units or (), listed.goals
@@ -217,8 +217,8 @@ def read_listed_units(
 def read_answer(file: Path) -> ListedTree:
     """Return the tree in a file, with the other fields if the file is an answer.
 
-    Units that the file gives by id are not looked up, and are ids in the result. Assumptions of the reader
-    are warnings. Raises :class:`NoTreeError` for an answer without a tree.
+    Units that the file gives by id are not looked up: they stay ids. Assumptions of the reader are reported
+    as warnings. Raises :class:`NoTreeError` for an answer without a tree.
     """
     current_caller = caller()
     reader = FoonReader(current_caller.lenient)

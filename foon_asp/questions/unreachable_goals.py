@@ -26,7 +26,7 @@ def without_unreachable(problem: Problem) -> tuple[Problem, tuple[SkippedGoal, .
 def _skipped_goal(problem: Problem, goal: int) -> SkippedGoal:
     """Return an unreachable goal with its first cause, on the path to it that lacks the fewest nodes.
 
-    If the cause is a cycle, the goal has the number of its nodes; otherwise it has 0.
+    The result also has the number of nodes in the cycle, which is 0 if the cause is no cycle.
     """
     root = dead_ends(replace(problem, goals=(goal,))).roots[0]
     cycle = root.cycle.nodes if root.cause is Cause.CYCLE and root.cycle else ()

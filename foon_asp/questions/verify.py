@@ -464,7 +464,7 @@ def _goal_ids(content: Any) -> list[int]:
 
 
 def _step_ids(content: Any) -> list[int]:
-    """Return the unit ids of the tree that a certificate repairs; empty for a certificate of no repair."""
+    """Return the unit ids of the tree whose repair a certificate is about; empty for other certificates."""
     rules = content.get("rules") if isinstance(content, dict) else None
     if not isinstance(rules, list) or len(rules) != 1 or not isinstance(rules[0], dict):
         return []

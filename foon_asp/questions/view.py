@@ -98,14 +98,20 @@ _SUFFIXES = {
 class View(Result, frozen=True):
     """A page about an ``answer``, and the picture of its tree; :meth:`write` writes either into a file.
 
-    Beside the answer, the page shows each of these fields that is not empty: the trees of ``searches``, the
-    certificate of the ``certified`` answer, the answer ``without_rules``, ``alternatives``, the ``front``,
-    and the whole ``network`` of a problem. If there is no tree, it shows ``why_not`` and a ``shopping_list``.
-    Beside a plan, it shows the answer for ``lasting`` items; no plan is better than this answer, and the
-    certificate is about it. A page about a network alone has no ``answer``. For a given tree or given units,
-    there is only a ``picture``. SVG, PNG and PDF raise :class:`UserError` if the picture would be too large,
-    or if the packages of ``foon-asp[pictures]`` are missing; all pictures raise :class:`NothingToDrawError`
-    if there is no tree.
+    The page shows each of these fields that is not empty:
+
+    ``answer``: the best tree. A page about a network alone has no answer.
+    ``searches``: the results of searches for the same goals.
+    ``certified``: the answer whose certificate is shown.
+    ``lasting``: beside a plan, the answer where items last; no plan is better. The certificate is about it.
+    ``without_rules``: the answer without user rules.
+    ``alternatives`` and ``front``: other trees.
+    ``why_not`` and ``shopping_list``: why there is no tree, and what would help.
+    ``network``: a problem over the whole network, which is shown.
+
+    For a given tree or given units, there is only a ``picture``, and no page. SVG, PNG and PDF raise
+    :class:`UserError` if the picture would be too large, or if the packages of ``foon-asp[pictures]`` are
+    missing. All pictures raise :class:`NothingToDrawError` if there is no tree.
 
     Example:
         >>> page = foon_asp.view(foon_asp.load().problem("ice"))

@@ -57,7 +57,7 @@ def _reason_lines(problem: Problem, shown: int = 5) -> Iterator[str]:
 
 
 def _cause_lines(problem: Problem, shown: int = 3) -> Iterator[str]:
-    """Yield a line for each of the first ``shown`` causes on the easiest way to the goals.
+    """Yield a line for each of the first ``shown`` causes on the path to the goals that lacks fewest nodes.
 
     A cause is a missing node, or a cycle of nodes that can only be made from each other. A missing goal is
     left out, since another line names it.

@@ -19,8 +19,8 @@ class Choice(Value, frozen=True):
     Attributes:
         kind: unit, item or step.
         id: The id of the unit or item; the number of the step, from 0.
-        taken: Whether every tree of a case has it (true) or none has it (false). Left out if it
-            only costs too much.
+        taken: Whether every tree of a case has it (true) or none has it (false). Left out in
+            ``dear``.
     """
 
     kind: str
@@ -126,7 +126,7 @@ def _proof_case(
     """Return a leaf of the proof as a case.
 
     ``content`` is the certificate, and ``subproof`` the leaf. ``decisions`` are the choices on the branch to
-    the leaf. ``above_cutoff`` are the choices that cost too much in a better tree.
+    the leaf. ``above_cutoff`` are the choices whose reduced cost is too high for a better tree.
     """
     excluded = {choice.id for choice in decisions if choice.kind == "unit" and not choice.taken}
     weights = (

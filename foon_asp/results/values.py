@@ -362,7 +362,7 @@ def step_lines(steps: Iterable[Step | Unit], sign: str = " ") -> Iterator[str]:
 def changed_motions(
     gone: Iterable[Step | FunctionalUnit], new: Iterable[Step | FunctionalUnit], named: int = 6
 ) -> str:
-    """Return the motions of removed and added steps: ``- heat + pour (2)``; empty without any.
+    """Return the motions of removed and added steps: ``- heat  + pour (2)``; empty without any.
 
     Of more than ``named`` motions, the last are replaced by a number of steps: ``- heat, pour and 3 more``.
     """
