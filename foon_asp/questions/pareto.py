@@ -369,14 +369,16 @@ def _best_plans(
     best of the plans is yielded. The boxes that contain its costs are then divided. If no box has a plan,
     nothing more is yielded. An outcome without a proof is yielded as well; the caller stops there.
     """
-    reporter, others = caller().reporter, order[1:]
-    boxes: list[Box] = [(None,) * len(others)]
+    reporter, other_objectives = caller().reporter, order[1:]
+    boxes: list[Box] = [(None,) * len(other_objectives)]
     solved: dict[Box, Outcome] = {}
     while True:
         for box in boxes:
             if box not in solved:
                 upper_bounds = tuple(
-                    {o: bound} for o, bound in zip(others, box, strict=True) if bound is not None
+                    {objective: bound}
+                    for objective, bound in zip(other_objectives, box, strict=True)
+                    if bound is not None
                 )
                 bounded_settings = settings._replace(bounded=Bounded(below=upper_bounds))
                 solved[box] = solve(
@@ -393,7 +395,7 @@ def _best_plans(
         )
         assert best.costs is not None
         yield best
-        boxes = _divide_boxes(boxes, tuple(map(best.costs.measure, others)))
+        boxes = _divide_boxes(boxes, tuple(map(best.costs.measure, other_objectives)))
 
 
 def _divide_boxes(boxes: Sequence[Box], point: Sequence[int | Fraction]) -> list[Box]:

@@ -11,8 +11,7 @@ from functools import partial
 from itertools import combinations
 from typing import Annotated, Any, Unpack
 
-from foon_asp.asp import Outcome, Reporter, Settings, Status
-from foon_asp.asp import solve as find
+from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.errors import UserError
 from foon_asp.network.spelling import near_labels
@@ -206,7 +205,7 @@ def regret(
     if None in asked_units:
         raise UserError(f"there is no unit {numbers[asked_units.index(None)]} in the network")
     units_by_motion = {motion: _units_of_motion(problem, motion) for motion in motion_names}
-    best = find(problem, chosen, settings, caller().reporter)
+    best = solve(problem, chosen, settings, caller().reporter)
     head, answer = head_of(problem, chosen), Answer.of(best)
     if best.units is None or best.status is not Status.OPTIMAL:
         return Regrets(**head, answer=answer, regrets=())
@@ -228,7 +227,7 @@ def regret(
         except KeyboardInterrupt:
             remaining = None
         else:
-            remaining = find(smaller_problem, chosen, settings, Reporter())
+            remaining = solve(smaller_problem, chosen, settings, Reporter())
         regrets.append(_regret_of_parts(best, remaining, **parts))
         # a missing item is not taken from the kitchen, so a tree that makes it costs less by ``kitchen``
         if remaining and unrestricted and ("item" not in parts or Objective.KITCHEN not in chosen):
@@ -258,10 +257,10 @@ def regret_of(best: Answer, settings: Settings, unit: int | None = None, item: i
     """
     network, outcome = best.problem.network, best.outcome
     if unit is not None:
-        remaining = find(_without_units(best.problem, [unit]), best.objectives, settings, Reporter())
+        remaining = solve(_without_units(best.problem, [unit]), best.objectives, settings, Reporter())
         return _regret_of_parts(outcome, remaining, unit=mention_of(network, unit))
     assert item is not None
-    remaining = find(_without_items(best.problem, item), best.objectives, settings, Reporter())
+    remaining = solve(_without_items(best.problem, item), best.objectives, settings, Reporter())
     return _regret_of_parts(outcome, remaining, item=node_of(network, item))
 
 

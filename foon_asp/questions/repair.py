@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Unpack
 
 from foon_asp.asp import Outcome, Proof, Settings, Status
-from foon_asp.asp.optimum import solve as find
+from foon_asp.asp.optimum import solve
 from foon_asp.certificate import Certificate, NotBestError, certify, certify_infeasible
 from foon_asp.certificate.coverage import Coverage
 from foon_asp.dataset import Dataset
@@ -176,7 +176,7 @@ def repair(
         )
     needed = Repair.of(base_problem, listed.units, listed.places, table, _kitchen_lists(problem))
     verdict = simulate_for(needed.shown, listed).verdict
-    outcome = find(needed.posed, _OBJECTIVES, settings, caller().reporter)
+    outcome = solve(needed.posed, _OBJECTIVES, settings, caller().reporter)
     found_certificate: Certificate | None = None
     notes: tuple[str, ...] = ()
     if certificate is not None:

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from msgspec.structs import asdict
 
 from foon_asp.asp import Settings
-from foon_asp.asp.soft import solve_soft as find
+from foon_asp.asp.soft import solve_soft
 from foon_asp.problem import Objective, Problem
 from foon_asp.questions.answer import Answer, SoftConstraint
 from foon_asp.questions.caller import caller
@@ -22,7 +22,7 @@ def solve_under_soft_constraints(
     each constraint in how many ways it is broken. The whole network is read.
     """
     current_caller = caller()
-    outcome, penalty, constraints = find(
+    outcome, penalty, constraints = solve_soft(
         over_whole_network(problem), objectives, settings, weights, current_caller.reporter
     )
     if current_caller.read_seconds is not None:
