@@ -114,7 +114,10 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
 
     @property
     def task_trees(self) -> tuple[Tree, ...]:
-        """The trees as :class:`Tree` values for other questions, in the order of ``points``."""
+        """The trees as :class:`Tree` values for other questions, in the order of ``points``.
+
+        The claim of each tree is the number of its point, and its costs.
+        """
         ids = (self.problem.network.units_of_numbers(point.ids) for point in self.points)
         claims = (f"point {number}: {costs_text(point.costs)}" for number, point in enumerate(self.points, 1))
         return tuple(Tree.of(self.problem, *ids_and_claim) for ids_and_claim in zip(ids, claims, strict=True))

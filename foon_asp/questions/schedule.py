@@ -125,7 +125,8 @@ class Schedule(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("s
     def show(self) -> Iterator[Block]:
         """Return the makespan with what is proved of it, a table of the steps, and the time each agent works.
 
-        Without a schedule, the tools that are lacking are listed, and how many are needed.
+        Without a schedule, the tools that are lacking are listed, and how many are needed. If a limit came
+        first, a line has the lower bound.
         """
         yield from self.goal_lines()
         agents = counted(self.agents, "agent")

@@ -290,7 +290,8 @@ def stats(
             file. If given, units are listed.
 
     Returns:
-        The counts; or the units, and for each input whether it stays.
+        The counts. With ``units``, ``unit``, ``explain_items`` or ``stays``: the units instead. With
+        ``explain_items`` or ``stays``, each of their inputs says whether it stays.
 
     Raises:
         UserError: for a file that cannot be read, or a unit that the network does not have; for a name in

@@ -54,9 +54,9 @@ def _amount_text(problem: Problem, units: Sequence[FunctionalUnit]) -> str:
 
 
 def _shortage_text(problem: Problem, units: Sequence[FunctionalUnit], shortage: Shortage) -> str:
-    """Return in words which steps compete for the copy that is missing: ``steps 1 and 3 both take flour``.
+    """Return in words which steps use up the missing copy, and which step or goal needs it.
 
-    Steps are numbered from 1.
+    For example ``steps 1 and 3 both take flour``. Steps are numbered from 1.
     """
     node, before = shortage.node, [position + 1 for position in shortage.consumers]
     used = f"{_steps_text(before)} use{'s' if len(before) == 1 else ''} up"

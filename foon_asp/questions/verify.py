@@ -339,7 +339,8 @@ def verify(
         with_clingo: Check with clingo what is otherwise taken on trust: costs by measures, and rules of your
             own.
         full: Read all of a store, and compute the digests that are otherwise taken as the store states them.
-        proved: Also ask the checker that is proved in Coq, which `make verified` builds.
+        proved: Also ask the checker that is proved in Coq, which `make verified` builds. All of a store is
+            then read.
 
     Returns:
         What the certificate proves.

@@ -358,7 +358,8 @@ def view(
             answer, which is shown as it is.
         tree: A tree to draw: the path of a file (FOON text, or an answer in JSON), or functional units.
         units: Ids of units to draw, as in ``json()``.
-        beside: Without any, there is only the tree, which is enough for a picture.
+        beside: The names of parts (:class:`PagePart`) to show on a page beside the tree. Without any, there
+            is only the tree, which is enough for a picture.
 
     Returns:
         The page and the picture: ``html()``, ``svg()``, ``png()``, ``pdf()``, ``dot()``, ``mermaid()`` and
