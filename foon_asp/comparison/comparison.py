@@ -24,8 +24,8 @@ from foon_asp.searches import Ending, Search, SearchSettings
 if TYPE_CHECKING:
     from foon_asp.asp.user_rule_check import UserRuleCheck
 
-# The objectives by which trees are compared with the optimum.
 MEASURED = (Objective.UNITS, Objective.INPUTS, Objective.SUCCESS)
+"""The objectives by which trees are compared with the optimum."""
 
 
 class Optimum(Value, frozen=True):
@@ -63,7 +63,8 @@ class SearchResult(Value, frozen=True):
         measures: What the tree costs by each objective that is compared.
         ratios: The measure divided by the optimum; null if the optimum is not proved, or 0.
         verdict: Whether the tree executes; null without a tree.
-        order: An order that executes, in positions from 1; empty if none does.
+        order: Positions of steps, from 1, in an order in which they run: all steps if the tree executes, else
+            at most those that can run. Empty without a tree.
         obstacle: What stops every order; null if nothing does.
         runs_used_up: Whether the tree runs, in some order, where items are used up and each step is done
             once; null where that is not known.
@@ -162,7 +163,10 @@ def _require_consistent(comparison: Comparison) -> None:
 
 @lru_cache(maxsize=1)
 def _rule_check_of(rules: Settings, used_up: bool) -> "UserRuleCheck":
-    """Return the check of trees against user rules; the last one is kept, since many goals share it."""
+    """Return the check of trees against user rules; of plans if items are used up (``used_up``).
+
+    The last check is kept in a cache, since many goals share it.
+    """
     from foon_asp.asp.user_rule_check import UserRuleCheck  # noqa: PLC0415 (takes clingo along)
 
     return UserRuleCheck(rules, used_up)
@@ -177,7 +181,8 @@ def judge_search(
 ) -> SearchResult:
     """Run one search, simulate its tree, and compare its costs with the optima.
 
-    The search runs as if items last. A tree that executes is also checked against the ``rules``.
+    The search runs as if items last. A tree that executes is also checked against the constraints of
+    ``rules``. ``optima`` are by objective; the result has no ratio to an optimum that is missing.
     """
     network = problem.network
     retrieval = search.run(replace(problem, items=None), settings)
@@ -206,7 +211,10 @@ def judge_search(
         None,
         tuple(map(network.unit_number, retrieval.units)),
         measures,
-        {objective: _ratio(measure, optima.get(objective)) for objective, measure in measures.items()},
+        {
+            objective: _ratio_to_optimum(measure, optima.get(objective))
+            for objective, measure in measures.items()
+        },
         simulation.verdict,
         tuple(position + 1 for position in simulation.order),
         obstruction,
@@ -215,8 +223,8 @@ def judge_search(
     )
 
 
-def _ratio(measure: Figure, optimum: Optimum | None) -> Fraction | None:
-    """Return a measure divided by the optimum; ``None`` if the optimum is 0 or not proved."""
+def _ratio_to_optimum(measure: Figure, optimum: Optimum | None) -> Fraction | None:
+    """Return a measure divided by the optimum; ``None`` if the optimum is missing, 0 or not proved."""
     if optimum is None or not optimum.value or optimum.status is not Status.OPTIMAL:
         return None
     return Fraction(measure) / optimum.value

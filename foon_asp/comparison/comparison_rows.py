@@ -45,7 +45,8 @@ def comparisons_question(
 ) -> Json:
     """Return the question of a file of comparisons: a digest of the data, searches, settings and rules.
 
-    The first line of the file states it. A run continues a file only if the question is equal.
+    It does not depend on the goals. The first line of the file states it. A run continues a file only if the
+    question is equal.
     """
     subject = Subject(problem.network, problem.kitchen, problem.rates, problem.utensils, problem.unit_prices)
     data: list[object] = [subject.digests()]

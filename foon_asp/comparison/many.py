@@ -28,12 +28,12 @@ def compare_goals(
 ) -> Iterator[Comparison]:
     """Compare searches on each goal by itself; yield the comparisons in the order of the goals.
 
-    ``goals`` are ids. With more than one job, that many processes share the goals; the comparisons stay the
-    same. Optima keep to the ``rules``; ``time_limit`` is in seconds for each optimum.
+    ``goals`` are ids. ``time_limit`` is in seconds for each optimum; ``None`` for no limit. ``jobs`` is how
+    many processes share the goals; the comparisons do not depend on it. Optima keep to the ``rules``.
 
     Raises :class:`UserError` where a process dies, usually because memory is full.
     """
-    compare_goal = partial(_compare, problem.plain, tuple(searches), settings, time_limit, rules)
+    compare_goal = partial(_compare_on_goal, problem.plain, tuple(searches), settings, time_limit, rules)
     if jobs == 1:
         yield from map(compare_goal, enumerate(goals))
         return
@@ -53,7 +53,7 @@ def compare_goals(
             next_number += 1
 
 
-def _compare(
+def _compare_on_goal(
     problem: Problem,
     searches: tuple[Search, ...],
     settings: SearchSettings,
@@ -61,6 +61,10 @@ def _compare(
     rules: Settings | None,
     numbered: tuple[int, int],
 ) -> Comparison:
-    """Compare the searches on one goal; ``numbered`` has its place in the list of goals, and its id."""
+    """Compare the searches on one goal.
+
+    ``numbered`` is a pair: the index of the goal in the list of goals, which is not used, and the id of the
+    goal.
+    """
     _, goal = numbered
     return compare(replace(problem, goals=(goal,)), searches, settings, time_limit, rules)

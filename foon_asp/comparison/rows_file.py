@@ -37,9 +37,11 @@ class RowsFile(Generic[Row]):
     """A file to which one process at a time appends rows.
 
     The first line is the question (data and settings); every line states its kind and version. Each row is
-    written to the disk at once; an incomplete last line, from an interruption, is dropped. ``done`` are the
-    rows by key. ``duplicate_warnings`` has a warning for each row with the key of an earlier row. The file is
-    locked until it is closed or the process ends.
+    written to the disk at once. The file is locked until it is closed or the process ends. An existing file
+    is continued: its rows are read, and an incomplete last line, from an interruption, is dropped.
+
+    ``done``: the rows by key; of rows with one key, the last.
+    ``duplicate_warnings``: a warning for each row that was read and has the key of an earlier row.
 
     Raises :class:`UserError`, and leaves the file unchanged, if another run writes it, or if it has another
     question, lines of another version, or other contents.
@@ -99,8 +101,8 @@ class RowsFile(Generic[Row]):
     def _read_rows(self, content: bytes, question: Json) -> int:
         """Read the rows of an existing file into ``done``; return the length of its complete lines, in bytes.
 
-        A row with the key of an earlier row causes a warning. Raises :class:`UserError` for other contents,
-        and for a file that was begun for another question.
+        A row with the key of an earlier row adds to ``duplicate_warnings``. Raises :class:`UserError` for
+        other contents, and for a file that was begun for another question.
         """
         first_line, newline, rows = content.partition(b"\n")
         header = self._read_line(first_line, 1, dict) if newline else {}

@@ -14,10 +14,11 @@ class Distance(NamedTuple):
     """Statistics of the ratios of the costs of trees to the optimum; 1 is optimal, and more is worse.
 
     Only trees that execute and break no rule count. The ratio is the cost divided by the optimum; for
-    ``success``, it is the optimum divided by the rate. ``share`` is the fraction of trees that are optimal,
-    and
-    ``worst_goal`` is the goal with the worst ratio. The 90th percentile is the least ratio that at least nine
-    tenths of the trees do not exceed.
+    ``success``, it is the optimum divided by the rate.
+
+    ``share``: the fraction of trees that are optimal.
+    ``percentile_90``: the least ratio that at least nine tenths of the trees do not exceed.
+    ``worst_goal``: the goal with the ratio ``worst``.
     """
 
     share: Fraction
@@ -29,7 +30,7 @@ class Distance(NamedTuple):
 
 
 class Summary(NamedTuple):
-    """The summary of one search over many goals that can all be made.
+    """The summary of one search over many goals.
 
     ``results`` are the results of the search, goal by goal. ``distances`` are by objective; an objective
     without any ratio is absent.
@@ -43,10 +44,10 @@ class Summary(NamedTuple):
 def summarize_comparisons(comparisons: Sequence[Comparison]) -> list[Summary]:
     """Return a summary of the comparisons for each search, in the order of the searches."""
     names = dict.fromkeys(result.search for row in comparisons for result in row.searches)
-    return [_summary(name, comparisons) for name in names]
+    return [_summarize_search(name, comparisons) for name in names]
 
 
-def _summary(name: str, comparisons: Sequence[Comparison]) -> Summary:
+def _summarize_search(name: str, comparisons: Sequence[Comparison]) -> Summary:
     """Return the summary of the results of one search, by its name."""
     results = [(row.goal, result) for row in comparisons for result in row.searches if result.search == name]
     distances: dict[Objective, Distance] = {}
@@ -57,12 +58,12 @@ def _summary(name: str, comparisons: Sequence[Comparison]) -> Summary:
             if result.is_valid and (ratio := result.ratios.get(objective))
         ]
         if ratios:
-            distances[objective] = _distance(sorted(ratios))
+            distances[objective] = _distance_of(sorted(ratios))
     return Summary(name, tuple(result for _, result in results), distances)
 
 
-def _distance(ratios: list[tuple[Fraction, str]]) -> Distance:
-    """Return the statistics of ratios and their goals, which are in ascending order."""
+def _distance_of(ratios: list[tuple[Fraction, str]]) -> Distance:
+    """Return the statistics of ratios with their goals; the pairs are in ascending order."""
     values = [value for value, _ in ratios]
     share, median = Fraction(values.count(Fraction(1)), len(values)), statistics.median(values)
     mean, percentile_90 = statistics.mean(values), values[-(-9 * len(values) // 10) - 1]
@@ -70,7 +71,7 @@ def _distance(ratios: list[tuple[Fraction, str]]) -> Distance:
 
 
 def all_proved(comparisons: Iterable[Comparison]) -> bool:
-    """Return whether every optimum of every comparison is proved, or proved not to exist."""
+    """Return whether each optimum of the comparisons is proved, or is proved not to exist."""
     return all(
         optimum.status in {Status.OPTIMAL, Status.INFEASIBLE}
         for comparison in comparisons

@@ -16,7 +16,7 @@ from foon_asp.text.json_text import schema_name
 
 
 class UnitRate(Value, frozen=True):
-    """The success rate of a unit, by its id."""
+    """The id of a unit in the whole network, and its success rate."""
 
     unit: int
     rate: Fraction
@@ -27,11 +27,16 @@ class PageData(Document, frozen=True, kw_only=True, tag=schema_name("view")):
 
     Attributes:
         answer: The best tree; null for a page about a whole network.
-        rates: The success rate of every unit in the trees, where rates are known.
-        searches: The trees of the published searches.
-        lasting: Where items are used up: the answer if they lasted; else null.
-        without_rules: The answer without your rules, where there are some.
-        proof: The cases and cuts of a certificate.
+        rates: The success rate of every unit in the trees; null where no rates are known.
+        searches: The results of the searches; empty unless they were asked for.
+        lasting: Where items are used up: the best tree if items lasted; else null.
+        without_rules: The best tree without user rules; null where there are none.
+        alternatives: The best trees; null unless they were asked for.
+        front: The Pareto front; null unless it was asked for.
+        proof: The cases and cuts of a certificate; null without a certificate.
+        why_not: Why there is no tree; null if there is one.
+        shopping_list: What to add to the kitchen so that there is a tree; null if there is one.
+        network: The whole network; null unless it was asked for.
     """
 
     answer: Answer | None

@@ -47,7 +47,7 @@ from foon_asp.text.json_text import schema_name
 _MIN_OBJECTIVES, _MAX_OBJECTIVES = 2, 3
 
 Box = tuple[int | Fraction | None, ...]
-"""By each objective but the first, a bound that the costs of plans are below; ``None`` is no bound."""
+"""For each objective but the first: a bound that the costs of plans are below; ``None`` for no bound."""
 
 
 class Point(Value, frozen=True):
@@ -56,7 +56,8 @@ class Point(Value, frozen=True):
     Attributes:
         measures: What the tree costs by each of the objectives, exact.
         costs: What it costs by every objective.
-        used_up: Whether the steps, each done once, run where items are used up.
+        used_up: Whether the steps, each done once, run where items are used up; null where items are used
+            up anyway.
         units: The steps, in an order that executes.
         gone: The ids of the units that the tree of the previous point has and this tree lacks.
         new: The ids of the units that this tree has and the tree of the previous point lacks.
@@ -76,13 +77,14 @@ class Point(Value, frozen=True):
 
 
 class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pareto")):
-    """The Pareto front: the costs of trees that no other tree dominates, each point with one tree.
+    """The Pareto front: its points are the costs that no tree dominates, each with one tree of these costs.
 
     Attributes:
         encodings: The folder that replaced the built-in encodings, if any.
-        complete: Whether there are no other points. If not, a limit was reached; these stay on the front.
+        complete: Whether it is proved that there are no other points. If not, a limit came first; the points
+            found by then are on the front, too.
         points: The points, the best by the first objective first.
-        seconds: The time it took.
+        seconds: The time that the question took, in seconds.
 
     Example:
         >>> front = foon_asp.pareto(foon_asp.load().problem("ice"))
@@ -107,12 +109,15 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
 
     @property
     def values(self) -> tuple[tuple[int | Fraction, ...], ...]:
-        """The exact measures of each point by every objective."""
+        """The exact measures of each point by the objectives of the front, in their order."""
         return tuple(tuple(map(point.costs.measure, self.objectives)) for point in self.points)
 
     @property
     def task_trees(self) -> tuple[Tree, ...]:
-        """The trees as :class:`Tree` values for other questions, in the order of ``points``."""
+        """The trees as :class:`Tree` values for other questions, in the order of ``points``.
+
+        The claim of each tree is the number of its point, and its costs.
+        """
         ids = (self.problem.network.units_of_numbers(point.ids) for point in self.points)
         claims = (f"point {number}: {costs_text(point.costs)}" for number, point in enumerate(self.points, 1))
         return tuple(Tree.of(self.problem, *ids_and_claim) for ids_and_claim in zip(ids, claims, strict=True))
@@ -128,13 +133,13 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
         """Return what is proved, and the points as a table with the units that change from point to point.
 
         If trees were asked for, the units of the first tree follow, and for each further tree the units that
-        it drops (-) and adds (+).
+        it drops (-) and adds (+). Notes name the trees that would not run if items were used up.
         """
         yield from self.goal_lines()
-        yield self._claim()
+        yield self._claim_text()
         if self.points:
             yield ""
-            yield self._table()
+            yield self._points_table()
         if not self.lists_trees:
             yield from self._used_up_lines()
             return
@@ -144,8 +149,11 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
             yield from step_lines(self._dropped_steps(index), "-") if index else step_lines(point.units)
             yield from step_lines(self._added_steps(index), "+")
 
-    def _claim(self) -> str:
-        """Return one line on what is proved: the number of points, and whether these are all."""
+    def _claim_text(self) -> str:
+        """Return one line on what is proved: the number of points, and whether these are all.
+
+        Without a point, the line says that no tree exists, or that a limit came first.
+        """
         rule = self.conditions
         if self.encodings is not None:
             rule += f", as {self.encodings} has it"
@@ -163,7 +171,7 @@ class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pare
             return f"1 point on the Pareto front of {by}, one tree being the best by {every}: proved ({rule})"
         return f"{points} on the Pareto front of {by}, and no others: proved ({rule})"
 
-    def _table(self) -> Table:
+    def _points_table(self) -> Table:
         """Return a row for each point: its number, its measures, and the motions that go and come."""
         columns = [[str(number) for number in range(1, len(self.points) + 1)]]
         for objective in self.objectives:
@@ -255,7 +263,8 @@ def pareto(
 ) -> Front:
     """Find all trade-offs between two or three objectives (the Pareto front), with a tree for each.
 
-    The limits are for the whole question.
+    The limits are for the whole question. At a limit, or when interrupted, the front has the points that were
+    found by then.
 
     Parameters:
         objectives: Two or three names, or a list separated by commas. Without any: units and success, or
@@ -336,9 +345,10 @@ def _best_trees(
 ) -> Iterator[Outcome]:
     """Yield outcomes with trees of the front, by the lexicographic epsilon-constraint method.
 
-    Each tree is the best by ``order`` among those that beat every tree before by an objective other than the
-    first. The caller appends each tree to ``points`` before it takes the next. There is one search more than
-    there are points. The caller stops at an outcome without a proof.
+    The caller appends each tree to ``points`` before it takes the next outcome. Each outcome is the best by
+    ``order`` among the trees that cost less than every tree in ``points`` by some objective other than the
+    first. If no such tree exists, nothing more is yielded. An outcome without a proof is yielded as well; the
+    caller stops there.
     """
     reporter = caller().reporter
     while True:
@@ -355,20 +365,23 @@ def _best_trees(
 def _best_plans(
     problem: Problem, order: tuple[Objective, ...], settings: Settings, points: Sequence[_FoundTree]
 ) -> Iterator[Outcome]:
-    """Yield outcomes with plans of the front, each the best by ``order`` in the boxes that remain.
+    """Yield outcomes with plans of the front: each is the best by ``order`` in the boxes that remain.
 
     A box has an upper bound on the costs by each objective but the first. Together, the boxes contain all
-    costs that beat each plan before by such an objective. A box is solved once. The box that a plan lies in
-    is then divided. An outcome without a proof is yielded, too; the caller stops there.
+    costs that are less than those of every plan so far by such an objective. Each box is solved once, and the
+    best of the plans is yielded. The boxes that contain its costs are then divided. If no box has a plan,
+    nothing more is yielded. An outcome without a proof is yielded as well; the caller stops there.
     """
-    reporter, others = caller().reporter, order[1:]
-    boxes: list[Box] = [(None,) * len(others)]
+    reporter, other_objectives = caller().reporter, order[1:]
+    boxes: list[Box] = [(None,) * len(other_objectives)]
     solved: dict[Box, Outcome] = {}
     while True:
         for box in boxes:
             if box not in solved:
                 upper_bounds = tuple(
-                    {o: bound} for o, bound in zip(others, box, strict=True) if bound is not None
+                    {objective: bound}
+                    for objective, bound in zip(other_objectives, box, strict=True)
+                    if bound is not None
                 )
                 bounded_settings = settings._replace(bounded=Bounded(below=upper_bounds))
                 solved[box] = solve(
@@ -385,13 +398,14 @@ def _best_plans(
         )
         assert best.costs is not None
         yield best
-        boxes = _divide_boxes(boxes, tuple(map(best.costs.measure, others)))
+        boxes = _divide_boxes(boxes, tuple(map(best.costs.measure, other_objectives)))
 
 
 def _divide_boxes(boxes: Sequence[Box], point: Sequence[int | Fraction]) -> list[Box]:
-    """Replace each box that contains a point by the boxes of smaller costs; drop boxes inside other boxes.
+    """Return the boxes without the part that a point dominates; boxes inside other boxes are dropped.
 
-    A box is divided into one box for each objective, in which that cost is below the cost of the point.
+    A box that contains the point becomes one box for each objective. In it, the cost of the point is the
+    bound by this objective.
     """
     divided = set[Box]()
     for box in boxes:
@@ -401,7 +415,7 @@ def _divide_boxes(boxes: Sequence[Box], point: Sequence[int | Fraction]) -> list
             divided.add(box)
 
     def contains(box: Box, inner: Box) -> bool:
-        """Return whether all costs in another box are in ``box``, too."""
+        """Return whether all costs in ``inner`` are in ``box``, too; false for equal boxes."""
         return box != inner and all(
             bound is None or (inner_bound is not None and inner_bound <= bound)
             for bound, inner_bound in zip(box, inner, strict=True)
@@ -413,7 +427,10 @@ def _divide_boxes(boxes: Sequence[Box], point: Sequence[int | Fraction]) -> list
 def _require_incomparable(
     postconditions: Postconditions, point: _FoundTree, points: Sequence[_FoundTree]
 ) -> None:
-    """Require that ``point`` is better than each other point by some objective, and worse by another."""
+    """Require that ``point`` is better than each of ``points`` by some objective, and worse by another.
+
+    Raises :class:`BugError` if it is not.
+    """
     key = point.costs.key(postconditions.levels)
     for other in points:
         other_key = other.costs.key(postconditions.levels)
@@ -429,7 +446,10 @@ def _require_incomparable(
 
 
 def _pareto_minimal(candidates: Sequence[Costs], objectives: Sequence[Objective]) -> list[Costs]:
-    """Return the candidates that no other candidate dominates by ``objectives``; equal costs stand once."""
+    """Return the candidates that no other candidate dominates by ``objectives``, in ascending order.
+
+    Of candidates with equal costs, one is returned.
+    """
 
     def key(costs: Costs) -> tuple[int | Fraction, ...]:
         """Return the costs by each of the objectives."""

@@ -29,13 +29,19 @@ class Command(Protocol):
 
     @property
     def names_data(self) -> bool:
-        """Whether the command names a network."""
+        """Whether the command names a network or a folder of data."""
 
     def given(self, option: str) -> bool:
-        """Return whether an option, by the name of its parameter, is on the command line itself."""
+        """Return whether the value of an option is from the command line, and no default.
+
+        The option is named by its parameter.
+        """
 
     def unnamed_goals(self) -> list[ObjectNode]:
-        """Return the goals of a command that names none; each goal is then answered by itself."""
+        """Return the goals of a command without ``--goal``, which are answered one by one.
+
+        They are the goals that the data list, or else those that are assumed of the data.
+        """
 
     def add_sources(self, sources: Sequence[Path]) -> None:
         """Add files to the networks of the command; the data are read anew on the next access."""
@@ -74,10 +80,11 @@ def pose_problem(
 ) -> tuple[Problem]:
     """Return the problem of the named goals, as a tuple of one; a tree of it makes all of them.
 
-    With ``all_goals``, the goals of the problem are those named, or all of the goals file; the caller solves
-    for each goal by itself. With ``amounts``, the copies wanted of each goal, items are used up. ``items`` is
-    ``None`` for questions without this option; items then last. Of a large store, the units that the
-    goals can need are read on first access. Raises :class:`UserError` if there is no goal.
+    With ``all_goals``, the goals are those named, or else all of the goals file; the caller then solves for
+    each goal by itself. ``amounts`` are the copies wanted of each goal; with amounts, items are used up.
+    ``items`` is ``None`` for questions without this option; items then last. ``stock`` and ``stays`` are
+    files about items that are used up. Of a large store, only the units nearest to the goals are read now.
+    Raises :class:`UserError` if there is no goal.
     """
     dataset = command.dataset
     with command.reading():
@@ -90,7 +97,7 @@ def pose_problem(
 
 
 def pose_data(command: Command) -> "tuple[Foon]":
-    """Return the data of the command as a :class:`Foon`, in a tuple of one."""
+    """Return the data of the command as a :class:`Foon` named "the data", in a tuple of one."""
     from foon_asp.foon import Foon  # noqa: PLC0415 (for few questions)
 
     return (Foon(command.dataset, "the data"),)
@@ -99,8 +106,8 @@ def pose_data(command: Command) -> "tuple[Foon]":
 def is_picture_of_tree(command: Command, goals_named: Sequence[str]) -> bool:
     """Return whether a picture is of a tree; otherwise, it is of the whole network.
 
-    It is of a tree if goals are named, or if a recipe is named without an option. Raises :class:`UserError`
-    for a recipe with several goals, since a picture is of one tree.
+    It is of a tree if goals are named, or if a recipe is named as an argument and not by an option. Raises
+    :class:`UserError` for a recipe with several goals, since a picture is of one tree.
     """
     if goals_named or not command.given("sources"):
         return bool(goals_named)
@@ -114,5 +121,5 @@ def is_picture_of_tree(command: Command, goals_named: Sequence[str]) -> bool:
 
 
 def pose_without_data(command: Command, **named: object) -> tuple[object, ...]:
-    """Return the values of the question's own options, in order; the command has no options for data."""
+    """Return the values of ``named``, in order: a question without data takes only its own options."""
     return tuple(named.values())

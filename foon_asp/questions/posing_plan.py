@@ -28,9 +28,9 @@ def pose_plan(
 ) -> tuple[Problem, Tree]:
     """Read a plan from a file, and return its problem and the plan.
 
-    ``named`` has one entry: the file, by the name of the question's parameter. Goals and a container rule on
-    the command line override those that an answer in the file states. Data are those of
-    :func:`data_for_trees`.
+    ``named`` has one entry: the file, by the name of the question's parameter. Goals, a container rule and
+    amounts of goals on the command line override those that an answer in the file states. The data are those
+    of :func:`data_for_trees`.
     """
     (plan,) = named.values()
     answer = read_answer(plan)
@@ -53,10 +53,11 @@ def pose_plan(
 def pose_plan_or_state(
     command: Command, goals_named: Sequence[str], state: Path | None, plan: Path | None, **options: Any
 ) -> tuple[Problem, Tree | None]:
-    """Return the problem and the plan of a file; with a ``state``, the problem of the goals and no plan.
+    """Return the problem of the plan in a file, and the plan.
 
-    With a state, items last, and the file of a plan serves as one more network. Raises :class:`UserError`
-    without both.
+    With a ``state``, return the problem of the goals, and ``None`` in place of a plan. Items then last, and
+    the file of a plan serves as one more network; the file of the state is not read here. Raises
+    :class:`UserError` if there is neither a plan nor a state, and for a state with items that are used up.
     """
     if state is None:
         if plan is None:
@@ -79,9 +80,9 @@ def listed_tree(
 ) -> Tree:
     """Return the tree that a file lists, for the named goals or else the goals of the answer in the file.
 
-    Without any such goal, the tree is for the only goal of the data, or else for what the last step makes; a
-    warning names the latter. ``used_up`` returns for goals, by id, how items are used up; without it, items
-    last. Raises :class:`UserError` where no goal can be found.
+    Without any such goal, the tree is for the only goal of the data. If the data have none or several, it is
+    for what the last step makes, and a warning names this goal. ``used_up`` returns how items are used up for
+    goals, which it takes by id; without it, items last. Raises :class:`UserError` where no goal can be found.
     """
     ordered = not answer.numbers
     listed = answer.with_units(file, lambda: dataset.whole_network).units or ()
@@ -117,10 +118,11 @@ def data_for_trees(command: Command, files: Mapping[Path, ListedTree]) -> Datase
 def own_networks(kitchen: Network, files: Mapping[Path, ListedTree]) -> Sequence[Path]:
     """Return the files with trees that serve as the network, too, for a command that names no data.
 
-    There is no such file if the bundled ``kitchen`` has at least half of the units: then it is the network.
-    Sharing fewer units may be chance; the others may be made up by the program that wrote the tree. A warning
-    names the network, unless the bundled kitchen has all units. Raises :class:`UserError` for an answer about
-    other data, since an answer holds only a part of its data.
+    Files are returned only if the bundled ``kitchen`` has fewer than half of the units; otherwise, the
+    bundled kitchen is the network. A smaller share can be chance. With a larger share, the missing units were
+    perhaps made up by the program that wrote the tree. A warning names the network, unless the bundled
+    kitchen has all units. Raises :class:`UserError` if all files are answers about other data, since an
+    answer holds only a part of its data.
     """
     listed = [listed_unit for tree in files.values() for listed_unit in tree.units or ()]
     bundled_count = count_units_in(kitchen, [unit for unit, _ in listed])
@@ -141,11 +143,11 @@ def own_networks(kitchen: Network, files: Mapping[Path, ListedTree]) -> Sequence
 
 
 def count_units_in(network: Network, units: Collection[FunctionalUnit]) -> int:
-    """Return how many of the units are in a network, compared at its level."""
+    """Return how many of the units a network has; units are compared at the level of the network."""
     return sum(network.unit_id(unit_at_level(unit, network.level)) is not None for unit in units)
 
 
 def _goals_of_last_unit(unit: FunctionalUnit) -> list[ObjectNode]:
-    """Return the first output that is no input, in a list; if all outputs are inputs, return all."""
+    """Return the first output that is no input, in a list; if all outputs are inputs, return all outputs."""
     made = [node for node in unit.outputs if node not in unit.inputs]
     return made[:1] or list(unit.outputs)

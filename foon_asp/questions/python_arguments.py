@@ -20,9 +20,10 @@ most."""
 
 
 def chosen_objectives(problem: Problem, names: Objectives) -> tuple[Objective, ...]:
-    """Return the named objectives; raises :class:`UserError` for one whose rates or prices are not known.
+    """Return the named objectives.
 
-    In a problem with stand-ins, dissimilarity is put first, unless it is named.
+    For a problem with stand-ins, dissimilarity comes first unless it is named. Raises :class:`UserError` for
+    an unknown name, and for an objective whose rates or prices are not known.
     """
     objectives = parse_objectives([names] if isinstance(names, str) else names, problem.measures)
     if problem.stand_ins is not None:
@@ -37,7 +38,8 @@ def usual_objectives(
 ) -> Objectives:
     """Return the names if there are any, or else the ``usual`` objectives of a question.
 
-    If no success rates are known, ``instead`` are the usual objectives, and a warning says so.
+    If success rates are not known for all motions, the usual objectives are ``instead``, and a warning says
+    so.
     """
     if names:
         return names
@@ -49,7 +51,10 @@ def usual_objectives(
 
 
 def as_constraints(constraints: Files) -> tuple[Constraint, ...]:
-    """Return one constraint or several as a tuple: paths, texts of rules, and names of ready-made ones."""
+    """Return one constraint or several as a tuple.
+
+    A constraint is a path, the text of a rule, or the name of a ready-made one.
+    """
     is_single = isinstance(constraints, str | PathLike)
     return tuple(map(given_constraint, [constraints] if is_single else constraints))  # type: ignore[arg-type]
 
@@ -57,8 +62,10 @@ def as_constraints(constraints: Files) -> tuple[Constraint, ...]:
 def problem_for_rules(problem: Problem, settings: Settings, objectives: Sequence[Objective] = ()) -> Problem:
     """Return the problem over the whole network if rules or stand-ins need this, else unchanged.
 
-    Rules in ``settings`` need it if they may be about units beyond those that the goals can need. Stand-ins
-    need it unless only the best tree by ``objectives`` is wanted, and dissimilarity is the first objective.
+    The rules of ``settings`` need it if they may be about units beyond those that the goals can need.
+    ``objectives`` are given if only the best tree by them is wanted. If the problem has only the nearest
+    stand-ins, these are enough for trees that are best by dissimilarity first; anything else needs the whole
+    network.
     """
     if not problem.has_stand_ins_for(objectives):
         return over_whole_network(problem)
@@ -68,7 +75,10 @@ def problem_for_rules(problem: Problem, settings: Settings, objectives: Sequence
 
 
 def over_whole_network(problem: Problem) -> Problem:
-    """Return the problem over the whole network, which is read; reading stops at the limits of the caller."""
+    """Return the problem over the whole network, all of which is read.
+
+    Reading stops at the limits of the caller.
+    """
     with limited_reading():
         return problem.whole
 
@@ -90,10 +100,10 @@ def limited_reading() -> AbstractContextManager[object]:
 
 
 def constraint_weights(weight_of_file: Mapping[File, int]) -> dict[Constraint, int]:
-    """Return the weights by constraint in place of its file or name.
+    """Return the weights by constraint, from weights by file or name of a constraint.
 
-    Raises :class:`UserError` for a weight that is no whole number from 1, and for a constraint with two
-    weights.
+    Raises :class:`UserError` for a weight that is no whole number from 1 to the greatest that is allowed, and
+    for a constraint with two weights.
     """
     from foon_asp.asp.search_tuning import SEARCH  # noqa: PLC0415 (where there are rules)
 
@@ -112,11 +122,11 @@ def constraint_weights(weight_of_file: Mapping[File, int]) -> dict[Constraint, i
 
 
 def with_items(problem: Problem, items: str) -> Problem:
-    """Return the problem with ``items``, which are ``used-up`` or ``lasting``.
+    """Return the problem with items that are used up or last; ``items`` is ``used-up`` or ``lasting``.
 
-    A problem whose items are used up already stays as it is for ``used-up``. For another problem, the stock
-    and what stays are those of its data. Raises :class:`UserError` for another word, and for used-up items at
-    a level without contents.
+    For ``used-up``, a problem whose items are used up already is returned unchanged. For another problem, the
+    stock and what stays are those of its data. Raises :class:`UserError` for another word, and for used-up
+    items at a level without contents.
     """
     if items not in ITEMS:
         raise UserError(f"found the items {items!r}, expected one of {', '.join(ITEMS)}")
@@ -131,7 +141,10 @@ def with_items(problem: Problem, items: str) -> Problem:
 
 
 def require_at_least(number: int, minimum: int, argument: str) -> int:
-    """Return a number; raises :class:`UserError` about ``argument``, its name, if it is below ``minimum``."""
+    """Return a number if it is at least ``minimum``; else raise :class:`UserError`.
+
+    ``argument`` is the name of the argument, for the message.
+    """
     if number < minimum:
         raise UserError(f"found {argument}={number}, expected a whole number from {minimum}")
     return number

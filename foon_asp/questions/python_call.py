@@ -30,6 +30,7 @@ HELP = {
     "on_progress": "Is called with a :class:`Progress` whenever something is found.",
     "cancel": "A token that ends the question from another thread, with what was found by then.",
 }
+"""The descriptions of parameters that questions share, by name."""
 
 
 class _Listener(Reporter):
@@ -56,7 +57,7 @@ class _Listener(Reporter):
         self._report(self._progress._replace(done=done, total=total))
 
     def _report(self, progress: Progress) -> None:
-        """Keep the progress for the next report, and call the function with it."""
+        """Call the function with the progress, and keep the progress for the next report."""
         self._progress = progress
         self._on_progress(progress)
 
@@ -64,9 +65,10 @@ class _Listener(Reporter):
 def wrap_for_python(ask: Callable[P, T], signature: inspect.Signature) -> Callable[P, T]:
     """Return a function that also takes a path or data for a problem, ``cancel`` and ``on_progress``.
 
-    In a call from Python, arguments are checked against the ``signature``; a command has read them already.
-    The token ``cancel`` ends the call with what was found by then; if this takes too long, the call raises
-    :class:`StoppedError`. The function ``on_progress`` gets each :class:`Progress`.
+    ``ask`` is the function of a question. In a call from Python, arguments are checked against the
+    ``signature``; a command has read them already. The token ``cancel`` ends the call with what was found by
+    then; if this takes too long, the call raises :class:`StoppedError`. The function ``on_progress`` gets
+    each :class:`Progress`.
     """
     name, check = ask.__name__, checker(ask, signature)
 
@@ -102,13 +104,17 @@ def wrap_for_python(ask: Callable[P, T], signature: inspect.Signature) -> Callab
 
 
 def arguments_with_problem(
-    name: str, parameters: Mapping[str, object], about: tuple[Any, ...], named: dict[str, Any]
+    name: str, parameters: Mapping[str, object], positional: tuple[Any, ...], named: dict[str, Any]
 ) -> Any:
     """Return the positional arguments of a question, with a problem in place of a path or of data.
 
-    ``named`` is changed in place: the goal and the container rule of the problem are removed, and
-    ``objective`` becomes ``objectives``. Raises :class:`UserError` for a call without a subject, and for a
-    goal beside a problem, which has its own.
+    ``name`` and ``parameters`` are those of the question. ``positional`` and ``named`` are the arguments of
+    the call. The arguments are returned as they are if the question is about no problem. A question about
+    data as well as problems (``about``) gets data if no goal is named. ``named`` is changed in place: the
+    goal and the container rule of the problem are removed, and ``objective`` becomes ``objectives``.
+
+    Raises :class:`UserError` for a call without a subject, for a path that does not exist, and for a goal
+    beside a problem, which has its own.
     """
     from foon_asp.foon import Foon, load  # noqa: PLC0415 (commands ask about what they have read)
 
@@ -116,8 +122,8 @@ def arguments_with_problem(
         named["objectives"] = named.pop("objective")
     subject = next(iter(parameters))
     if subject not in {"problem", "about"}:
-        return about
-    subject_value = about[0] if about else named.pop(subject, None)
+        return positional
+    subject_value = positional[0] if positional else named.pop(subject, None)
     if subject_value is None:
         raise UserError(f"{name} of what? {name}('eggs.txt'), or {name}(foon_asp.load(), goal='macaroni')")
     is_whole = subject == "about" and "goal" not in named  # the data themselves are the subject
@@ -126,13 +132,13 @@ def arguments_with_problem(
     if isinstance(subject_value, Problem) and posing:
         raise UserError(f"{name}: a problem has its own {' and '.join(posing)}; Foon.problem takes them")
     if not isinstance(subject_value, str | PathLike | Foon):
-        return (subject_value, *about[1:])
+        return (subject_value, *positional[1:])
     if isinstance(subject_value, str) and not Path(subject_value).exists():
         hint = f"a goal of the bundled kitchen: {name}(foon_asp.load(), goal={subject_value!r})"
         raise UserError(f"no such file or folder: {subject_value} ({hint})")
     foon = subject_value if isinstance(subject_value, Foon) else load(subject_value)
     if is_whole:
-        return (foon, *about[1:])
+        return (foon, *positional[1:])
     goals = posing.pop("goal", ())
     is_single = isinstance(goals, str | ObjectNode)
-    return (foon.problem(*([goals] if is_single else goals), **posing), *about[1:])
+    return (foon.problem(*([goals] if is_single else goals), **posing), *positional[1:])

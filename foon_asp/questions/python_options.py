@@ -47,7 +47,10 @@ class CommonOptions(Posed, total=False):
 
 
 def settings_of(options: CommonOptions) -> Settings:
-    """Return the settings of a search from the options of a question; its time limit starts now."""
+    """Return the settings of a search from the options of a question.
+
+    The time limit starts now.
+    """
     encodings, constants = options.get("encodings"), options.get("constants") or ()
     if isinstance(constants, Mapping):
         constants = [f"{name}={value}" for name, value in constants.items()]
@@ -60,7 +63,10 @@ def settings_of(options: CommonOptions) -> Settings:
 
 
 def start_deadline(options: Limits) -> Deadline:
-    """Return a deadline whose time starts now; it ends no later than that of the calling command."""
+    """Return a deadline whose time starts now; it ends no later than that of the calling command.
+
+    Without limits in ``options``, it is the deadline of the command itself, if there is one.
+    """
     outer, (time, memory) = caller().deadline, limits_of(options)
     if time is None and memory is None and outer is not None:
         return outer
@@ -70,6 +76,5 @@ def start_deadline(options: Limits) -> Deadline:
 def limits_of(options: Limits) -> tuple[float | None, int | None]:
     """Return the time limit in seconds and the memory limit in bytes; ``None`` for no limit."""
     time, memory = options.get("time_limit"), options.get("memory_limit")
-    return None if time is None else parse_seconds(time), None if memory is None else parse_memory_size(
-        memory
-    )
+    seconds = None if time is None else parse_seconds(time)
+    return seconds, None if memory is None else parse_memory_size(memory)

@@ -64,12 +64,16 @@ class Option(NamedTuple):
 
     ``name``: the name of the parameter.
     ``help``: the description on the command line and in Python.
+    ``kind``: the type that a value on the command line is parsed into.
+    ``role``: whether the option is of the problem, of the question or of the command.
+    ``default``: the value without the option; in Python, the default of the parameter.
     ``flags``: the flags of the command line; by default ``--name`` with dashes for underscores.
     ``many``: whether it may be repeated.
     ``metavar``: the word for the value in help; by default the word of its type, and ``FILE`` for a file.
     ``choices``: the values allowed; a function that lists them, if other packages may add some.
     ``least``: the smallest number allowed.
-    ``positional``: whether it has no flag; it must then be given, unless it is ``optional`` or ``many``.
+    ``positional``: whether it has no flag; it must then be given, unless it may be repeated.
+    ``optional``: whether it may be left out although it is positional.
     ``python``: an addition to ``help`` about values that only Python accepts.
     """
 
@@ -92,7 +96,7 @@ class Question:
     """The description of a question for a command line.
 
     ``options``: the options of the command.
-    ``help``: the text below the line of the index, with examples and exit codes.
+    ``help``: the text of ``--help`` below its first line, with examples and exit codes.
     ``formats``: the formats of the result, the default first.
     ``suffixes``: the format that each ending of a file name stands for; empty if no file can be written.
     ``pose``: a function from the options of the problem to the first arguments of the question.
@@ -133,9 +137,10 @@ def question(
 ) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """Return a decorator that wraps a function for Python, and describes it for a command line.
 
-    :func:`question_of` returns the description, a :class:`Question`, whose fields the arguments are. The
-    options of the command are ``options``, and after them those in the annotations of the parameters. A
+    The description is a :class:`Question`, which :func:`question_of` returns; the arguments are its fields.
+    Its options are ``options``, and after them those in the annotations of the function's parameters. The
     question supports items that are used up if it has an option for them, or if ``used_up`` says so.
+    Otherwise, it raises :class:`UserError` for a problem with such items.
     """
 
     def decorate(ask: Callable[P, R]) -> Callable[P, R]:
@@ -153,10 +158,10 @@ def question(
 
 
 def python_question(ask: Callable[P, T], options: Sequence[Option] | None = None) -> Callable[P, T]:
-    """Return a function that also takes paths and data for problems, with a complete docstring.
+    """Return a function that also takes a path or data for a problem, with a complete docstring.
 
     ``options`` describe the parameters in the docstring; by default, these are the options in the
-    annotations.
+    annotations. A command line needs :func:`question` instead.
     """
     signature = _without_options(expanded_signature(ask))
     described = _options_of(ask) if options is None else options
@@ -215,8 +220,8 @@ def _options_of(ask: Callable[..., object]) -> Iterator[Option]:
 def _complete_option(option: Option, parameter: inspect.Parameter, texts: Mapping[str, str]) -> Option:
     """Return an option with its missing name, default, help and type filled in from its parameter.
 
-    ``texts`` are the entries of the docstring by parameter. An option with a name is shared by questions; the
-    parameter changes only its default.
+    ``texts`` are the entries of the docstring by parameter; the help is the first sentence. An option that
+    has a name is shared by questions, and only its default is changed.
     """
     if option.name:  # an option shared by questions, whose default may differ
         default = parameter.default if isinstance(parameter.default, str | int) else option.default
@@ -232,7 +237,7 @@ def _complete_option(option: Option, parameter: inspect.Parameter, texts: Mappin
 
 
 def _for_lasting_items(ask: Callable[P, R]) -> Callable[P, R]:
-    """Return the question with a check: it raises :class:`UserError` for a problem with used-up items."""
+    """Return a question that first raises :class:`UserError` for a problem whose items are used up."""
 
     @functools.wraps(ask)
     def wrapped(*about: P.args, **named: P.kwargs) -> R:

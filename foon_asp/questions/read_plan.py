@@ -48,7 +48,7 @@ class PlanRead(Checked, frozen=True, kw_only=True, tag=schema_name("read-plan"))
         return Ending.DONE if self.sound else Ending.NEGATIVE
 
     def show(self) -> Iterator[Block]:
-        """Return whether the plan executes, what stops it at which line, and what it costs."""
+        """Return whether the plan executes, what stops it at which line, and its costs."""
         first, *others = super().show()
         yield from (first if self.sound else f"refused: {first}", *others)
 
@@ -62,9 +62,11 @@ class PlanRead(Checked, frozen=True, kw_only=True, tag=schema_name("read-plan"))
 
 
 def _pose_from_map(command: Command, names: Path | None) -> tuple[Problem]:
-    """Return the problem of the goals in a name map, under its container rule, over the data of the command.
+    """Return the problem that a name map states, over the data of the command.
 
-    Raises :class:`UserError` without a map, and for a map of other data or of another level.
+    The map has the goals, the container rule, and how items are used up. Raises :class:`UserError` without a
+    map, for a map of another level than the data, and if the command names no data and the map is not of the
+    bundled kitchen.
     """
     if names is None:
         raise UserError(

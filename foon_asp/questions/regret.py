@@ -11,8 +11,7 @@ from functools import partial
 from itertools import combinations
 from typing import Annotated, Any, Unpack
 
-from foon_asp.asp import Outcome, Reporter, Settings, Status
-from foon_asp.asp import solve as find
+from foon_asp.asp import Outcome, Reporter, Settings, Status, solve
 from foon_asp.asp.postconditions import Postconditions
 from foon_asp.errors import UserError
 from foon_asp.network.spelling import near_labels
@@ -61,8 +60,10 @@ class Regret(Value, frozen=True):
         motion: The motion whose units are all left out, or null.
         item: The kitchen item that is left out, or null.
         second_item: The other kitchen item of a pair, or null.
+        status: What is proved of the best tree without the part.
         costs: The costs of the best tree without the part; null without a tree.
-        loss: The loss of the best tree by each objective: a difference, or for success a share.
+        loss: By how much the best tree without the part is worse by each objective: a difference, or for
+            success a share. Null unless it is proved the best.
     """
 
     unit: Mention | None
@@ -86,11 +87,13 @@ class Regret(Value, frozen=True):
         return self.motion or " and ".join(str(node) for node in (self.item, self.second_item) if node)
 
     def loss_text(self, objective: Objective, what: str = "tree") -> str:
-        """Return in a few words how much worse the best tree is by an objective.
+        """Return in a few words how much worse the best tree without the part is by an objective.
+
+        The text is like ``+1 units`` or ``-5 %``; or it is ``nothing``, ``no tree`` or ``unknown``.
 
         Parameters:
             objective: One of the objectives of the question.
-            what: The word for a solution, tree or plan.
+            what: The word for a solution: ``tree`` or ``plan``.
         """
         if self.status is Status.INFEASIBLE:
             return f"no {what}"
@@ -132,7 +135,10 @@ class Regrets(WithAnswer, frozen=True, kw_only=True, tag=schema_name("regret")):
         return self.answer.ending if proved else Ending.LIMIT
 
     def show(self) -> Iterator[Block]:
-        """Return the optimum and the regrets, the greatest loss first."""
+        """Return the best tree's costs, and the regrets under a heading for each kind of part.
+
+        The line of a regret has the loss by the first objective. The greatest loss comes first.
+        """
         yield from (*self.goal_lines(), *self.answer.headlines())
         what = "tree" if self.items == "lasting" else "plan"
         for removal, title in _TITLES.items():
@@ -199,7 +205,7 @@ def regret(
     if None in asked_units:
         raise UserError(f"there is no unit {numbers[asked_units.index(None)]} in the network")
     units_by_motion = {motion: _units_of_motion(problem, motion) for motion in motion_names}
-    best = find(problem, chosen, settings, caller().reporter)
+    best = solve(problem, chosen, settings, caller().reporter)
     head, answer = head_of(problem, chosen), Answer.of(best)
     if best.units is None or best.status is not Status.OPTIMAL:
         return Regrets(**head, answer=answer, regrets=())
@@ -209,15 +215,20 @@ def regret(
     postconditions = Postconditions(problem, levels(chosen), settings)
 
     def solve_without(leave_out: Callable[[], Problem], **parts: Any) -> Regret:
-        """Solve the problem that ``leave_out`` returns; append the regret of ``parts``, and return it."""
+        """Solve the problem that ``leave_out`` returns; append its regret to ``regrets``, and return it.
+
+        ``parts`` name what is left out, as parameters of :func:`_regret_of_parts`. Without rules, raises
+        :class:`BugError` if the optimum is better without the part. This is not checked by ``kitchen``
+        without an item.
+        """
         try:
             with settings.begun.watched("leaving out a part"):  # which takes a while in a large network
                 smaller_problem = leave_out()
         except KeyboardInterrupt:
             remaining = None
         else:
-            remaining = find(smaller_problem, chosen, settings, Reporter())
-        regrets.append(_regret(best, remaining, **parts))
+            remaining = solve(smaller_problem, chosen, settings, Reporter())
+        regrets.append(_regret_of_parts(best, remaining, **parts))
         # a missing item is not taken from the kitchen, so a tree that makes it costs less by ``kitchen``
         if remaining and unrestricted and ("item" not in parts or Objective.KITCHEN not in chosen):
             postconditions.require_no_better(remaining, best, f"without {regrets[-1]}")
@@ -240,17 +251,20 @@ def regret(
 
 
 def regret_of(best: Answer, settings: Settings, unit: int | None = None, item: int | None = None) -> Regret:
-    """Return the regret of one unit or one kitchen item, by id: solve an answered problem without it."""
+    """Return the regret of one unit or one kitchen item, which is given by id.
+
+    The problem of the answer ``best`` is solved without it.
+    """
     network, outcome = best.problem.network, best.outcome
     if unit is not None:
-        remaining = find(_without_units(best.problem, [unit]), best.objectives, settings, Reporter())
-        return _regret(outcome, remaining, unit=mention_of(network, unit))
+        remaining = solve(_without_units(best.problem, [unit]), best.objectives, settings, Reporter())
+        return _regret_of_parts(outcome, remaining, unit=mention_of(network, unit))
     assert item is not None
-    remaining = find(_without_items(best.problem, item), best.objectives, settings, Reporter())
-    return _regret(outcome, remaining, item=node_of(network, item))
+    remaining = solve(_without_items(best.problem, item), best.objectives, settings, Reporter())
+    return _regret_of_parts(outcome, remaining, item=node_of(network, item))
 
 
-def _regret(
+def _regret_of_parts(
     best: Outcome,
     remaining: Outcome | None,
     unit: Mention | None = None,
@@ -258,20 +272,24 @@ def _regret(
     item: Node | None = None,
     second_item: Node | None = None,
 ) -> Regret:
-    """Return the regret of the parts that are given.
+    """Return the regret of the parts that are given; the other parts are ``None``.
 
-    ``remaining`` is the outcome without these parts; ``None`` if a limit came before the search. The loss is
-    ``None`` unless the outcome is proved optimal.
+    ``best`` is the outcome of the whole problem. ``remaining`` is the outcome without the parts; ``None`` if
+    a limit came before the search. The loss is ``None`` unless ``remaining`` is proved optimal.
     """
     status, costs = (Status.UNKNOWN, None) if remaining is None else (remaining.status, remaining.costs)
     loss: Measures | None = None
     if costs is not None and status is Status.OPTIMAL and best.costs is not None:
-        loss = {objective: _loss(best.costs, costs, objective) for objective in best.objectives}
+        loss = {objective: _loss_by(best.costs, costs, objective) for objective in best.objectives}
     return Regret(unit, motion, item, second_item, status, costs, loss)
 
 
-def _loss(best: Costs, remaining: Costs, objective: Objective) -> int | Fraction:
-    """Return by how much the remaining costs are worse: a difference, or for ``success`` a share."""
+def _loss_by(best: Costs, remaining: Costs, objective: Objective) -> int | Fraction:
+    """Return by how much the remaining costs are worse by an objective.
+
+    It is a difference; for ``success`` it is the share of the best rate that is lost, and 0 if that rate is
+    0.
+    """
     best_figure, figure = best.measure(objective), remaining.measure(objective)
     if multiplies(objective):
         return 1 - Fraction(figure) / Fraction(best_figure) if best_figure else Fraction(0)
@@ -279,7 +297,10 @@ def _loss(best: Costs, remaining: Costs, objective: Objective) -> int | Fraction
 
 
 def _without_items(problem: Problem, *removed: int) -> Problem:
-    """Return the problem without some items of the kitchen, by id."""
+    """Return the problem without some items of the kitchen, by id.
+
+    For a problem over a part of a store, the units that make the items are read, too.
+    """
     if problem.network.object_numbers and problem.origin is not None:  # what makes the items is read
         return problem.vary(without=[problem.network.objects[o] for o in removed])
     return replace(problem, kitchen=problem.kitchen.difference(removed))
@@ -296,7 +317,10 @@ def _without_units(problem: Problem, removed: Sequence[int]) -> Problem:
 
 
 def _units_of_motion(problem: Problem, motion: str) -> list[int]:
-    """Return the ids of the units of a motion; raises :class:`UserError`, with similar motions, if none."""
+    """Return the ids of the units of a motion.
+
+    Raises :class:`UserError` if no unit has it; the message names similar motions.
+    """
     motions = problem.network.motions
     units = [unit for unit, name in enumerate(motions) if name == motion]
     if not units:
@@ -309,7 +333,10 @@ def _units_of_motion(problem: Problem, motion: str) -> list[int]:
 def _regret_key(
     regret: Regret, objectives: tuple[Objective, ...]
 ) -> tuple[bool, tuple[int | Fraction, ...], Removal]:
-    """Return a sort key: first parts without which there is no tree, then by loss, then by kind."""
+    """Return a sort key for regrets.
+
+    Parts without which there is no tree come first, then greater losses, then parts by kind.
+    """
     costs = regret.costs
     key = () if costs is None else tuple(-figure for figure in costs.key(objectives))
     return costs is not None, key, regret.part

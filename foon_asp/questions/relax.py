@@ -50,13 +50,13 @@ class Relaxed(Result, frozen=True, kw_only=True, tag=schema_name("relax")):
         facts: The number of facts.
         actions: The number of reachable actions.
         status: optimal: proved that no plan is cheaper, however many actions it has; infeasible: proved that
-            there is no plan; feasible and unknown: stopped at a limit with or without one.
+            there is no plan; feasible and unknown: stopped at a limit with or without a plan.
         stopped: For feasible and unknown: at which limit, and while doing what.
         certificate: The file with a proof, where one was written.
         cost: The cost of the plan; null without a plan.
         lower_bound: A proved lower bound on the cost of all plans.
         plan: The actions, in an order that executes if nothing is deleted; null without a plan.
-        seconds: The time of each phase.
+        seconds: The time of each phase, in seconds.
 
     Example:
         >>> import pathlib, tempfile
@@ -83,6 +83,9 @@ class Relaxed(Result, frozen=True, kw_only=True, tag=schema_name("relax")):
     @classmethod
     def of(cls, task: StripsTask, answer: Answer) -> Self:
         """Return the result for a task from the answer to its problem.
+
+        The plan leaves out actions that only derive predicates. A plan whose cost is the lower bound is
+        optimal, even if the search for one with fewer actions was stopped.
 
         Parameters:
             task: The task.
@@ -202,7 +205,8 @@ def relax(
     Parameters:
         task: PROBLEM.pddl with DOMAIN.pddl, or TASK.sas as Fast Downward's translator writes it. One path or
             two.
-        certificate_file: Also write a proof, which ``foon-asp verify FILE TASK...`` checks.
+        certificate_file: Also write a proof, which ``foon-asp verify FILE TASK...`` checks. If no proof
+            is found, a warning says so, and no file is written.
 
     Returns:
         The ``plan``, its ``cost``, what is proved of it as ``status``, and the task as a ``problem``.
@@ -222,7 +226,7 @@ def relax(
     relaxed = solve_relaxation(read_task(as_paths(task), deadline), deadline)
     if certificate_file is None:
         return relaxed
-    certificate = _certificate(relaxed, deadline)
+    certificate = _find_certificate(relaxed, deadline)
     if certificate is None:
         caller().reporter.warning("no certificate was found, and nothing is written")
         return relaxed
@@ -233,7 +237,7 @@ def relax(
 def solve_relaxation(task: StripsTask, deadline: Deadline) -> Relaxed:
     """Find the cheapest plan of the delete relaxation of a task.
 
-    Among the cheapest plans, it looks for one with the fewest actions, but only until the cost is proved.
+    The search for a cheapest plan with few actions ends as soon as the cost is proved.
     """
     proof_deadline = Deadline(within=deadline)
     reporter = _StopWhenProved(caller().reporter, task.objective, proof_deadline)
@@ -253,23 +257,29 @@ class _StopWhenProved(Reporter):
         """Forward the costs of a new incumbent, and record its cost by the objective to prove."""
         self._reporter.tree(costs)
         self._cost = costs.measure(self._objective)
-        self._compare()
+        self._stop_if_proved()
 
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
         """Forward a lower bound, and record it if it is on the cost to be proved."""
         self._reporter.bound(objective, bound)
         if objective is self._objective:
             self._lower_bound = bound
-            self._compare()
+            self._stop_if_proved()
 
-    def _compare(self) -> None:
-        """End the search if the cost is proved; by units, no second objective would be searched for."""
+    def _stop_if_proved(self) -> None:
+        """End the search if the incumbent costs as much as the lower bound.
+
+        By ``units``, the search ends without that, since there is no second objective.
+        """
         if self._objective is not Objective.UNITS and None is not self._cost == self._lower_bound:
             self._deadline.stop_at_proof()
 
 
-def _certificate(relaxed: Relaxed, deadline: Deadline) -> "Certificate | None":
-    """Return a certificate of the cost, or of the absence of a plan; ``None`` at a limit and for no proof."""
+def _find_certificate(relaxed: Relaxed, deadline: Deadline) -> "Certificate | None":
+    """Return a certificate of the cost, or that no plan exists.
+
+    It is ``None`` if neither is proved, if none is found, and at a limit.
+    """
     from foon_asp.certificate import certify, certify_infeasible  # noqa: PLC0415 (slow to import)
 
     answer, units = relaxed.answer, relaxed.answer.ids

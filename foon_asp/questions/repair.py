@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Unpack
 
 from foon_asp.asp import Outcome, Proof, Settings, Status
-from foon_asp.asp.optimum import solve as find
+from foon_asp.asp.optimum import solve
 from foon_asp.certificate import Certificate, NotBestError, certify, certify_infeasible
 from foon_asp.certificate.coverage import Coverage
 from foon_asp.dataset import Dataset
@@ -44,14 +44,15 @@ class Repaired(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("r
     Attributes:
         verdict: Whether the tree executes as it is.
         status: optimal: proved cheapest; feasible: stopped at a limit with a repair; infeasible: proved that
-            no repair exists; unknown: stopped without one.
-        proof: What proves it; null where nothing is proved.
-        costs: What the repaired tree costs; null without one.
+            no repair exists; unknown: stopped without a repair.
+        proof: What proves the status; null where nothing is proved.
+        costs: What the repaired tree costs; null without a repair.
         stand_ins: What is used in place of what.
-        added: The numbers of the steps, from 1, that the tree did not have; stand-ins are not counted.
-        order: For each step of the given tree, its number in the repaired one; empty without one.
-        lacking: Without a repair: object nodes that nothing makes and nothing stands in for.
-        units: The steps of the repaired tree; null without one.
+        added: The numbers, from 1, of the steps that the given tree did not have; stand-ins are not counted.
+        order: For each step of the given tree, its number in the repaired tree, from 1; empty without a
+            repair.
+        lacking: If no repair exists: object nodes that nothing makes and nothing stands in for.
+        units: The steps of the repaired tree; null without a repair.
 
     Example:
         >>> tree = foon_asp.search(foon_asp.load().problem("macaroni"), "bfs").tree
@@ -94,7 +95,7 @@ class Repaired(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("r
         return "\n".join(self.notes)
 
     def foon(self) -> str:
-        """Return the repaired tree as FOON text; empty without one."""
+        """Return the repaired tree as FOON text; empty without a repair."""
         if self.tree is None:
             return ""
         comments = [f"Repaired tree for: {' + '.join(map(str, self.goals))}"]
@@ -155,8 +156,8 @@ def repair(
         The repair, with its ``stand_ins``, ``added`` steps and the repaired ``tree``.
 
     Raises:
-        UserError: if the file cannot be read, for a problem in which items are used up, or for a certificate
-            about units that the network does not have.
+        UserError: if the file cannot be read, for a problem in which items are used up, for constraints or
+            encodings, or for a certificate about units that the network does not have.
 
     Example:
         >>> problem = foon_asp.load().problem("ice")
@@ -175,7 +176,7 @@ def repair(
         )
     needed = Repair.of(base_problem, listed.units, listed.places, table, _kitchen_lists(problem))
     verdict = simulate_for(needed.shown, listed).verdict
-    outcome = find(needed.posed, _OBJECTIVES, settings, caller().reporter)
+    outcome = solve(needed.posed, _OBJECTIVES, settings, caller().reporter)
     found_certificate: Certificate | None = None
     notes: tuple[str, ...] = ()
     if certificate is not None:
@@ -218,7 +219,7 @@ def _certify_repair(
 ) -> tuple[Outcome, Certificate | None]:
     """Return the outcome of a repair, and a certificate that no tree with all steps of the repair is better.
 
-    The outcome has the certificate as its proof if that covers all objectives. The certificate is ``None`` if
+    If the certificate covers all objectives, it is the proof of the outcome. The certificate is ``None`` if
     the repair is not proved, or if none is found in time. Raises :class:`BugError` if a better tree exists.
     """
     covered = Coverage(({"rule": ALL_STEPS, "units": sorted(needed.steps)},))
@@ -241,7 +242,7 @@ def _certify_repair(
 def _kitchen_lists(problem: Problem) -> Callable[[ObjectNode], bool]:
     """Return a function that says whether an entry of the kitchen file matches a node.
 
-    The node may be absent from the network.
+    The network need not have the node. Without a kitchen file, no entry matches.
     """
     data = problem.origin.data if isinstance(problem.origin, Dataset) else None
     items = () if data is None else data.kitchen_items

@@ -22,7 +22,7 @@ ENDINGS = {
     ".csv": "csv",
     ".md": "markdown",
 }
-"""The format that each ending of a file name stands for."""
+"""The format by the ending of a file name."""
 
 
 class Ending(StrEnum):
@@ -49,7 +49,7 @@ class NoTreeError(UserError):
 
 
 class Result(Document, frozen=True, kw_only=True):
-    """The result of a question; ``print`` shows the text of the command line, a notebook also a picture.
+    """The result of a question; ``print`` shows the text of the command line, and a notebook adds a picture.
 
     The class attribute ``SUFFIXES`` has the format that each ending of a file name stands for.
     """
@@ -116,11 +116,11 @@ class Result(Document, frozen=True, kw_only=True):
 
         Parameters:
             file: The path of the file.
-            format_: One of the formats in ``SUFFIXES``; without it, the end of the name chooses.
+            format_: A format in ``SUFFIXES`` that the result has; without it, the ending of the name decides.
 
         Raises:
             NothingToDrawError: for a picture, if there is nothing to draw.
-            UserError: for another format, or a file that cannot be written.
+            UserError: for another format or ending, or a file that cannot be written.
         """
         from foon_asp.whole_file import utf_8, write_whole  # noqa: PLC0415 (most results are printed)
 
@@ -151,7 +151,7 @@ class Result(Document, frozen=True, kw_only=True):
         raise UserError(f"{file}: there is no chart of this")
 
     def drawing(self) -> "Drawing | None":
-        """Return the drawing of the tree; ``None`` without a tree."""
+        """Return the drawing of the tree; ``None`` without a tree, and for results that have no drawing."""
         return None
 
     def svg(self) -> str:
@@ -179,7 +179,7 @@ class Result(Document, frozen=True, kw_only=True):
     def _repr_mimebundle_(
         self, include: Iterable[str] | None = None, exclude: Iterable[str] | None = None
     ) -> dict[str, str]:
-        """Return the notebook display by media type; the arguments are ignored, as IPython allows."""
+        """Return the notebook display by media type; the arguments that IPython passes are ignored."""
         return self._in_notebook()
 
     def _in_notebook(self) -> dict[str, str]:
@@ -191,5 +191,9 @@ class Result(Document, frozen=True, kw_only=True):
 
 
 def format_method(format_: str) -> str:
-    """Return the name of the method of a result that returns a format: ``json_text`` for ``json``."""
+    """Return the name of the method of a result that returns a format.
+
+    It is the name of the format, with underscores for dashes: ``steps_csv`` for ``steps-csv``. Only for
+    ``json``, it is ``json_text``.
+    """
     return "json_text" if format_ == "json" else format_.replace("-", "_")

@@ -15,9 +15,9 @@ from foon_asp.results.values_of import costed_tree
 def with_policy(answer: Answer, retries: int, settings: Settings, **options: Unpack[CommonOptions]) -> Answer:
     """Return an answer with the retry policy that has the greatest chance of success.
 
-    The policy chooses among the tree of the answer and the best trees by success, which
-    :func:`alternatives` finds; up to four trees in all. The policy is ``None`` if the answer has no
-    tree, or if a limit came first; a note of the answer says the latter.
+    The policy chooses among up to four trees: that of the answer, and the best ones by success, which
+    :func:`alternatives` finds. The policy is ``None`` if the answer has no tree. It is also ``None`` if a
+    limit came first; a note of the answer then says so. Raises :class:`UserError` if no rates are known.
 
     Parameters:
         answer: The answer.

@@ -25,7 +25,7 @@ class RobotPlan(AboutGoals, frozen=True, kw_only=True, tag=schema_name("steps"))
             up anyway.
         tools_inferred: Whether no utensils are known, so that tools are inferred from what stays the same.
         robot_steps: The steps, in an order that executes.
-        branches: With ``--retries``: the trees to follow, one after the other.
+        branches: With ``--retries``: the trees to follow, one after the other; else left out.
     """
 
     ROWS = "robot_steps"
@@ -56,7 +56,7 @@ class RobotPlan(AboutGoals, frozen=True, kw_only=True, tag=schema_name("steps"))
         clips = tuple(_clips(problem, (plan, *(units for units, _ in policy or ()))))
 
         def steps(units: Collection[int]) -> tuple[RobotStep, ...]:
-            """Return the steps of units that are listed by id."""
+            """Return the steps of units, which are listed by id in an order that executes."""
             return tuple(robot_steps(problem, units, durations, clips))
 
         return cls(
@@ -70,7 +70,11 @@ class RobotPlan(AboutGoals, frozen=True, kw_only=True, tag=schema_name("steps"))
         )
 
     def behaviour_tree(self) -> str:
-        """Return the plan as a behaviour tree: XML of BehaviorTree.CPP 4."""
+        """Return the plan as a behaviour tree: XML of BehaviorTree.CPP 4.
+
+        Without ``branches``, the tree fails with the first failed execution. If the first objective is
+        ``attempts``, or where items are used up, failed steps are tried again without end.
+        """
         endless = self.objectives[:1] == (Objective.ATTEMPTS,)
         branches = self.branches or (Branch(-1 if endless else 1, self.robot_steps),)
         name = " + ".join(map(str, self.goals))

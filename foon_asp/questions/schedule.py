@@ -50,6 +50,7 @@ from foon_asp.text.tables import (
 from foon_asp.whole_file import utf_8, write_whole
 
 Tools = str | PathLike[str] | Mapping[ToolName, int | None]
+"""Numbers of tools: the path of a file, or the numbers by label or node; ``None`` for an unlimited number."""
 
 
 class MotionTime(Value, frozen=True):
@@ -69,7 +70,7 @@ class LackingTool(Value, frozen=True):
 
     Attributes:
         tool: A label, or a vessel with what is in it.
-        there: The number available.
+        there: How many there are.
         needed: If infeasible, the least number that a schedule needs; if unknown, a number that is enough.
     """
 
@@ -89,7 +90,7 @@ class Schedule(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("s
         lower_bound: A proved lower bound on the makespan, in seconds.
         agents: The number of agents.
         durations: The duration of each motion of the plan.
-        timetable: The steps of the plan, in its order; empty without a schedule.
+        timetable: The steps, in the order of the plan; empty without a schedule.
         lacking: Without a schedule, the tools of which there are too few.
 
     Example:
@@ -124,7 +125,8 @@ class Schedule(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("s
     def show(self) -> Iterator[Block]:
         """Return the makespan with what is proved of it, a table of the steps, and the time each agent works.
 
-        Without a schedule, the tools that are lacking are listed, and how many are needed.
+        Without a schedule, the tools that are lacking are listed, and how many are needed. If a limit came
+        first, a line has the lower bound.
         """
         yield from self.goal_lines()
         agents = counted(self.agents, "agent")
@@ -330,7 +332,7 @@ def schedule(
     ]
     return Schedule(
         **head_of(tree.problem),
-        status=_status(solution),
+        status=_status_of(solution),
         stopped=None if solution.proved else deadline.stopped,
         makespan=None if solution.starts is None else max((step.end for step in timed), default=Fraction(0)),
         lower_bound=solution.bound * task.tick,
@@ -352,7 +354,8 @@ def _timed_step_values(
 ) -> Iterator[TimedStep]:
     """Yield the steps of a schedule as values for a result.
 
-    ``timed`` has the times of each step, and ``after`` the numbers, from 1, of the steps that it waits for.
+    ``timed`` has the times, the agent and the tools of each step of the tree. ``after`` has the numbers, from
+    1, of the steps that each step waits for.
     """
     problem = tree.problem
     for number, (unit, step, earlier) in enumerate(zip(tree.units, timed, after, strict=False), 1):
@@ -374,17 +377,22 @@ def _timed_step_values(
         )
 
 
-def _status(solution: BestSchedule) -> Status:
-    """Return the status: of a schedule optimal or feasible, without one infeasible or unknown."""
+def _status_of(solution: BestSchedule) -> Status:
+    """Return the status of a solution.
+
+    With a schedule, it is optimal or, without a proof, feasible. Without a schedule, it is infeasible or,
+    without a proof, unknown.
+    """
     if solution.proved:
         return Status.INFEASIBLE if solution.starts is None else Status.OPTIMAL
     return Status.UNKNOWN if solution.starts is None else Status.FEASIBLE
 
 
 def _executable_tree(tree: Tree) -> Tree:
-    """Return a tree in an order that executes; in the listed order if items last and no order executes.
+    """Return a tree in an order that executes.
 
-    Raises :class:`NoTreeError` if items are used up and no order executes.
+    If no order executes, the tree is returned in the listed order where items last. Where they are used up,
+    raises :class:`NoTreeError`.
     """
     if tree.problem.items is None:
         simulation = simulate_for(tree.problem, tree)
@@ -399,7 +407,7 @@ def _executable_tree(tree: Tree) -> Tree:
 
 
 def _shortage_text(tree: Tree, shortage: Shortage) -> str:
-    """Return the message that a plan does not run, with the copy that is missing."""
+    """Return the message that a plan does not run, with the missing copy and the step that needs it."""
     return f"the plan does not run: {tree.lack_text(lack_of(tree.problem.network, shortage))}"
 
 
@@ -435,10 +443,10 @@ def _durations_of_plan(
 def _known_durations(
     tree: Tree, stated: Durations | None, from_video: bool, default: Number | None
 ) -> dict[str, Duration]:
-    """Return the known durations by motion.
+    """Return the known durations by motion, for the motions of a plan and those that are ``stated``.
 
-    A stated duration comes first; then, with ``from_video``, the median of the video clips of the motion;
-    then the default. Warnings name the motions that have a median or the default.
+    A stated duration comes first. Then, with ``from_video``, comes the median of the video clips of the
+    motion, and then the ``default``. Warnings name the motions that have a median or the default.
     """
     durations = stated_durations(stated)
     motions = dict.fromkeys(unit.motion for unit in tree.units)
@@ -469,9 +477,9 @@ def _known_durations(
 
 
 def _tool_counts(stated: Tools | None) -> dict[ToolName, int | None]:
-    """Return the stated numbers of tools by label or node, read from a file or checked.
+    """Return the stated numbers of tools by label or node; ``None`` for an unlimited number.
 
-    ``None`` in the result is an unlimited number. Raises :class:`UserError` for a wrong number or label.
+    They are read from a file, or checked. Raises :class:`UserError` for a wrong number or label.
     """
     if stated is None:
         return {}

@@ -42,7 +42,8 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
         verdict: Whether the tree executes; null without a tree.
         as_listed: What stops the tree in the order listed, if anything.
         in_any_order: What stops every order, if anything.
-        order: An order that executes, in positions from 1; null without a tree.
+        order: Positions of steps, from 1, in an order in which they run: all steps if the tree executes, else
+            at most those that can run. Null without a tree.
         used_up: Whether the tree, each step done once, runs where items are used up; null without a tree, and
             where items are used up anyway.
         costs: What the tree costs by every objective; null without a tree.
@@ -77,8 +78,8 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
         Parameters:
             problem: The problem.
             search: The search.
-            ended: How it ended.
-            ids: The units of its tree, by id in the network of the problem; ignored without a tree.
+            ended: How the search ended.
+            ids: The units of its tree, by id in the network of the problem; empty without a tree.
             stuck_at: The object that cannot be had, if the search was stuck.
         """
         tree = Tree.of(problem, ids) if ended is Searched.TREE else None
@@ -125,7 +126,10 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
         return Ending.DONE if self.executes else Ending.NEGATIVE
 
     def show(self) -> Iterator[Block]:
-        """Return the promise of the search, whether its tree executes, and the steps in the order listed."""
+        """Return the promise of the search, whether its tree executes, and the steps in the order listed.
+
+        Without a tree, a line says why there is none.
+        """
         yield from (*self.goal_lines(), f"{self.search} promises {self.promise}")
         if self.tree is None or self.simulation is None or self.units is None:
             yield self._no_tree_text()
@@ -179,9 +183,10 @@ def search(
 ) -> Retrieved:
     """Retrieve a task tree with a published search, and find out whether it executes.
 
-    ``bfs``, ``dfs``, ``greedy-success`` and ``greedy-inputs`` choose one unit for each object and never look
-    back; ``ids`` backtracks, and returns a tree of least depth that executes or says that none does. The
-    searches ignore that items are used up. If they are, a tree executes if it runs as a plan in some order.
+    ``bfs``, ``dfs``, ``greedy-success`` and ``greedy-inputs`` choose one unit for each object, and do not
+    backtrack. ``ids`` backtracks: it returns a tree of least depth that executes, or says that none does. All
+    searches run as if items last. Where items are used up, the tree executes if it runs as a plan in some
+    order.
 
     Parameters:
         search: ``bfs``, ``dfs``, ``ids``, ``greedy-success``, ``greedy-inputs``, or the name of a search

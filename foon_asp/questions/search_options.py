@@ -27,9 +27,10 @@ DEPTH = Option(
 
 
 def searches_named(names: Iterable[str]) -> list[Search]:
-    """Return the searches with the given names, each once, in their order; without names, all searches.
+    """Return the searches with the given names, in the order of the names; without names, all searches.
 
-    Raises :class:`UserError` for an unknown name, and if two searches have one name.
+    A repeated name counts once. Raises :class:`UserError` for an unknown name, and if two searches have one
+    name.
     """
     searches = find_searches()
     names = list(dict.fromkeys(names)) or list(searches)
@@ -40,7 +41,7 @@ def searches_named(names: Iterable[str]) -> list[Search]:
 
 
 def usable_searches(rated: bool) -> list[Search]:
-    """Return all searches, without the one that needs success rates unless these are known (``rated``)."""
+    """Return all searches, except ``greedy-success`` if no success rates are known (``rated`` is false)."""
     return [search for search in searches_named(()) if rated or search.name != "greedy-success"]
 
 
@@ -54,7 +55,7 @@ def search_settings(
 ) -> SearchSettings:
     """Return the settings of searches from options; raises :class:`UserError` for a wrong value.
 
-    The limits are in seconds and bytes, and hold for each search.
+    The limits are in seconds and bytes, and hold for each search by itself; ``None`` for no limit.
     """
     for name, value, choices in (("ties", ties, [*map(str, Ties)]), ("count", count, [*map(str, Count)])):
         if value not in choices:

@@ -78,8 +78,8 @@ class RateInterval(Value, frozen=True):
     Attributes:
         rate: The rate that is given.
         units: How many units of the best tree have the motion.
-        below: The end below; without one, the interval goes down to 0, which is not in it.
-        above: The end above; without one, the interval goes up to 1.
+        below: The end below the rate. If it has no rate, the interval goes down to 0, which is not in it.
+        above: The end above the rate. If it has no rate, the interval goes up to 1.
     """
 
     motion: str
@@ -139,7 +139,10 @@ class Sensitivity(WithAnswer, frozen=True, kw_only=True, tag=schema_name("sensit
         return self.answer.ending if proved else Ending.LIMIT
 
     def show(self) -> Iterator[Block]:
-        """Return a table of the motions whose rate can make another tree the best, then the others."""
+        """Return a table of the motions whose rate can make another tree the best, then the other motions.
+
+        The last line says which rate to measure first, or that no rate alone makes another tree the best.
+        """
         yield from (*self.goal_lines(), *self.answer.headlines())
         flipping = [interval for interval in self.intervals if interval.flips]
         stable = [interval for interval in self.intervals if not interval.flips]
@@ -276,7 +279,8 @@ def sensitivity(problem: Problem, **options: Unpack[CommonOptions]) -> Sensitivi
 def _end_value(best: Answer, end: IntervalEnd, flip: Flip | None) -> RateEnd:
     """Return an end of an interval as a value for a result, with the best tree beyond it.
 
-    The value has neither rate nor tree if no rate beyond makes another tree better.
+    ``flip`` is the change of the rate up to this end; ``None`` if no rate on this side makes another tree
+    better. The value then has neither a rate nor a tree.
     """
     if flip is None or end.beyond is None:
         return RateEnd(end.proved, None, None)

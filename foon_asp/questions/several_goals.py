@@ -15,18 +15,19 @@ from foon_asp.results.values_of import node_of, nodes_of
 class GoalsApartTuning(NamedTuple):
     """The limit up to which the goals of a tree are also solved one by one.
 
-    ``goals`` is the greatest number of goals, since each takes one more search and one more line. For more
-    goals there is the option ``--all-goals``.
+    ``goals``: the greatest number of goals. Each goal takes one more search and one more line; for more goals
+    there is the option ``--all-goals``.
     """
 
     goals: int = 8
 
 
 def with_goals_apart(answer: Answer, settings: Settings, posed: Problem) -> Answer:
-    """Return an answer with the goals that each unit is needed for.
+    """Return an answer with the goals that each unit of its tree is needed for.
 
-    For up to eight goals, the answer also has the optimum for each goal by itself. ``posed`` is the problem
-    as the question had it; of a large store, only the units for one goal are then read at a time.
+    For up to eight goals, the answer also has the optimum for each goal by itself, and the sum of these
+    costs. ``posed`` is the problem that was asked about. If it is over a large store and not all of its units
+    were read, the units for each goal are read separately.
     """
     problem, network = answer.problem, answer.problem.network
     serves = tuple(
@@ -49,7 +50,7 @@ def with_goals_apart(answer: Answer, settings: Settings, posed: Problem) -> Answ
 def _solve_apart(answer: Answer, settings: Settings, posed: Problem) -> list[Outcome]:
     """Return the best outcome for each goal by itself, in the order of the goals.
 
-    Without rules, it is checked that no goal alone costs more than all together.
+    Without rules, raises :class:`BugError` if one goal alone costs more than all goals together.
     """
     together, problem, objectives = answer.outcome, answer.problem, answer.objectives
     if isinstance(posed, NearbyProblem):
@@ -69,7 +70,10 @@ def _solve_apart(answer: Answer, settings: Settings, posed: Problem) -> list[Out
 
 
 def _total_cost(outcomes: Sequence[Outcome], objective: Objective) -> int | Fraction | None:
-    """Return the sum of the costs of trees, for ``success`` the product; ``None`` if a goal has no tree."""
+    """Return the sum of the costs of the outcomes by an objective; for ``success``, the product.
+
+    Return ``None`` if a goal has no tree.
+    """
     total: int | Fraction = Fraction(1) if multiplies(objective) else 0
     for outcome in outcomes:
         if outcome.costs is None:

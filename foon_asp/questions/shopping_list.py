@@ -82,7 +82,8 @@ class ShoppingList(Value, frozen=True):
 
     Attributes:
         price: The sum of prices; without a price list, the number of items, or of copies if they are used up.
-        proved: Whether it is proved that no list is cheaper, except lists that contain an earlier one.
+        proved: Whether it is proved that no list is cheaper, except lists that contain all items of an
+            earlier list.
         costs: What the best tree costs with these items; null where a limit came first.
     """
 
@@ -96,12 +97,12 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
     """Lists of things to add to the kitchen, and the best tree with the first list.
 
     Attributes:
-        offer: The nodes that could be bought: those for sale; if these are not enough, also nodes of a cycle
-            that feeds only itself (cycle), all but the dish (processed), all but the goals (dish), or all
-            (goal). With a price list: the nodes with a price (priced).
+        offer: The nodes that could be bought. With a price list: those with a price (priced). Without one,
+            the first of these sets that is enough: those for sale (for sale), also nodes of a cycle that
+            feeds only itself (cycle), all but the dish (processed), all but the goals (dish), or all (goal).
         lists: The lists, the cheapest first. Of lists with one price and number of items, those with the
             fewest mixtures and made things come first, then that with the best tree. Empty if no list helps.
-        complete: Whether the search ended, so that there are no more lists.
+        complete: Whether it is proved that there are no more lists.
         answer: The best tree with the first list in the kitchen; null without a list.
 
     Example:
@@ -126,7 +127,10 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
         return Ending.DONE if proved and self.answer and self.answer.ending is Ending.DONE else Ending.LIMIT
 
     def show(self) -> Iterator[Block]:
-        """Return the first list with the steps that need each item, the other lists, and the best tree."""
+        """Return the first list with the steps that need each item, the other lists, and the best tree.
+
+        The best tree is that with the items of the first list. Without a list, one line says why.
+        """
         yield from self.goal_lines()
         if not self.lists:
             yield self._no_list_text()
@@ -166,7 +170,7 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
 
     def _item_lines(self, item: Item) -> Iterator[str]:
         """Yield an item with its price, and the steps of the tree that need it."""
-        yield f"  {item}" + (f"    {_decimal(item.price)}" if self.offer is Offer.PRICED else "")
+        yield f"  {item}" + (f"    {_price_as_decimal(item.price)}" if self.offer is Offer.PRICED else "")
         steps = () if self.answer is None else self.answer.units or ()
         consumers = [step for step in steps if any(used.node == item.node for used in step.inputs)]
         if consumers:
@@ -189,7 +193,7 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
         if self.items != "lasting":
             copies = sum(item.copies for item in bought.items if item.copies is not UNSET)
             items = f"{copies} {'copy' if copies == 1 else 'copies'} of {items}"
-        return f"{items} for {_decimal(bought.price)}" if self.offer is Offer.PRICED else items
+        return f"{items} for {_price_as_decimal(bought.price)}" if self.offer is Offer.PRICED else items
 
 
 @question(
@@ -259,7 +263,7 @@ def shopping_list(
     problem = over_whole_network(problem)
     priced = None if prices is None else _prices_of_nodes(problem, _price_rows(prices))
     if problem.items is not None:
-        return _with_copies(problem, chosen, settings, priced, max_lists)
+        return _shopping_with_copies(problem, chosen, settings, priced, max_lists)
     deadline, reporter = settings.begun, caller().reporter
     program = assemble(settings, reporter.warning, problem=problem)
     cheapest = _Lists([], complete=True)
@@ -288,7 +292,7 @@ def shopping_list(
             raise BugError("the shopping list does not make a tree possible")
         outcomes.append((candidate, outcome))
     if all(outcome.status is Status.OPTIMAL for _, outcome in outcomes):
-        outcomes.sort(key=lambda pair: _sort_key(pair[0], pair[1], shop))
+        outcomes.sort(key=lambda pair: _list_key(pair[0], pair[1], shop))
     return Shopping(
         **head_of(problem, chosen),
         offer=offer,
@@ -300,7 +304,7 @@ def shopping_list(
     )
 
 
-def _with_copies(
+def _shopping_with_copies(
     problem: Problem,
     objectives: tuple[Objective, ...],
     settings: Settings,
@@ -309,9 +313,8 @@ def _with_copies(
 ) -> Shopping:
     """Return the result for plans in which items are used up: the cheapest lists, with copies of each node.
 
-    ``priced`` are the prices by id of the node; ``None`` without a price list.
-
-    Raises :class:`UserError` for rules, which would see the purchases as units.
+    ``priced`` are the prices by id of the node; ``None`` without a price list. The lists are of the first
+    offer that is enough. Raises :class:`UserError` for rules, which would see the purchases as units.
     """
     if settings.constraints or settings.replaced is not None:
         raise UserError(
@@ -327,7 +330,7 @@ def _with_copies(
         second_choices = frozenset(filter(shop.is_second_choice, wares))
 
         def purchases(left_out: Collection[int]) -> Purchases:
-            """Return the purchases that are possible without some wares, by id."""
+            """Return the purchases that remain possible without wares, by id, that are left out."""
             offered = {o: price for o, price in wares.items() if o not in left_out}  # noqa: B023 (called here)
             return Purchases(problem, offered, second_choices.intersection(offered), objectives)  # noqa: B023
 
@@ -348,7 +351,7 @@ class _PricedList(NamedTuple):
     """A shopping list by ids, its price, and whether it is proved to be the cheapest.
 
     ``bought`` has the number of copies to buy by id of the object node; the number is 1 where items last.
-    ``outcome`` has the best tree with these items, if it is known.
+    ``outcome`` has the best tree with these items; ``None`` if it is not known.
     """
 
     bought: Mapping[int, int]
@@ -375,7 +378,10 @@ class _PricedList(NamedTuple):
 
 
 class _Lists(NamedTuple):
-    """Shopping lists, the cheapest first; ``complete`` if it is proved that there are no others."""
+    """Shopping lists, the cheapest first.
+
+    ``complete``: whether it is proved that there are no others.
+    """
 
     lists: list[_PricedList]
     complete: bool
@@ -396,7 +402,7 @@ def _with_bought_items(problem: Problem, bought: Mapping[int, int]) -> Problem:
     return replace(problem, kitchen=kitchen, items=replace(problem.items, stock=stock))
 
 
-def _sort_key(
+def _list_key(
     candidate: _PricedList, outcome: Outcome, shop: Shop
 ) -> tuple[Fraction, int, int, tuple[int | Fraction, ...]]:
     """Return the sort key of a list: price, number of items, second choices, costs of the best tree.
@@ -410,7 +416,7 @@ def _sort_key(
 
 
 def _refuse_nonlocal_rules(program: Program) -> None:
-    """Raise :class:`UserError` for a rule whose meaning depends on units outside the tree.
+    """Raise :class:`UserError` for an understood rule whose meaning depends on units outside the tree.
 
     Bought items make more units executable, and so would change what the rule says.
     """
@@ -424,9 +430,9 @@ def _refuse_nonlocal_rules(program: Program) -> None:
 
 
 def _price_rows(prices: File | Mapping[str, Number]) -> list[Row[str | ObjectNode, Fraction]]:
-    """Return the rows of a price list, from a file or a mapping.
+    """Return the rows of a price list, from the path of a file or a mapping from names to prices.
 
-    Raises :class:`UserError` for an entry that cannot be read.
+    Raises :class:`UserError` for an entry that cannot be read, and for a price below 0.
     """
     if isinstance(prices, str | PathLike):
         return PRICES.rows(Path(prices))
@@ -450,9 +456,9 @@ def _prices_of_nodes(
 ) -> dict[int, Fraction]:
     """Return the prices, by id of the object node, of the nodes in a price list.
 
-    An entry with a label alone stands for all of its nodes that would be for sale without prices; an entry
-    with a whole node overrides it. Nodes that are in the kitchen without a limit are left out. An entry that
-    matches no node causes a warning.
+    An entry with a label alone stands for all nodes of this label that would be for sale without prices. An
+    entry with a whole node overrides it. Available nodes that never run out are left out. A warning names
+    each entry that matches no node.
     """
     network, shop = problem.network, Shop(problem)
     prices: dict[int, Fraction] = {}
@@ -474,7 +480,10 @@ def _prices_of_nodes(
 
 
 def _unpriced_offers(problem: Problem, shop: Shop) -> list[tuple[Offer, dict[int, Fraction]]]:
-    """Return the offers of a shop, each larger than the one before, with the price 1 for each node by id."""
+    """Return the offers of a shop, each larger than the one before.
+
+    An offer is the name of a set of nodes, with the price 1 for each of them by id.
+    """
     offers = shop.offers(dead_ends(problem).roots)
     return [(offer, dict.fromkeys(sold, Fraction(1))) for offer, sold in offers]
 
@@ -486,7 +495,12 @@ def _lists_without_copies(
     wares: Mapping[int, Fraction],
     max_lists: int,
 ) -> _Lists:
-    """Return the cheapest lists of ``wares``, which are prices by id of the node, where items last."""
+    """Return the cheapest lists of ``wares``, which are prices by id of the node, where items last.
+
+    Without rules, :class:`_Shopper` finds them. Under rules, clingo does; if ``objectives`` are more than
+    ``units``, further lists of the same price are returned, for the caller to compare. There is no list if
+    the goals cannot be made even with all wares; this is proved unless a limit came first.
+    """
     if prepared.tree is None:
         return _Lists([], complete=not prepared.stopped)
     problem = prepared.problem
@@ -503,7 +517,7 @@ class _Shopper:
     """A search for the cheapest shopping lists by a hitting-set tree (Reiter 1987).
 
     A node of the hitting-set tree is a set of wares to leave out. Its list is what an optimal tree or plan
-    buys of the other wares. The next list is the best one that lacks an item of every earlier list.
+    buys of the other wares. The next list is the cheapest one that lacks an item of every earlier list.
     """
 
     def __init__(
@@ -526,7 +540,10 @@ class _Shopper:
         self._solved = SolvedGoals()
 
     def lists(self, max_lists: int) -> _Lists:
-        """Return up to ``max_lists`` lists, the cheapest first; those found so far at a limit."""
+        """Return up to ``max_lists`` lists, the cheapest first; at a limit, those found by then.
+
+        If nothing has to be bought, the only list is empty.
+        """
         if not self._search_without(frozenset(), caller().reporter):
             return _Lists(self._chosen_lists, complete=False)
         while self._queue:
@@ -540,10 +557,11 @@ class _Shopper:
         return _Lists(self._chosen_lists, complete=True)
 
     def _search_without(self, left_out: frozenset[int], reporter: Reporter) -> bool:
-        """Add the best list without the wares ``left_out`` to the queue, once; return false at a limit.
+        """Add the best list without the wares ``left_out`` to the queue; return false at a limit.
 
-        If an earlier list has none of these wares, it is branched on: each of its items is left out, too. At
-        a limit without any list yet, the best list found is kept, unproved.
+        Nothing is done if the set was searched before. An earlier list that has none of these wares may be
+        the best one again. In that case, the search is done for each item of the earlier list, which is left
+        out as well. At a limit without any list yet, the best list found is kept, unproved.
         """
         if left_out in self._seen:
             return True
@@ -562,9 +580,10 @@ class _Shopper:
         return outcome.status in {Status.OPTIMAL, Status.INFEASIBLE}
 
     def _bought_list(self, outcome: Outcome, purchases: Purchases) -> _PricedList:
-        """Return the list that a tree or plan with purchases buys, with the tree or plan as its outcome.
+        """Return the list that a tree or plan with purchases buys, and as its outcome the tree or plan.
 
-        Raises :class:`BugError` if the plan does not execute with what is bought.
+        The outcome has no purchases among its units: the items are in the kitchen of its problem. Raises
+        :class:`BugError` if the tree or plan does not execute with them.
         """
         assert outcome.units is not None
         bought, units = purchases.split(outcome.units)
@@ -600,11 +619,12 @@ def _lists_under_rules(
     max_lists: int,
     compared: bool,
 ) -> _Lists:
-    """Return the cheapest lists of ``sold`` wares (prices by id) under rules, by one run of clingo for each.
+    """Return the cheapest lists of ``sold`` wares under rules, by one run of clingo for each list.
 
-    clingo prefers lists without ``second_choices``, which are mixtures and nodes that units make. If trees
-    are ``compared``, up to 30 lists are found, as long as they have the price of the last one; the caller
-    then chooses by the trees. Raises :class:`UserError` for prices beyond 32 bits.
+    ``sold`` are prices by id of the node. Of equally cheap lists, clingo prefers those without
+    ``second_choices``, which are mixtures and nodes that units make. If trees are ``compared``, the caller
+    chooses among equally cheap lists by their trees: so up to 30 lists are found, as long as they cost as
+    much as list number ``max_lists``. Raises :class:`UserError` for prices beyond 32 bits.
     """
     scale = math.lcm(*(price.denominator for price in sold.values()))
     if any(price * scale > INT32_MAX for price in sold.values()):
@@ -629,8 +649,11 @@ def _lists_under_rules(
     return _Lists(lists, complete=False)
 
 
-def _decimal(number: Fraction) -> str:
-    """Return a sum of decimals as a decimal: ``3.20`` for 16/5, ``3`` for 3."""
+def _price_as_decimal(number: Fraction) -> str:
+    """Return a sum of decimals as a decimal: ``3.20`` for 16/5, ``3`` for 3.
+
+    A number that six decimal places cannot hold is returned as a fraction.
+    """
     for places in (0, 2, 3, 4, 5, 6):
         if (number * 10**places).denominator == 1:
             return f"{Decimal(number.numerator) / number.denominator:.{places}f}"

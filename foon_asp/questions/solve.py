@@ -43,7 +43,8 @@ def solve_or_each(
 ) -> Result:
     """Return the best tree for all goals, or with ``all_goals`` the best tree for each goal by itself.
 
-    Raises :class:`UserError` for options that do not go with ``all_goals``.
+    With ``all_goals``, ``reductions``, ``clingo_options`` and ``durations`` are ignored. Raises
+    :class:`UserError` for other options that do not go with it.
     """
     if not all_goals:
         return solve(

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from msgspec.structs import asdict
 
 from foon_asp.asp import Settings
-from foon_asp.asp.soft import solve_soft as find
+from foon_asp.asp.soft import solve_soft
 from foon_asp.problem import Objective, Problem
 from foon_asp.questions.answer import Answer, SoftConstraint
 from foon_asp.questions.caller import caller
@@ -16,12 +16,13 @@ from foon_asp.rules.passed_constraint import Constraint
 def solve_under_soft_constraints(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, weights: Mapping[Constraint, int]
 ) -> Answer:
-    """Return the best answer under soft constraints; breaking one costs its weight.
+    """Return the answer of least penalty and, among trees of this penalty, the best by the objectives.
 
-    The answer has the total penalty, and for each constraint how it is broken.
+    Each way to break a constraint costs its weight (``weights``). The answer has the total penalty, and for
+    each constraint in how many ways it is broken. The whole network is read.
     """
     current_caller = caller()
-    outcome, penalty, constraints = find(
+    outcome, penalty, constraints = solve_soft(
         over_whole_network(problem), objectives, settings, weights, current_caller.reporter
     )
     if current_caller.read_seconds is not None:

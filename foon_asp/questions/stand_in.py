@@ -17,7 +17,7 @@ class NodeEdit(Value, frozen=True):
         edit: The kind of edit in the table of stand-ins.
         served: The differing part of the node that is replaced; empty where it has none.
         serving: The differing part of the node that is used; empty where it has none.
-        price: The price in the table.
+        price: The price in the table of stand-ins.
     """
 
     edit: Edit
@@ -33,7 +33,7 @@ class NextStandIn(Node, frozen=True, kw_only=True):
     """The cheapest other node that could be used.
 
     Attributes:
-        dissimilarity: What it costs by the table.
+        dissimilarity: What it costs by the table of stand-ins.
     """
 
     dissimilarity: Fraction
@@ -43,11 +43,11 @@ class StandIn(Value, frozen=True):
     """One node that is used in place of another.
 
     Attributes:
-        unit: The id of the stand-in among the units.
+        unit: The id of the unit that is the stand-in in the network.
         used: The node that is used.
         stands_in_for: The node in whose place it is used.
-        dissimilarity: What it costs by the table.
-        edits: The differences that add up to it.
+        dissimilarity: What it costs by the table of stand-ins: the sum of the prices of ``edits``.
+        edits: The differences between the two nodes.
         next_best: The cheapest other node in the kitchen or made by the tree; null if there is none.
     """
 
@@ -74,7 +74,7 @@ def stand_ins_in(problem: Problem, tree: Collection[int]) -> tuple[StandIn, ...]
     network = problem.network
     values: list[StandIn] = []
     for unit, serving, served, next_best in stand_ins_of(problem, tree):
-        edits = _edits(problem, serving, served)
+        edits = _priced_edits(problem, serving, served)
         values.append(
             StandIn(
                 network.unit_number(unit),
@@ -99,8 +99,11 @@ def stand_in_lines(stand_ins: Sequence[StandIn]) -> Iterator[str]:
         yield from stand_in.lines()
 
 
-def _edits(problem: Problem, serving: int, served: int) -> tuple[Difference, ...]:
-    """Return the differences between two nodes, by id, with their prices in the table of stand-ins."""
+def _priced_edits(problem: Problem, serving: int, served: int) -> tuple[Difference, ...]:
+    """Return the differences between two nodes, by id, with their prices in the table of stand-ins.
+
+    It is empty if the node ``serving`` cannot stand in for ``served``.
+    """
     assert problem.stand_ins is not None
     objects = problem.network.objects
     return problem.stand_ins.table.differences(objects[serving], objects[served]) or ()

@@ -109,8 +109,8 @@ class Stats(Result, frozen=True, kw_only=True, tag=schema_name("stats")):
         starting_kitchen: The starting kitchen; null where a kitchen was given.
         levels: The counts at the levels of detail 1 to 3; for data below level 3, only at their own level.
             ``producers`` are the numbers of nodes that 0, 1, 2, 3 and 4 or more units make.
-        most_connected_labels: The labels that most units have.
-        most_connected_objects: The object nodes that most units touch.
+        most_connected_labels: The ten labels that most units have.
+        most_connected_objects: The ten object nodes that most units touch.
 
     Example:
         >>> foon_asp.stats(foon_asp.load()).levels[2].objects
@@ -157,7 +157,10 @@ class Stats(Result, frozen=True, kw_only=True, tag=schema_name("stats")):
         )
 
     def show(self) -> Iterator[Block]:
-        """Return a table with a column for each level, then the most connected labels and nodes."""
+        """Return a table with a column for each level, then the most connected labels and nodes.
+
+        The starting kitchen, if it is used, and the files with the most units are listed, too.
+        """
         places = f"{counted(len(self.files), 'file', ',')}, {counted(len(self.videos), 'source video', ',')}"
         yield f"{counted(self.units_read, 'unit', ',')} read from {places}"
         are = "is a copy of another" if self.copies == 1 else "are copies of others"
@@ -287,7 +290,8 @@ def stats(
             file. If given, units are listed.
 
     Returns:
-        The counts; or the units, and for each input whether it stays.
+        The counts. With ``units``, ``unit``, ``explain_items`` or ``stays``: the units instead. With
+        ``explain_items`` or ``stays``, each of their inputs says whether it stays.
 
     Raises:
         UserError: for a file that cannot be read, or a unit that the network does not have; for a name in
@@ -314,9 +318,10 @@ def stats(
 def _list_units(
     dataset: Dataset, numbers: Sequence[int], rule: ContainerRule, explains: bool, stays: Stays | None
 ) -> ListedUnits:
-    """Return the units with the given ids, or all; if ``explains``, each input says whether it stays.
+    """Return the units with the given ids in the whole network, or all units if there are no ids.
 
-    ``stays`` overrides this for labels and nodes. Unknown ids raise :class:`UserError`.
+    If ``explains``, each input says whether it stays. ``stays`` overrides this for labels and nodes. Raises
+    :class:`UserError` for unknown ids.
     """
     items = items_of(dataset, "used-up", None, stays) if explains else None
     network = (dataset.data_part((), numbers)[0] if numbers else dataset.data).network
@@ -329,7 +334,11 @@ def _list_units(
 def _explained_unit(
     network: Network, unit: int, rule: ContainerRule, utensils: frozenset[str], items: UsedUp | None
 ) -> ExplainedUnit:
-    """Return a unit as a value; with ``items``, each input says whether and why it stays."""
+    """Return a unit, by id, as a value.
+
+    ``items`` says how items are used up: each input then says whether it stays and why. If it is ``None``,
+    inputs say nothing of this.
+    """
     plain, value = unit_of(network, unit), network.unit(unit)
     needed = set() if items is None else set(needed_inputs(value, rule, utensils, network))
     inputs = []

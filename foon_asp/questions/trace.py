@@ -31,7 +31,7 @@ from foon_asp.text.writer import write_counted_node, write_node
 from foon_asp.whole_file import utf_8, write_whole
 
 States = tuple[dict[ObjectNode, int], ...]
-"""The number of copies of each consumable object node, initially and after each step."""
+"""The number of copies of each object node that can run out, initially and after each step."""
 
 
 class TracedStep(Value, frozen=True):
@@ -42,7 +42,7 @@ class TracedStep(Value, frozen=True):
         gone: The copies that it uses up.
         stayed: The copies that it needs and does not use up.
         came: The copies that it makes.
-        there: The number of copies of each consumable object node after the step.
+        there: The number of copies of each object node that can run out, after the step.
     """
 
     step: int
@@ -84,7 +84,7 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
     """The plan that was traced."""
 
     states = Unserialized[States]()
-    """The number of copies of each consumable object node, initially and after each step."""
+    """The number of copies of each object node that can run out, initially and after each step."""
 
     @property
     def ending(self) -> Ending:
@@ -94,7 +94,7 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
         return Ending.DONE if self.stopped is None else Ending.NEGATIVE
 
     def copies(self, after: int) -> dict[ObjectNode, int]:
-        """Return the number of copies of each consumable object node after a step.
+        """Return the number of copies of each object node that can run out, after a step.
 
         Parameters:
             after: The number of steps that were done, from 0.
@@ -123,7 +123,7 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
         return "".join(map(write_node, endless)) + self.stock_text(after)
 
     def stock_text(self, after: int) -> str:
-        """Return the stock after a step as FOON text: each consumable object node, with its amount.
+        """Return the stock after a step as FOON text: the nodes that can run out, with amounts.
 
         Parameters:
             after: The number of steps that were done, from 0.
@@ -131,9 +131,9 @@ class Traced(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("tra
         return "".join(write_counted_node(node, n) for node, n in self.copies(after).items())
 
     def show(self) -> Iterator[Block]:
-        """Return the steps with the copies used up and made, and the copies in the end.
+        """Return the steps that were done, each with the copies used up and made, and the copies in the end.
 
-        If a step failed, these are the copies before it, and the new plan follows. If the plan does not run,
+        If a step failed, the steps before it were done, and the new plan follows. If the plan does not run,
         the copy that is missing follows.
         """
         done = len(self.executed) if self.failed is None else self.failed - 1
@@ -176,9 +176,9 @@ def _stated_stock(problem: Problem) -> dict[ObjectNode, int]:
 
 
 def _copies_after_steps(problem: Problem, replay: Replay) -> Iterator[dict[ObjectNode, int]]:
-    """Yield the number of copies of each consumable node, at the beginning and after each step.
+    """Yield the number of copies by node: before the first step, and after each step.
 
-    Nodes without a copy are left out. Available nodes without a stock never run out, and are not counted.
+    Nodes without a copy are left out. Available nodes without a stock never run out, and are left out, too.
     """
     stock = _stated_stock(problem)
     counts = Counter({node: n for node, n in stock.items() if problem.at_hand(node)})
@@ -205,9 +205,9 @@ def _trace_and_write(
 ) -> Result:
     """Trace a plan, and write the kitchen and the stock after a step into files, where named.
 
-    ``after`` is the number of steps done; by default, all that run, or those before the failed step. With a
-    ``state``, the result is that of :func:`ways_on`. Raises :class:`UserError` for options that do not go
-    together.
+    ``after`` is the number of steps done. By default, these are all steps that run or, with ``failed``, those
+    before the failed step. With a ``state``, the result is that of :func:`ways_on`, and no file is written.
+    Raises :class:`UserError` for options that do not go together.
     """
     if state is not None:
         from foon_asp.questions.ways_on import ways_on  # noqa: PLC0415 (most traces are of plans)
@@ -330,7 +330,7 @@ def trace(
             last = len(replay.steps)
             raise UserError(f"found the step {failed}, expected one up to which the plan runs: 1 to {last}")
         limits = Settings(deadline=start_deadline(options))
-        answer = answer_problem(_problem_from(problem, states[failed - 1]), chosen, limits)
+        answer = answer_problem(_problem_from_state(problem, states[failed - 1]), chosen, limits)
     executed = []
     for number, step in enumerate(replay.steps, 1):
         gone, stayed, came = (
@@ -348,11 +348,11 @@ def trace(
     return traced.knowing(plan=tree, states=states)
 
 
-def _problem_from(problem: Problem, copies: dict[ObjectNode, int]) -> Problem:
-    """Return the problem over the whole network in which the available nodes are those with copies.
+def _problem_from_state(problem: Problem, copies: dict[ObjectNode, int]) -> Problem:
+    """Return the problem, over the whole network, from the state that some steps of a plan leave.
 
-    If items last, the nodes are added to the kitchen. If items are used up, the copies are the stock, and
-    nodes that never run out stay available.
+    ``copies`` has the number of copies by node in this state. If items last, these nodes are added to the
+    kitchen. If items are used up, the copies are the stock, and nodes that never run out stay available.
     """
     problem = problem.whole
     network = problem.network

@@ -71,7 +71,8 @@ class Tree(TaskTree):
         """Make a tree from units as values, which need not be in the network.
 
         Parameters:
-            problem: The problem that the tree is for.
+            problem: The problem that the tree is for. If its network is a part of a store, the problem of the
+                tree has the units, too, unless the store lacks them.
             units: The units, in the order of the tree.
             places: Where each unit was read; by default its place in the network, if it has one.
         """
@@ -95,7 +96,7 @@ class Tree(TaskTree):
 
     @property
     def ids(self) -> tuple[int, ...]:
-        """The units that are in the network, by id, in the order listed."""
+        """The units that are in the network of the problem, by id in it, in the order listed."""
         ids = map(self.problem.network.unit_id, self.units)
         return tuple(unit for unit in ids if unit is not None)
 
@@ -152,7 +153,7 @@ class Tree(TaskTree):
     def drawing(self) -> "Drawing":
         """Return the drawing of the tree; of a plan if items are used up.
 
-        Units of a tree without a claim are numbered as they execute.
+        Units of a tree without a claim are numbered in an order that executes, if there is one.
         """
         from foon_asp.pictures.tree_drawing import plan_drawing, tree_drawing  # noqa: PLC0415
         from foon_asp.questions.used_up_note import used_up_note  # noqa: PLC0415
@@ -191,7 +192,10 @@ class Tree(TaskTree):
 
 
 def as_tree(problem: Problem, tree: str | PathLike[str] | Iterable[FunctionalUnit]) -> Tree:
-    """Return a tree for a problem: read from the path of a file, or made of units or of another tree."""
+    """Return a tree for a problem: read from the path of a file, or made of units.
+
+    Another tree keeps its places, and loses its claim.
+    """
     if isinstance(tree, str | PathLike):
         return Tree.read(problem, tree)
     return Tree.given(problem, tree, tree.places if isinstance(tree, Tree) else ())
@@ -203,8 +207,8 @@ def read_listed_units(
     """Return the units that a file lists, each with its place, and the goals if the file is an answer.
 
     ``network`` returns the network that ids in the file refer to; it is called only if there are ids.
-    Assumptions of the reader are warnings. Raises :class:`UserError` for a file that is not understood or has
-    no tree.
+    Assumptions of the reader are reported as warnings. Raises :class:`UserError` for a file that is not
+    understood or has no tree.
     """
     listed = read_answer(file).with_units(file, network)
     return listed.units or (), listed.goals
@@ -213,8 +217,8 @@ def read_listed_units(
 def read_answer(file: Path) -> ListedTree:
     """Return the tree in a file, with the other fields if the file is an answer.
 
-    Units that the file gives by id are not looked up. Assumptions of the reader are warnings. Raises
-    :class:`NoTreeError` for an answer without a tree.
+    Units that the file gives by id are not looked up: they stay ids. Assumptions of the reader are reported
+    as warnings. Raises :class:`NoTreeError` for an answer without a tree.
     """
     current_caller = caller()
     reader = FoonReader(current_caller.lenient)

@@ -56,7 +56,7 @@ class UnitUnion(WithAnswer, frozen=True, kw_only=True, tag=schema_name("unit-uni
     Attributes:
         within: How much worse than the best tree a tree may be by the first objective, in percent; 0 for
             optimal trees.
-        complete: Whether it is proved for each unit in which trees it is.
+        complete: Whether it is proved for each unit that every tree has it, or that only some have it.
         units: The units of every tree first, then the others, in the order of their ids.
         answer: The best tree.
 
@@ -79,7 +79,10 @@ class UnitUnion(WithAnswer, frozen=True, kw_only=True, tag=schema_name("unit-uni
         return self.answer.ending if self.complete else Ending.LIMIT
 
     def show(self) -> Iterator[Block]:
-        """Return the cost of the best tree, and the units under headings: of every tree, of some trees."""
+        """Return the cost of the best tree, and the units under headings.
+
+        The headings are: in every tree, in some, not decided. Without a best tree, no units follow.
+        """
         yield from (*self.goal_lines(), *self.answer.headlines())
         if self.answer.costs is None:
             return

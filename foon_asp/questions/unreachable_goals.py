@@ -24,7 +24,10 @@ def without_unreachable(problem: Problem) -> tuple[Problem, tuple[SkippedGoal, .
 
 
 def _skipped_goal(problem: Problem, goal: int) -> SkippedGoal:
-    """Return an unreachable goal with its first cause, on the path to it that lacks the fewest nodes."""
+    """Return an unreachable goal with its first cause, on the path to it that lacks the fewest nodes.
+
+    The result also has the number of nodes in the cycle, which is 0 if the cause is no cycle.
+    """
     root = dead_ends(replace(problem, goals=(goal,))).roots[0]
     cycle = root.cycle.nodes if root.cause is Cause.CYCLE and root.cycle else ()
     network = problem.network

@@ -13,8 +13,8 @@ def used_up_note(problem: Problem, tree: Iterable[FunctionalUnit]) -> list[str]:
     """Return a note, in a list, that a tree for lasting items would not run if items were used up.
 
     The list is empty if the tree would run, or if no step uses up the copy that is missing. It is also empty
-    for a problem whose items are used up. If the tree has units, items or goals with amounts, the note says
-    instead that amounts are not counted.
+    for a problem whose items are used up. If units, items or goals of the tree have amounts, the note says
+    instead that these amounts are not counted.
     """
     units = tuple(tree)
     if problem.items is not None:
@@ -54,7 +54,10 @@ def _amount_text(problem: Problem, units: Sequence[FunctionalUnit]) -> str:
 
 
 def _shortage_text(problem: Problem, units: Sequence[FunctionalUnit], shortage: Shortage) -> str:
-    """Return in words which steps compete for the copy that is missing: ``steps 1 and 3 both take flour``."""
+    """Return in words which steps use up the missing copy, and which step or goal needs it.
+
+    For example ``steps 1 and 3 both take flour``. Steps are numbered from 1.
+    """
     node, before = shortage.node, [position + 1 for position in shortage.consumers]
     used = f"{_steps_text(before)} use{'s' if len(before) == 1 else ''} up"
     if shortage.step is None:

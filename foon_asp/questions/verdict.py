@@ -58,7 +58,10 @@ class SimulationFields(TypedDict):
 
 
 def simulation_fields(tree: Tree, simulation: Simulation) -> SimulationFields:
-    """Return the fields of a result from the simulation of its tree; positions count from 1."""
+    """Return the fields of a result from the simulation of its tree; positions in them count from 1.
+
+    Whether the tree runs with items used up is found out here; it is no part of the simulation.
+    """
     return {
         "verdict": simulation.verdict,
         "as_listed": Stop.of(tree, simulation.as_listed),
@@ -71,7 +74,8 @@ def simulation_fields(tree: Tree, simulation: Simulation) -> SimulationFields:
 def verdict_lines(tree: Tree, simulation: Simulation) -> Iterator[str]:
     """Yield lines: the verdict, the obstacles, the costs and notes.
 
-    If only another order executes, it follows. Units that the network lacks are listed in place of the costs.
+    If the network lacks units of the tree, these are listed in place of the costs. If only another order
+    executes, it comes last.
     """
     problem, verdict = tree.problem, simulation.verdict
     yield f"{verdict} ({problem.conditions})"

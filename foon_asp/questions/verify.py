@@ -163,7 +163,7 @@ class VerifiedCertificate(Result, AboutGoals, frozen=True, kw_only=True, tag=sch
 
     @property
     def ending(self) -> Ending:
-        """``DONE``, unless the proved checker was asked and does not accept the certificate."""
+        """``DONE``; ``LIMIT`` if the proved checker was asked and does not accept the certificate."""
         return Ending.DONE if self.proved_checker in (None, proved_checker.ACCEPTED) else Ending.LIMIT
 
     def show(self) -> Iterator[Block]:
@@ -238,10 +238,10 @@ def _cost_text(objective: str, cost: int | Fraction | None) -> str:
 
 
 def _pose_data_or_task(command: Command, data_paths: Sequence[Path]) -> tuple[Foon | Problem]:
-    """Return the data of the command with those at the paths, or the problem of a planning task there.
+    """Return the data of the command with the files at the paths, in a tuple of one.
 
-    The result is a tuple of one. A task is read as its delete relaxation. Raises :class:`UserError` for
-    options for data beside a task.
+    If a file is of a planning task, return the problem of the task instead: its delete relaxation. Raises
+    :class:`UserError` for options for data beside a task.
     """
     if not any(map(_is_task, data_paths)):
         command.add_sources(data_paths)
@@ -263,7 +263,7 @@ def _is_task(file: Path) -> bool:
 
 
 def _are_facts(names: Iterable[str]) -> bool:
-    """Return whether goals are facts of a planning task, whose names are in parentheses."""
+    """Return whether all goals are facts of a planning task, whose names are in parentheses."""
     return all(name.startswith("(") and name.endswith(")") for name in names)
 
 
@@ -344,13 +344,15 @@ def verify(
         with_clingo: Check with clingo what is otherwise taken on trust: costs by measures, and rules of your
             own.
         full: Read all of a store, and compute the digests that are otherwise taken as the store states them.
-        proved: Also ask the checker that is proved in Coq, which `make verified` builds.
+        proved: Also ask the checker that is proved in Coq, which `make verified` builds. All of a store is
+            then read.
 
     Returns:
         What the certificate proves.
 
     Raises:
-        RefusedError: for a certificate that is wrong or is about other data, with the first fault found.
+        RefusedError: for a certificate that is wrong, with the first fault found; for one that is about other
+            data, it is an :class:`OtherDataError`.
         UserError: for a file that cannot be read.
 
     Example:
@@ -383,11 +385,12 @@ def _verify_content(
 ) -> VerifiedCertificate:
     """Return the claim that a certificate, as plain values, proves about data.
 
-    ``full`` reads all of a store; ``proved`` also asks the checker proved in Coq. Raises
-    :class:`RefusedError` for a wrong certificate, and :class:`OtherDataError` for other data.
+    ``full`` reads all of a store. ``with_clingo`` checks measures and rules with clingo, and ``proved`` also
+    asks the checker proved in Coq. Raises :class:`RefusedError` for a wrong certificate, and
+    :class:`OtherDataError` for other data.
     """
     dataset = foon.dataset
-    subject = _subject(dataset, content, full)
+    subject = _subject_of(dataset, content, full)
     try:
         verified = verify_any(content, subject)
     except RefusedError as refused:
@@ -416,10 +419,11 @@ def _verify_content(
     )
 
 
-def _subject(dataset: Dataset, content: Any, full: bool) -> Subject:
+def _subject_of(dataset: Dataset, content: Any, full: bool) -> Subject:
     """Return the data that a certificate can be about; of a store, only the part it needs unless ``full``.
 
-    If there are stand-ins, or the certificate is about a repair, the data have the stand-ins for its goals.
+    If the data have stand-ins, or if the certificate is about a repair, the result has the stand-ins for its
+    goals. Raises :class:`RefusedError` if there are stand-ins and no goals.
     """
     goals, steps = _goal_ids(content), _step_ids(content)
     if steps and dataset.stand_ins is None:  # a repair has them without being asked for
@@ -466,7 +470,7 @@ def _goal_ids(content: Any) -> list[int]:
 
 
 def _step_ids(content: Any) -> list[int]:
-    """Return the unit ids of the tree that a certificate of a repair is about; empty for others."""
+    """Return the unit ids of the tree whose repair a certificate is about; empty for other certificates."""
     rules = content.get("rules") if isinstance(content, dict) else None
     if not isinstance(rules, list) or len(rules) != 1 or not isinstance(rules[0], dict):
         return []
@@ -475,7 +479,10 @@ def _step_ids(content: Any) -> list[int]:
 
 
 def _needs_whole_network(content: Any) -> bool:
-    """Return whether a certificate is about a plan, rules or prices, whose check looks at every unit."""
+    """Return whether the check of a certificate looks at every unit.
+
+    This is so for a plan, rules or prices, and for what is no certificate.
+    """
     if not isinstance(content, dict) or is_of_plan(content):
         return True
     objectives = content.get("objective")
@@ -484,7 +491,11 @@ def _needs_whole_network(content: Any) -> bool:
 
 
 def _check_measures_with_clingo(problem: Problem, verified: Verified) -> None:
-    """Check the stated costs of units by measures; raises :class:`RefusedError` for a wrong one."""
+    """Check the costs of units by measures that a certificate states.
+
+    Raises :class:`RefusedError` for a wrong cost or wrong rules, and :class:`LimitError` if clingo takes
+    longer than a minute for a measure.
+    """
     from foon_asp.rules.measure import Measure, wrong_cost  # noqa: PLC0415 (the solver)
 
     for measure in verified.trusted:

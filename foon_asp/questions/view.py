@@ -98,14 +98,20 @@ _SUFFIXES = {
 class View(Result, frozen=True):
     """A page about an ``answer``, and the picture of its tree; :meth:`write` writes either into a file.
 
-    Beside the answer, the page shows each of these fields that is not empty: the trees of ``searches``, the
-    certificate of the ``certified`` answer, the answer ``without_rules``, ``alternatives``, the ``front``,
-    and the whole ``network`` of a problem. If there is no tree, it shows ``why_not`` and a ``shopping_list``.
-    Beside a plan, it shows the answer for ``lasting`` items; no plan is better than this answer, and the
-    certificate is about it. A page about a network alone has no ``answer``. For a given tree or given units,
-    there is only a ``picture``. SVG, PNG and PDF raise :class:`UserError` if the picture would be too large,
-    or if the packages of ``foon-asp[pictures]`` are missing; all pictures raise :class:`NothingToDrawError`
-    if there is no tree.
+    The page shows each of these fields that is not empty:
+
+    ``answer``: the best tree. A page about a network alone has no answer.
+    ``searches``: the results of searches for the same goals.
+    ``certified``: the answer whose certificate is shown.
+    ``lasting``: beside a plan, the answer where items last; no plan is better. The certificate is about it.
+    ``without_rules``: the answer without user rules.
+    ``alternatives`` and ``front``: other trees.
+    ``why_not`` and ``shopping_list``: why there is no tree, and what would help.
+    ``network``: a problem over the whole network, which is shown.
+
+    For a given tree or given units, there is only a ``picture``, and no page. SVG, PNG and PDF raise
+    :class:`UserError` if the picture would be too large, or if the packages of ``foon-asp[pictures]`` are
+    missing. All pictures raise :class:`NothingToDrawError` if there is no tree.
 
     Example:
         >>> page = foon_asp.view(foon_asp.load().problem("ice"))
@@ -193,7 +199,7 @@ class View(Result, frozen=True):
         return self._page().html()
 
     def _page(self) -> Page:
-        """Return the page with its title, its text and its data as plain values."""
+        """Return the page: the goals or the caption as title, its text, and its data as plain values."""
         about = self.text() if self.answer is None else " + ".join(map(str, self.answer.problem.goal_nodes))
         return Page(f"{about.strip()} - foon-asp", self.text(), self.json_dict())
 
@@ -237,7 +243,7 @@ class View(Result, frozen=True):
         return drawing
 
     def remark(self, format_: str) -> str:
-        """Return the remark of the answer, which is its claim if the tree is not proved optimal."""
+        """Return the remark of the answer; empty without an answer."""
         return "" if self.answer is None else self.answer.remark(format_)
 
     def write(self, file: File, format_: str | None = None) -> None:
@@ -270,7 +276,8 @@ def _pose_goals_or_data(
 ) -> tuple[Problem | Foon]:
     """Return the problem of the goals that are named or that a recipe has; without goals, the data.
 
-    The result is a tuple of one. Raises :class:`UserError` for options that do not go with what is shown.
+    The result is a tuple of one. If a ``tree`` or ``units`` are named, only named goals count. Raises
+    :class:`UserError` for options that do not go with what is shown.
     """
     listed = tree is not None or bool(units)
     for_goals = bool(goals_named) or (not listed and is_picture_of_tree(command, goals_named))
@@ -351,7 +358,8 @@ def view(
             answer, which is shown as it is.
         tree: A tree to draw: the path of a file (FOON text, or an answer in JSON), or functional units.
         units: Ids of units to draw, as in ``json()``.
-        beside: Without any, there is only the tree, which is enough for a picture.
+        beside: The names of parts (:class:`PagePart`) to show on a page beside the tree. Without any, there
+            is only the tree, which is enough for a picture.
 
     Returns:
         The page and the picture: ``html()``, ``svg()``, ``png()``, ``pdf()``, ``dot()``, ``mermaid()`` and
@@ -426,7 +434,10 @@ def _units_drawing(about: Problem | Foon, unit_ids: Sequence[int]) -> Drawing:
 def _drawing_without_goals(
     foon: Foon, rule: ContainerRule, tree: str | PathLike[str] | Iterable[FunctionalUnit]
 ) -> Drawing:
-    """Return the drawing of a tree without goals, with the part of the data that it touches."""
+    """Return the drawing of a tree without goals, with the part of the data that it touches.
+
+    ``rule`` is the container rule. A unit that is listed twice is drawn once.
+    """
     if isinstance(tree, str | PathLike):
         tree = [unit for unit, _ in read_listed_units(Path(tree), lambda: foon.dataset.whole_network)[0]]
     task_tree = TaskTree(tuple(dict.fromkeys(unit_at_level(unit, foon.level) for unit in tree)))
@@ -442,12 +453,18 @@ def pages(
     wanted: Container[str],
     rules: Mapping[str, Any],
 ) -> Iterator[View]:
-    """Yield a growing page about a tree: first with its answer, then each time with one more part.
+    """Yield a page about a tree as it grows: first with its answer, then each time with one more part.
 
     ``wanted`` are the names of the parts (:class:`PagePart`); ``rules`` are the rules of the settings, as
-    keywords of questions. If there is no tree, the last page says why instead. Where items are used up, a
-    plan costs no less than the best tree for lasting items, so the proof is about that tree. There is no such
-    proof by ``kitchen``, nor under rules, which may count how often units are executed.
+    keywords of questions. The first page has the network and, unless items are used up, the proof. Other
+    parts come in this order:
+
+    - Where items are used up and there are no rules: the answer for lasting items, and its proof. No plan
+      costs less than this answer, except by ``kitchen``; there is no proof by ``kitchen``.
+    - Under rules: the answer without them.
+    - If there is no tree: why, and a shopping list unless rules are the reason. This is the last part. It is
+      left out if there is no plan only because items run out.
+    - The searches, the alternatives and the front, as far as they are wanted.
     """
     deadline = settings.begun
     settings = settings._replace(deadline=deadline)
@@ -467,7 +484,7 @@ def pages(
     yield page
 
     def remaining_limits() -> Limits:
-        """Return the time that remains, in seconds, and the memory limit."""
+        """Return the time that remains, in seconds, and the memory limit, as options of a question."""
         return {"time_limit": deadline.remaining_seconds, "memory_limit": deadline.memory}
 
     if is_of_plan and not has_rules:
@@ -518,10 +535,9 @@ def pages(
 
 
 def _front_objectives(chosen: Sequence[Objective], rated: bool) -> tuple[Objective, ...]:
-    """Return the objectives of a front: those of the question, and one more.
+    """Return the objectives of a front for a question with one objective: that one, and a second.
 
-    The additional objective is ``units``. If the question has ``units``, it is ``success``, or ``inputs``
-    without rates.
+    The second is ``units``. For a question by ``units``, it is ``success``, or ``inputs`` without rates.
     """
     if Objective.UNITS not in chosen:
         return (*chosen, Objective.UNITS)

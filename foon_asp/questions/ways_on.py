@@ -67,7 +67,8 @@ class WaysOn(WithAnswer, frozen=True, kw_only=True, tag=schema_name("state")):
     def show(self) -> Iterator[Block]:
         """Return the nodes that the state lacks, the units that can run now, and the best tree.
 
-        Of the other units, only the number is shown. If the state has the goals, a line says so.
+        Up to ten units that can run now are listed. Of the other units, only the number is shown. If the
+        state has the goals, or if nothing was found that would help, there is only a line that says so.
         """
         yield from self.goal_lines()
         if self.reached:
@@ -147,7 +148,8 @@ def ways_on(
 def _units_to_goals(problem: Problem, stocked: Problem, answer: Answer | None) -> Iterator[WayOn]:
     """Yield the units that lead to the goals, in the order of :class:`WaysOn`, with the inputs they lack.
 
-    ``stocked`` is the problem with the lacking nodes added to its kitchen.
+    ``stocked`` is the problem with the nodes that the state lacks added to its kitchen. ``answer`` has the
+    best tree from there; ``None`` without one.
     """
     best = frozenset() if answer is None else frozenset(answer.ids or ())
     lacking = {

@@ -11,17 +11,17 @@ def why_infeasible(problem: Problem, deadline: Deadline | None = None) -> Iterat
     """Yield lines with the reasons why there is no tree; one line refers to ``why-not`` if time runs out."""
     try:
         with (deadline or Deadline()).watched("looking for the reason", late=True, grace=True):
-            lines = list(_reasons(problem))
+            lines = list(_reason_lines(problem))
     except KeyboardInterrupt:
         lines = ["foon-asp why-not explains why; there was no time left for it here"]
     yield from lines
 
 
-def _reasons(problem: Problem, shown: int = 5) -> Iterator[str]:
+def _reason_lines(problem: Problem, shown: int = 5) -> Iterator[str]:
     """Yield lines: for each unreachable goal the inputs that its achievers lack, then the causes.
 
-    Up to ``shown`` achievers are listed. If every goal can be made, the lines say that constraints rule out
-    every tree, or that the plan would use up too much.
+    Up to ``shown`` achievers of a goal are listed. If every goal can be made, the lines say instead that
+    constraints rule out every tree, or that each plan uses up too much.
     """
     available = reach(problem).available
     network = problem.network
@@ -57,7 +57,7 @@ def _reasons(problem: Problem, shown: int = 5) -> Iterator[str]:
 
 
 def _cause_lines(problem: Problem, shown: int = 3) -> Iterator[str]:
-    """Yield a line for each of the first ``shown`` causes on the easiest way to the goals.
+    """Yield a line for each of the first ``shown`` causes on the path to the goals that lacks fewest nodes.
 
     A cause is a missing node, or a cycle of nodes that can only be made from each other. A missing goal is
     left out, since another line names it.

@@ -93,7 +93,7 @@ class AlikeNode(Node, frozen=True, kw_only=True):
 
 
 class CycleStep(Value, frozen=True):
-    """A node of a cycle, and the unit that needs it and makes the node of the next step."""
+    """A node of a cycle, and a unit that needs it. The unit makes the node of the next step."""
 
     object: Node
     needed_by: Mention
@@ -374,8 +374,8 @@ def why_not(
 def _cheapest_stand_ins(problem: Problem, settings: "Settings") -> tuple[StandIn, ...] | UnsetType:
     """Return the cheapest stand-ins of the usual table with which there is a tree without rules.
 
-    ``UNSET`` if none are enough, and where they cannot be used: below level 3, for items that are used up,
-    and in a problem that has stand-ins already.
+    Return ``UNSET`` if none are enough or a limit comes first. Return it also where stand-ins cannot be used:
+    below level 3, for items that are used up, and in a problem that has stand-ins already.
     """
     level, has_motion = problem.network.level, STAND_IN in problem.network.different_motions
     if level < 3 or problem.items is not None or has_motion:
@@ -389,7 +389,11 @@ def _cheapest_stand_ins(problem: Problem, settings: "Settings") -> tuple[StandIn
 
 
 def _with_near_names(problem: Problem, analysis: DeadEnds, roots: Iterable[Root]) -> Iterator[Root]:
-    """Yield the causes; missing nodes with names one edit away and nodes with the same label."""
+    """Yield the causes, those that are missing nodes with similar names that were perhaps meant.
+
+    These are names one edit away (``near``), and up to two other nodes with the same label (``alike``). All
+    are available, or entries of the kitchen file that match no node.
+    """
     network, kitchen, origin = problem.network, problem.kitchen, problem.origin
     ids_available = {
         network.objects[o]: o for o, is_available in enumerate(analysis.available) if is_available
@@ -422,8 +426,9 @@ def _with_near_names(problem: Problem, analysis: DeadEnds, roots: Iterable[Root]
 def _dead_end_lines(explanation: Explanation, numbers: Mapping[Node, int]) -> Iterator[str]:
     """Yield the dead ends as lines of a tree, indented, from the unreachable goals on.
 
-    Below a node are its first achiever and the inputs that this unit lacks. Causes have their ``numbers``, by
-    node, and are not expanded. Up to 12 other nodes are expanded, each once, the nearest to the goals first.
+    Below a node are its first achiever and the inputs that this unit lacks; other achievers follow as a line
+    each. Causes have their ``numbers``, by node, and are not expanded. Up to 12 other nodes are expanded,
+    each once, the nearest to the goals first.
     """
     makers = {end.object: end.makers for end in explanation.dead_ends}
     expanded: set[Node] = set()
@@ -435,7 +440,7 @@ def _dead_end_lines(explanation: Explanation, numbers: Mapping[Node, int]) -> It
     shown_values: set[Value] = set()
 
     def lines(node: Node, margin: str) -> Iterator[str]:
-        """Yield the lines of a node and of the nodes below it, behind spaces."""
+        """Yield the lines of a node and of the nodes below it, each behind the spaces of ``margin``."""
         if node in numbers or node in shown_values or node not in expanded:
             reference = "(see above)" if node in shown_values else "..."
             yield f"{margin}{node}  {f'({numbers[node]})' if node in numbers else reference}"
@@ -468,7 +473,7 @@ def _causes_text(roots: Sequence[Root]) -> str:
 
 
 def _units_text(units: Sequence[Mention]) -> str:
-    """Return the motions of the first units with their places, and how many units follow."""
+    """Return the motions of the first three units with their places, and how many units follow."""
     mentioned = ", ".join(f"{unit.motion} [{unit.source[0]}]" for unit in units[: _MAX_SHOWN.units])
     return mentioned + (
         f" and {counted(len(units) - _MAX_SHOWN.units, 'more unit')}" if len(units) > _MAX_SHOWN.units else ""

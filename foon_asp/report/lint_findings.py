@@ -42,7 +42,8 @@ def finding_lines(findings: Sequence[Finding], max_in_full: int = 3, max_lines: 
 def summary_line(findings: Sequence[Finding], files: int, mended: int) -> str:
     """Return one line with the numbers of files, of findings by severity, and of fixes.
 
-    ``mended`` is how many fixes were made; if there are none, the line says how many ``--fix`` would make.
+    ``mended`` is how many fixes were made. If it is 0, the line says how many fixes ``--fix`` would make, and
+    how many ``--unsafe-fixes`` would add.
     """
     counts = Counter(finding.severity for finding in findings)
     parts = [counted(counts[severity], str(severity)) for severity in Severity if counts[severity]]
@@ -61,7 +62,8 @@ def summary_line(findings: Sequence[Finding], files: int, mended: int) -> str:
 def code_table(findings: Sequence[Finding]) -> Table:
     """Return a table with a row for each code, the most frequent first.
 
-    A row has the number of findings, severity, code, number of fixes, and meaning.
+    A row has the number of findings, severity, code, numbers of safe and unsafe fixes, and meaning. Without
+    findings, the table is empty and has no headings.
     """
     rows = []
     for code, count in Counter(finding.code for finding in findings).most_common():

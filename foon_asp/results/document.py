@@ -50,7 +50,7 @@ class Document(Struct, frozen=True, kw_only=True, dict=True, tag_field="schema")
         return self
 
     def show(self) -> Iterator[Block]:
-        """Return lines and tables of text for people; each class of documents defines them."""
+        """Return lines and tables of text for people; each class of documents has its own method."""
         raise NotImplementedError
 
     def text(self) -> str:
@@ -67,14 +67,14 @@ class Document(Struct, frozen=True, kw_only=True, dict=True, tag_field="schema")
         return json_text(self.json_dict())
 
     def json(self) -> Any:
-        """Return the document as lists, dictionaries, strings and numbers (docs/json.md)."""
+        """Return the JSON of the document as lists, dictionaries, strings and numbers (docs/json.md)."""
         return read_json(self.json_text())
 
     def table_rows(self) -> Iterator[Json]:
         """Yield a row for each item of the field ``ROWS``, or one row for a document without it.
 
-        A nested field has a name with a dot (``costs.units``). Numbers are decimals; the exact number, if it
-        differs, is in a second column (``costs.success_exact``).
+        A nested field has a name with a dot (``costs.units``). A fraction is in two columns: as a decimal,
+        and exact (``costs.success_exact``).
         """
         rows = getattr(self, self.ROWS) if self.ROWS else None
         yield from map(flat_row, [self.json_dict()] if rows is None else map(plain, rows))

@@ -10,7 +10,11 @@ from foon_asp.results.plain_values import nearest_float
 
 
 def figure_text(objective: Objective, figure: int | Fraction) -> str:
-    """Return a value by an objective as text: exact if 15 digits are enough, else ``≈`` and four digits."""
+    """Return a value by an objective as text.
+
+    Success has four digits (:func:`success_text`). Another value is exact if 15 digits are enough for it;
+    else it has four digits behind ``≈``.
+    """
     if multiplies(objective):
         return success_text(Fraction(figure))
     if objective.row.whole:
@@ -64,7 +68,8 @@ def _four_digits(value: Fraction) -> str:
 def success_texts(values: Sequence[Fraction]) -> list[str]:
     """Return success rates as texts, in so many digits that different rates have different texts.
 
-    All have the same number of significant digits, from 4 to 40. ``≈`` stands before a rounded rate.
+    All have the same number of significant digits: the least from 4 to 40 that is enough. ``≈`` stands before
+    a rounded rate.
     """
     digits = 4
     while digits < 40 and len({_round_to_digits(v, digits) for v in values}) < len(set(values)):
@@ -74,5 +79,5 @@ def success_texts(values: Sequence[Fraction]) -> list[str]:
 
 
 def _round_to_digits(value: Fraction, digits: int) -> Decimal:
-    """Return a number rounded to some significant digits."""
+    """Return a number rounded to ``digits`` significant digits."""
     return Context(prec=digits).divide(Decimal(value.numerator), Decimal(value.denominator))

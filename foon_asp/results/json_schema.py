@@ -70,7 +70,11 @@ def schema_of(document: type[Struct]) -> Json:
 
 
 def schema_of_rows(kind: str, row: type[Struct]) -> Json:
-    """Return the JSON Schema of a line in a file of rows: the first line with the question, or a row."""
+    """Return the JSON Schema of a line in a file of rows.
+
+    The first line has the question, every other line a row. ``kind`` is the kind of the rows, such as
+    ``batch-row``; ``row`` is their class.
+    """
     row_schema = schema_of(row)
     name = {"schema": {"const": schema_name(kind)}}
     first = {
@@ -132,7 +136,8 @@ def _structs_in(document: type[Struct]) -> set[type[Struct]]:
 def _describe_struct(schema: Json, bases: Sequence[type]) -> None:
     """Add descriptions from docstrings to the schema of a struct, in place; forbid other keys.
 
-    ``bases`` are the struct's class and its base classes, whose docstrings describe inherited fields.
+    ``bases`` are the struct's class and its base classes, whose docstrings describe inherited fields. If it
+    is empty, the docstring is the description in the schema.
     """
     docstring = schema.pop("description", "")
     schema["description"] = docstring.partition("\n")[0]
@@ -145,7 +150,10 @@ def _describe_struct(schema: Json, bases: Sequence[type]) -> None:
 
 
 def _require_written(schema: Json) -> None:
-    """Require, in place, the keys that are always written; fields that may be unset stay optional."""
+    """Require, in place, the keys that are always written; fields that may be unset stay optional.
+
+    If no key is required, at least one key has to be there.
+    """
     fields = schema["properties"]
     written = {name for name in fields if fields[name].pop("default", _UNSET) is not _UNSET}
     required = {*written, *schema.get("required", ())}

@@ -34,18 +34,19 @@ def _encode(value: object) -> object:
 
 
 def costs_plain(costs: Costs) -> Json:
-    """Return the costs of a tree as plain values by the name of the objective, and its ingredients.
+    """Return the costs of a tree as plain values by the name of the objective.
 
-    An unknown cost is ``None``.
+    The number of ingredients is a further entry. An unknown cost is ``None``.
     """
     values: Json = plain(costs_by_name(costs))
     return values
 
 
 def costs_by_name(costs: Costs) -> dict[str, int | Fraction | None]:
-    """Return the costs of a tree by the name of the objective, as exact numbers, and its ingredients.
+    """Return the costs of a tree by the name of the objective, as exact numbers.
 
-    An unknown cost is ``None``. ``dissimilarity`` is left out in costs without stand-ins.
+    The number of ``ingredients`` is a further entry. An unknown cost is ``None``. ``dissimilarity`` is left
+    out in costs without stand-ins.
     """
     usual = (objective for objective in Objective if objective.row.needs is not OptionalData.STAND_INS)
     measures = {**dict.fromkeys(usual), **costs.measures}
@@ -55,9 +56,9 @@ def costs_by_name(costs: Costs) -> dict[str, int | Fraction | None]:
 def exact_measures(
     measures: Mapping[Objective, int | Fraction | None],
 ) -> dict[str, int | Fraction | None]:
-    """Return measures by the name of the objective: integers, or fractions if it is not integral.
+    """Return measures by the name of the objective.
 
-    ``None`` stays.
+    A measure is an integer if the objective has only whole numbers, else a fraction. ``None`` stays ``None``.
     """
     return {
         str(objective): None
@@ -96,7 +97,7 @@ def fraction_text(value: Fraction) -> str:
 
 
 def nearest_float(value: Fraction) -> float | None:
-    """Return the nearest float; ``None`` for a number above the largest float."""
+    """Return the nearest float; ``None`` for a number beyond the largest float."""
     try:
         return float(value)
     except OverflowError:

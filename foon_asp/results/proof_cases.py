@@ -17,7 +17,10 @@ class Choice(Value, frozen=True):
     """A unit, an item of the kitchen or a step of the rules, which a proof branches on or excludes.
 
     Attributes:
-        taken: Whether every tree of a case has it (true) or none has it (false).
+        kind: unit, item or step.
+        id: The id of the unit or item; the number of the step, from 0.
+        taken: Whether every tree of a case has it (true) or none has it (false). Left out in
+            ``dear``.
     """
 
     kind: str
@@ -29,7 +32,8 @@ class WeighedCut(Value, frozen=True):
     """A cut, and its weight by the first objective; the weight is null without landmark actions.
 
     Attributes:
-        members: The landmark actions: units that make a node of the cut and need none.
+        nodes: The ids of the object nodes of the cut.
+        members: The landmark actions: the ids of units that make a node of the cut and need no node of it.
     """
 
     nodes: tuple[int, ...]
@@ -42,9 +46,10 @@ class ProofCase(Value, frozen=True):
 
     Attributes:
         given: The branching decisions: the choices that every tree of this case has, or that none has.
-        dear: Choices whose reduced cost is above the cutoff: a tree with one of them costs too much. The
-            case is about trees with at least one; later cases exclude them.
-        ends: The key of the argument that closes the case: hopeless, broken or weights.
+        dear: Choices whose reduced cost is so high that a tree with one of them cannot be better. The case is
+            about trees with at least one of them; later cases exclude them.
+        ends: The argument that closes the case: a cut that no unit crosses (hopeless), a rule that is broken
+            (broken), or weights of cuts that add up to enough (weights).
         paid: The cost of the choices that are taken.
         cuts: The cuts with a weight, or the cut without landmark actions.
     """
@@ -120,7 +125,8 @@ def _proof_case(
 ) -> ProofCase:
     """Return a leaf of the proof as a case.
 
-    ``content`` is the certificate, ``subproof`` the leaf, and ``decisions`` are those that lead to it.
+    ``content`` is the certificate, and ``subproof`` the leaf. ``decisions`` are the choices on the branch to
+    the leaf. ``above_cutoff`` are the choices whose reduced cost is too high for a better tree.
     """
     excluded = {choice.id for choice in decisions if choice.kind == "unit" and not choice.taken}
     weights = (
@@ -132,13 +138,18 @@ def _proof_case(
     for number, weight in weights:
         nodes = tuple(o for o in content["cuts"][number] if o < len(problem.network.objects))
         members = sorted(_landmark_actions(problem, nodes) - excluded)
-        cuts.append(WeighedCut(nodes, None if weight is None else _weight(weight[0]), tuple(members)))
+        cuts.append(
+            WeighedCut(nodes, None if weight is None else _weight_as_float(weight[0]), tuple(members))
+        )
     ends = next(key for key in ("hopeless", "broken", "weights") if key in subproof)
     return ProofCase(decisions, above_cutoff, ends, _cost_of_taken(problem, content, decisions), tuple(cuts))
 
 
 def _landmark_actions(problem: Problem, cut: Iterable[int]) -> set[int]:
-    """Return the landmark actions of a cut of node ids: the units that make a node of it and need none."""
+    """Return the landmark actions of a cut of node ids.
+
+    These are the units, by id, that make a node of the cut and need no node of it.
+    """
     inside = frozenset(cut)
     makers = (unit for o in inside - problem.kitchen for unit in problem.makers[o])
     return {unit for unit in makers if inside.isdisjoint(problem.needs[unit])}
@@ -151,11 +162,14 @@ def _claimed_cost(content: Json) -> float | None:
     """
     if content["claim"] == "optimal":
         return _additive_cost(content["objective"][0], content["costs"][0])
-    return None if content["bound"] is None else _weight(content["bound"][0])
+    return None if content["bound"] is None else _weight_as_float(content["bound"][0])
 
 
 def _cost_of_taken(problem: Problem, content: Json, decisions: Iterable[Choice]) -> float:
-    """Return the summed cost, by the first objective, of the units and items that are taken by decisions."""
+    """Return the summed cost, by the first objective, of the units and items that are taken by decisions.
+
+    An item costs 1. The cost is 0 if the certificate has no objective.
+    """
     if not content["objective"]:
         return 0.0
     name = content["objective"][0]
@@ -174,10 +188,11 @@ def _additive_cost(name: str, cost: Any) -> float:
     return -math.log(figure) if multiplied else figure
 
 
-def _weight(component: str | Mapping[str, str] | Any) -> float:
-    """Return a weight in a certificate as a float: an exact number, or exponents by rate.
+def _weight_as_float(component: str | Mapping[str, str] | Any) -> float:
+    """Return a weight in a certificate as a float.
 
-    Exponents stand for a sum of negative logarithms of rates.
+    A weight is an exact number. For success, it is a sum of negative logarithms of rates, given as exponents
+    by rate.
     """
     if isinstance(component, Mapping):
         return math.fsum(

@@ -24,8 +24,8 @@ class Table(NamedTuple):
     A row that is a single text is a line of its own, a title of the rows that follow.
     ``left_aligned``: the indices, from 0, of columns aligned to the left.
     ``indent``: the number of spaces before each line.
-    ``headed``: whether a wide terminal shows the headings. A narrow one shows each row as a block with a
-    line ``heading: cell`` for each cell.
+    ``headed``: whether the headings are a line above aligned columns. Where the terminal is narrow, each row
+    is a block with a line ``heading: cell`` for each cell that is not empty.
     """
 
     headings: Sequence[str]
@@ -63,7 +63,10 @@ def blocks_text(parts: Iterable[Block], width: int | None = None, coloured: bool
 
 
 def _aligned_lines(table: Table, width: int | None, coloured: bool) -> Iterator[str]:
-    """Yield the lines of a table with aligned columns."""
+    """Yield the lines of a table with aligned columns.
+
+    Lines that are longer than ``width`` are folded, unless they are coloured.
+    """
     rows = [*([table.headings] if table.headed else []), *table.rows]
     columns = zip(*(row for row in rows if not isinstance(row, str)), strict=True)
     widths = [max(len(_cell_text(cell)) for cell in column) for column in columns]

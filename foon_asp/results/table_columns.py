@@ -30,7 +30,10 @@ def flat_row(row: Json) -> Json:
 
 
 def _flat_items(name: str, value: Any) -> Iterator[tuple[str, Any]]:
-    """Yield the flat key and the value of each leaf of a nested value; ``name`` is its own key."""
+    """Yield the flat key and the value of each leaf of a nested value; ``name`` is the key of the value.
+
+    A fraction has two leaves, a decimal and the exact number. Lists of structured values have none.
+    """
     word = _one_line_value(value)
     if word is not value:
         yield name, word
@@ -92,7 +95,7 @@ def _cell(row: Json, name: str) -> Any:
 def csv_text(rows: Iterable[Json], names: Sequence[str] | None = None) -> str:
     """Return flat rows as CSV with a line of headings; ``true`` and ``false`` are as pandas reads them.
 
-    ``names`` are the columns; by default, all keys in the rows.
+    ``names`` are the columns; by default, all keys in the rows. Cells are made safe by :func:`safe_cell`.
     """
     columns, cells = table_cells(rows, names)
     file = io.StringIO()
@@ -104,13 +107,16 @@ def csv_text(rows: Iterable[Json], names: Sequence[str] | None = None) -> str:
 
 
 def safe_cell(text: str) -> str:
-    """Return the escaped text of a cell, behind an apostrophe if spreadsheets take it for a formula."""
+    """Return the text of a cell with control characters escaped.
+
+    If spreadsheets would take it for a formula, it stands behind an apostrophe.
+    """
     text = escaped(text)  # of what begins a formula, tabs and line ends
     return f"'{text}" if text[:1] in {"=", "+", "-", "@"} and not _WRITTEN_NUMBER.fullmatch(text) else text
 
 
 def markdown_text(rows: Iterable[Json]) -> str:
-    """Return flat rows as a Markdown table for people.
+    """Return flat rows as a Markdown table for people; empty if no cell has a value.
 
     The table has no empty columns and no exact numbers; other numbers have six digits.
     """

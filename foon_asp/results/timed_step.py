@@ -32,8 +32,9 @@ class TimedStep(NumberedStep, frozen=True):
     Attributes:
         product: The label of the first node that it makes; null where it makes nothing.
         agent: The number of the agent that does it, from 1; null where nobody has to stand by.
-        tools: The tools that it uses alone at the time, in the order of the unit's objects.
-        after: The numbers of the steps that have to be done before: it takes what they make, or uses up what
+        tools: The copies of tools that it uses and no other step uses meanwhile, in the order of the unit's
+            objects.
+        after: The numbers, from 1, of the steps that it waits for: it takes what they make, or uses up what
             they need.
         amount: Where items are used up: how many copies of the product it makes, if that is not one.
 

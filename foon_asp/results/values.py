@@ -307,9 +307,9 @@ class ListedConstraint(Value, frozen=True):
 
 
 class UsedUpRun(Value, frozen=True):
-    """Whether the steps, each done once, run where items are used up.
+    """Whether the steps of a tree, each done once, run where items are used up.
 
-    The steps of an answer are done in the order listed, the steps of another tree in some order.
+    The steps of an answer are done in the order listed. For another tree, it is enough that some order runs.
 
     Attributes:
         runs: Whether they run; null if that was not decided, and below level 3.
@@ -351,7 +351,10 @@ def steps_not_in(steps: Sequence[Step], others: Iterable[Step]) -> list[Step]:
 
 
 def step_lines(steps: Iterable[Step | Unit], sign: str = " ") -> Iterator[str]:
-    """Yield a line for each step: a sign such as ``+``, the id of its unit, the motion and the place."""
+    """Yield a line for each step: the sign, the id of its unit, the motion and the place.
+
+    ``sign`` is ``+`` or ``-`` for a step that comes or goes.
+    """
     for step in steps:
         yield f"  {sign} {step.id}  {step.motion}    [{step.source[0]}]"
 
@@ -359,9 +362,9 @@ def step_lines(steps: Iterable[Step | Unit], sign: str = " ") -> Iterator[str]:
 def changed_motions(
     gone: Iterable[Step | FunctionalUnit], new: Iterable[Step | FunctionalUnit], named: int = 6
 ) -> str:
-    """Return the motions of removed and added steps: ``- heat  + pour (2)``.
+    """Return the motions of removed and added steps: ``- heat  + pour (2)``; empty without any.
 
-    Up to ``named`` motions of each are listed. The text is empty without changes.
+    Of more than ``named`` motions, the last are replaced by a number of steps: ``- heat, pour and 3 more``.
     """
     texts = []
     for sign, steps in (("-", gone), ("+", new)):

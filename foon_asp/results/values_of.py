@@ -54,7 +54,10 @@ class Head(TypedDict):
 
 
 def head_of(problem: Problem, objectives: Iterable[Objective] = ()) -> Head:
-    """Return the first fields of a document about goals: the goals, the conditions and the objectives."""
+    """Return the first fields of a document about goals: the goals, the conditions and the objectives.
+
+    The starting kitchen is ``None`` where a kitchen was given.
+    """
     network = problem.network
     return {
         "goals": goals_of(network, problem.goals, problem.items.wanted if problem.items else {}),
@@ -110,7 +113,7 @@ def place_of(source: Source) -> Place:
 
 
 def mention_of(network: Network, unit: int) -> Mention:
-    """Return the id in the whole network, the motion and the places of a unit, by id, as a value."""
+    """Return a unit, by id, as a value with its id in the whole network, its motion and its places."""
     return Mention(network.unit_number(unit), network.motions[unit], _places_of(network, unit))
 
 
@@ -133,7 +136,10 @@ def unit_as(kind: type[U], network: Network, unit: int, **fields: Any) -> U:
 
 
 def listed_unit(network: Network, unit: FunctionalUnit, source: Source) -> Unit:
-    """Return a unit that a file lists as a value with its place; the network need not have the unit."""
+    """Return a unit that a file lists as a value, with its place in the file.
+
+    Its id is ``None`` if the network does not have the unit.
+    """
     number = network.unit_id(unit)
     inputs, outputs = (
         tuple(named_node(network, node) for node in nodes) for nodes in (unit.inputs, unit.outputs)
@@ -218,9 +224,9 @@ def costed_tree(problem: Problem, units: Collection[int], costs: Costs) -> Coste
 
 
 def used_up_of(problem: Problem, tree: Iterable[FunctionalUnit] | None) -> UsedUpRun | None:
-    """Return whether a tree runs where items are used up.
+    """Return whether a tree runs where items are used up, and the missing copy if it does not.
 
-    ``None`` without a tree, and where the items of the problem are used up already.
+    Return ``None`` without a tree, and where the items of the problem are used up already.
     """
     if tree is None or problem.items is not None:
         return None
@@ -279,7 +285,8 @@ def _steps_with_origins(
 ) -> Iterator[tuple[int, int | UnsetType, Sequence[Origin]]]:
     """Yield the unit id, the number of executions and the origins of the inputs of each step.
 
-    The number is ``UNSET`` unless amounts are counted.
+    The number is ``UNSET`` unless amounts are counted. ``bought`` has the number of bought copies by id of
+    the kitchen item.
     """
     if problem.items is not None:
         yield from _steps_with_copies(problem, units, bought)
@@ -311,7 +318,7 @@ def _input_origin(
     """Return the origin of the input ``o`` of a step, where items last.
 
     ``makers`` has the numbers of the steps that make each node. ``needed`` is false for an input that the
-    container rule takes as given.
+    container rule takes as given. Kitchen items in ``bought`` have the origin ``bought``.
     """
     if o in problem.kitchen:
         return _BOUGHT if o in bought else _KITCHEN
@@ -329,8 +336,8 @@ def _steps_with_copies(
 ) -> Iterator[tuple[int, int | UnsetType, Sequence[Origin]]]:
     """Yield the steps as :func:`_steps_with_origins` does, where items are used up.
 
-    Each step takes the oldest copies of its inputs. Where amounts are counted, equal units that follow each
-    other are one step.
+    Each step takes the oldest copies of its inputs; bought copies come after those of the kitchen. Where
+    amounts are counted, equal units that follow each other are one step.
     """
     copies = {
         o: deque([(_KITCHEN, (problem.stock_of(o) or 0) - bought.get(o, 0)), (_BOUGHT, bought.get(o, 0))])
@@ -354,9 +361,9 @@ def _steps_with_copies(
 
 
 def _take_oldest(copies: deque[tuple[Origin, int]], amount: int) -> Origin:
-    """Remove ``amount`` of the oldest copies from the queue, and return the origin of the first of them.
+    """Remove ``amount`` of the oldest copies from the queue, and return the origin of the oldest copy.
 
-    ``copies`` has origins with numbers of copies. An empty queue has the origin ``missing``.
+    ``copies`` has origins with numbers of copies. For an empty queue, the origin is ``missing``.
     """
     while copies and not copies[0][1]:
         copies.popleft()

@@ -18,8 +18,8 @@ def iterative_deepening(problem: Problem, settings: SearchSettings) -> Retrieval
     at most one pass over the relevant units. If a limit solves no new object, no later one does, and the
     search ends.
 
-    At a limit of the ``settings``, the ending is ``unknown``. With ``published``, breadth-first retrieval is
-    run, as the published programs do under this name.
+    At a limit of the ``settings`` (depth, time or memory), the ending is ``unknown``. With ``published``,
+    breadth-first retrieval is run instead, as the published programs do under this name.
     """
     if settings.published:
         return breadth_first(problem, settings)
@@ -56,7 +56,7 @@ class _DepthLimited:
         self.objects = sorted(relevant)
 
     def solve(self, goal: int, limit: int) -> bool:
-        """Return whether an object can be made within a limit; record it in ``solved`` and ``failed``.
+        """Return whether an object can be made within a depth limit; record it in ``solved`` and ``failed``.
 
         A stack replaces recursion, so that any depth works. Raises ``TimeoutError`` at the deadline.
         """
@@ -115,7 +115,10 @@ class _DepthLimited:
         return tuple(sorted(levels, key=lambda unit: (levels[unit], unit)))
 
     def _memoized(self, o: int, limit: int) -> bool | None:
-        """Return whether an object can be made within a limit, as far as recorded; ``None`` if not known."""
+        """Return whether an object can be made within a limit, if that needs no search; else ``None``.
+
+        Kitchen items, the limit 0 and recorded results need none.
+        """
         if o in self.problem.kitchen:
             return True
         if limit <= 0 or self.failed.get(o, -1) >= limit:

@@ -12,7 +12,10 @@ from foon_asp.searches.search_interface import Search, SearchSettings
 
 
 def offered_search(offer: Offer) -> Search:
-    """Return the search that a package offers; it is not imported, and runs in a process of its own."""
+    """Return the search that a package offers.
+
+    The package is not imported now; the search runs in a process of its own, which imports it.
+    """
     promise = f"what {offer.package} says of it; foon-asp has checked only its tree"
     return Search(offer.name, promise, functools.partial(_retrieve, offer), offer.package)
 
@@ -35,8 +38,9 @@ def _retrieve(offer: Offer, problem: Problem, settings: SearchSettings) -> Retri
 def _validate(offer: Offer, problem: Problem, reply: Any) -> Retrieval:
     """Return the retrieval that a search replied with; raises :class:`UserError` if it is not valid.
 
-    Units have to be ids, and come only with the ending ``tree``. An object it is stuck at has to be one that
-    no unit makes and that is not in the kitchen.
+    ``reply`` has to be a triple of an ending, unit ids and the id of an object. There are units only with the
+    ending ``tree``, and an object only with the ending ``stuck``. No unit makes this object, and it is not in
+    the kitchen.
     """
     fault = offer.fault(f"gave {reply!r}, expected a Retrieval")
     try:

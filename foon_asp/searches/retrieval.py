@@ -47,13 +47,13 @@ def retrieve_backward(problem: Problem, choose: Choose, stack: bool = False) -> 
 
     Open objects, at first the goals, are in a queue, or with ``stack`` in a stack. An object that was
     processed before or is in the kitchen is skipped. For any other object, ``choose`` returns one achiever.
-    Unless the tree already has it, it is appended to the tree, and its preconditions become open. In the end,
-    the list is reversed. An object without achievers ends the search as ``stuck``.
+    An achiever that the tree does not have yet is appended to the tree, and its preconditions become open. In
+    the end, the order of the units is reversed. An object without achievers ends the search as ``stuck``.
 
     No choice is revised, so that the tree may be larger than necessary and may not execute. The only
     guarantee is that every precondition is in the kitchen or an output of a unit of the tree. Outputs are
-    those annotated, as published: a container that a unit may skip under the rule ``implied`` counts as made
-    here, but not when the tree is executed.
+    the annotated ones, as in the published programs. So a container that a unit takes as given under the rule
+    ``implied`` counts as made here, but not when the tree is executed.
 
     Source: D. Paulius et al., "Functional Object-Oriented Network for Manipulation Learning", IROS 2016
     (retrieval of task trees), and the published programs that followed (docs/dev/sources.md).

@@ -31,12 +31,15 @@ SEARCHES: Final[Mapping[str, Search]] = {
 
 
 def search_names() -> tuple[str, ...]:
-    """Return the names of all searches, those of other packages last, each once; clashes raise no error."""
+    """Return the names of all searches, those of other packages last, each name once.
+
+    Names that two searches have raise no error.
+    """
     return tuple(dict.fromkeys([*SEARCHES, *(offer.name for offer in find_offers(ENTRY_POINTS))]))
 
 
 def find_searches() -> dict[str, Search]:
-    """Return all searches by name, those of other packages last; these packages are not imported.
+    """Return all searches by name, those of other packages last; the packages are not imported.
 
     Raises :class:`UserError` if a package offers a search under a name that another search has.
     """

@@ -12,12 +12,13 @@ from foon_asp.searches.ties import Ties
 class SearchSettings:
     """The settings of searches; each search uses some of them.
 
-    ``ties``: how all searches but ``ids`` break ties.
+    ``ties``: which of equally good units all searches but ``ids`` choose.
     ``count``: what ``greedy-inputs`` counts.
     ``published``: whether ``ids`` is the published iterative deepening, which always chooses the first unit
     and so is breadth-first retrieval.
-    ``depth_limit``: the greatest depth for ``ids``, in units; ``None`` is no limit.
-    ``time_limit``, ``memory_limit``: in seconds and bytes; ``None`` is no limit.
+    ``depth_limit``: the greatest depth of trees that ``ids`` tries; ``None`` for no limit.
+    ``time_limit``: the limit in seconds; ``None`` for no limit.
+    ``memory_limit``: the limit in bytes; ``None`` for no limit.
     """
 
     ties: Ties = Ties.FIRST

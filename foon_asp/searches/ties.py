@@ -18,6 +18,7 @@ class Ties(StrEnum):
 def least_chooser(ties: Ties, size: Callable[[int], int | Fraction] = lambda _: 0) -> Choose:
     """Return a function that chooses the achiever of the least ``size``.
 
-    Of several such, it chooses the first or the last in file order. Without ``size``, all are equal.
+    Of several achievers of the least size, it chooses the first or the last in file order, as ``ties`` says.
+    Without ``size``, all achievers have the same size.
     """
     return lambda candidates: min(candidates if ties is Ties.FIRST else reversed(candidates), key=size)
