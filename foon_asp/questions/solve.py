@@ -43,8 +43,7 @@ def solve_or_each(
 ) -> Result:
     """Return the best tree for all goals, or with ``all_goals`` the best tree for each goal by itself.
 
-    With ``all_goals``, ``reductions``, ``clingo_options`` and ``durations`` are ignored. Raises
-    :class:`UserError` for other options that do not go with it.
+    Raises :class:`UserError` if ``all_goals`` comes with an option for the tree of a single question.
     """
     if not all_goals:
         return solve(
@@ -68,6 +67,10 @@ def solve_or_each(
         raise UserError(
             "--all-goals lists what each goal costs: ask for soft constraints, a certificate, a "
             "cross-check or retries of one goal (--goal)"
+        )
+    if reductions != "all" or clingo_options or durations is not None:
+        raise UserError(
+            "--all-goals takes no --reduce, --durations or options of clingo: they are for one goal (--goal)"
         )
     return solve_all_goals(problem, objectives, **options)
 

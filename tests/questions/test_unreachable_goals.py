@@ -1,6 +1,7 @@
 """``solve --skip-unreachable``: one tree for the goals that can be made, and the cause of each other one."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -64,3 +65,14 @@ def test_the_tree_is_that_of_the_goals_that_can_be_made(rule: ContainerRule) -> 
             assert skipped.object.id is not None
             assert not available[skipped.object.id]
     assert several
+
+
+@pytest.mark.parametrize("words", [("--reduce", "none"), ("--durations", "times.txt"), ("--", "--stats")])
+def test_each_goal_by_itself_refuses_what_it_would_ignore(
+    words: tuple[str, ...], tmp_path: Path, cli: Cli
+) -> None:
+    (tmp_path / "times.txt").write_text("twist\t3\n")
+    words = tuple(str(tmp_path / word) if word == "times.txt" else word for word in words)
+    ran = cli("solve", "--goal", "ice", "--all-goals", *words)
+    assert ran.code == 2
+    assert "--all-goals takes no --reduce, --durations or options of clingo" in ran.err
