@@ -327,7 +327,7 @@ class Branching:
         return reduced_costs
 
     def _open_cuts(self, node: _Node) -> Iterator[tuple[int, int]]:
-        """Yield the row and the weight of each cut in the node's weights whose landmark has no used action."""
+        """Yield row and weight of those cuts in the node's weights whose landmark has no used action."""
         for row, weight in node.weights:
             if node.used.isdisjoint(self._relaxation.rows[row].tolist()):
                 yield row, weight
@@ -392,8 +392,8 @@ def prove_by_branching(
 ) -> Proof | None:
     """Return a proof that no derivation costs less than ``total``. Return ``None`` if there is none in time.
 
-    Arguments are those of :class:`Branching`; ``expired`` returns whether time is up. Costs are whole numbers,
-    so it suffices that bounds of the proof exceed ``total - 1``.
+    Arguments are those of :class:`Branching`; ``expired`` returns whether time is up. Costs are whole
+    numbers, so it suffices that bounds of the proof exceed ``total - 1``.
 
     Also returns ``None`` if a derivation costs less, an action costs nothing, the costs have a common divisor
     above 1, or the proof becomes too long.

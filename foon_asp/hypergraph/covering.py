@@ -98,7 +98,7 @@ class Covering:
         self._highs.changeColBounds(column, lower, upper)
 
     def set_row_minimum(self, row: int, lower: float) -> None:
-        """Set the least sum of the values in a covering row, which is 1 at first; 0 makes the row redundant."""
+        """Set the least sum of the values in a covering row, at first 1; with 0, the row is redundant."""
         self._highs.changeRowBounds(row, lower, self._library.kHighsInf)
 
     def _set_options(self, options: dict[str, bool | str | float]) -> None:

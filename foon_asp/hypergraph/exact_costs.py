@@ -25,8 +25,8 @@ class TooFineError(Exception):
 class ExactCosts:
     """The cost of each action as one integer; sums of costs compare lexicographically.
 
-    Call the object with an action for its cost. The cost by an additive objective is scaled to an integer. Then
-    it is multiplied by more than the greatest sum of the objectives after it.
+    Call the object with an action for its cost. The cost by an additive objective is scaled to an integer.
+    Then it is multiplied by more than the greatest sum of the objectives after it.
 
     Where rates multiply, logarithms are added. Each factor of a coprime base of the rates has a logarithm
     rounded to forty digits, so equal products have equal sums. The attribute ``doubt`` is greater than the

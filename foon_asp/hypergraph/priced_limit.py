@@ -18,8 +18,9 @@ Units = frozenset[int]
 class WithinLimit(NamedTuple):
     """The result of a search for trees within a limit.
 
-    ``tree``: a tree within the limit; ``None`` if there is no such tree.
-    ``units``: all units that better trees within the limit can have; ``None`` if no price excludes a unit.
+    ``tree``: the units of a tree within the limit; ``None`` if it is proved that there is none.
+    ``units``: all units that this tree and better trees within the limit can have; ``None`` if no unit is
+    excluded.
     """
 
     tree: Units | None
@@ -33,15 +34,17 @@ def search_within_limit(
     row: LinearRow,
     expired: Callable[[], bool],
 ) -> WithinLimit | None:
-    """Search for the best tree within an upper limit on a sum over units; ``tree`` exceeds the limit.
+    """Search for the best tree within an upper limit on a sum over units.
 
-    ``row`` has the amounts of units and the limit on their sum. A first tree within the limit is found by
-    :func:`any_within_limit`. The price of an amount of 1 is the Lagrange multiplier at which this tree and
-    ``tree`` cost the same. It raises the cost of a tree within the limit by at most the price times the
-    limit, so lower bounds carry over. If many units remain at this price, lower prices that rise up to it are
-    tried.
+    ``tree``: the units of a tree that exceeds the limit.
+    ``row``: the amount of each unit, and the limit on the sum of the amounts of a tree.
 
-    Returns ``None`` if neither a tree is found nor its absence proved.
+    A first tree within the limit is found by :func:`any_within_limit`. The price of an amount of 1 is the
+    Lagrange multiplier at which this first tree and ``tree`` cost the same. It raises the cost of a tree
+    within the limit by at most the price times the limit, so lower bounds carry over. If many units remain at
+    this price, lower prices that rise up to it are tried.
+
+    Returns ``None`` if no tree within the limit is found and it is not proved that there is none.
     """
     first_result = any_within_limit(subproblem, row, expired)
     if first_result is None or first_result.tree is None:
@@ -91,11 +94,12 @@ def _by_rising_prices(
     row: LinearRow,
     expired: Callable[[], bool],
 ) -> WithinLimit:
-    """Search for trees within the limit that are better than ``incumbent``; ``exceeding`` is beyond it.
+    """Search for trees within the limit that are better than ``incumbent``, at rising prices.
 
-    A question at a low price is about as quick as one without a price. Prices rise from about the cost of a
-    unit to the price at which ``incumbent`` and ``exceeding`` cost the same. The optimal tree at a price
-    replaces one of the two. The price with the greatest bound determines the units of better trees.
+    ``incumbent`` is a tree within the limit, and ``exceeding`` a tree that exceeds it. Prices rise from about
+    the cost of a unit to the price at which the two trees cost the same. The optimal tree at each price
+    replaces one of the two. The price with the greatest lower bound determines the units of better trees. A
+    reduction at a low price takes hardly longer than one without a price.
     """
     next_price = Fraction(subproblem.total(exceeding), len(exceeding))
     greatest_bound: tuple[Fraction, Fraction] | None = None  # bound, and its price
@@ -145,7 +149,7 @@ def _by_rising_prices(
 
 
 def _restricted_to_cost(subproblem: Subproblem, tree: Units, expired: Callable[[], bool]) -> Subproblem:
-    """Return the subproblem of the trees that cost no more than ``tree``."""
+    """Return the subproblem over the actions of ``tree`` and of trees that cost no more."""
     remaining = subproblem.actions_within(subproblem.total(tree), expired)
     return replace(subproblem, remaining={*remaining, *subproblem.actions(tree)})
 
@@ -153,10 +157,10 @@ def _restricted_to_cost(subproblem: Subproblem, tree: Units, expired: Callable[[
 def any_within_limit(
     subproblem: Subproblem, row: LinearRow, expired: Callable[[], bool]
 ) -> WithinLimit | None:
-    """Search for any tree that keeps to an upper limit on a sum, by minimizing the sum.
+    """Search for any tree within the limit of ``row``, by minimizing the sum of its amounts.
 
-    Returns ``WithinLimit(None)`` if a bound proves that no tree is within the limit. Returns ``None`` if
-    nothing is known.
+    The search ends at the first tree within the limit. Returns ``WithinLimit(None)`` if a bound proves that
+    there is no such tree. Returns ``None`` if neither is achieved.
     """
     units_cost = ExactCosts(subproblem.problem, (Objective.UNITS,), subproblem.remaining)
     limit = units_cost.strict_upper_bound * (row.bound + 1)
@@ -182,10 +186,7 @@ def _reduced_at(
     below: int = 0,
     max_actions: float = math.inf,
 ) -> Reduced:
-    """Reduce the subproblem by :func:`reduce_at_costs`.
-
-    Raises ``KeyboardInterrupt`` where that is interrupted.
-    """
+    """Return the result of :func:`reduce_at_costs`; raise ``KeyboardInterrupt`` if it is interrupted."""
     reduced = reduce_at_costs(subproblem, objectives, costs, expired, known_tree, below, max_actions)
     if reduced.interrupted:
         raise KeyboardInterrupt
