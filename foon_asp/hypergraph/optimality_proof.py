@@ -64,7 +64,7 @@ class Rules(Protocol):
 
 
 class CheaperError(Exception):
-    """A derivation was found that costs less than the one to be proved optimal; ``actions`` are its own."""
+    """A derivation, ``actions``, was found that costs less than the one to be proved optimal."""
 
     def __init__(self, actions: Sequence[int]) -> None:
         super().__init__("a cheaper derivation was found")
@@ -122,7 +122,7 @@ class Prover:
         return sum(map(mul, self._order.approximate(vector), self._scales), 0.0)
 
     def prove(self, derivation: Iterable[int], cases: Cases = None) -> Proof | None:
-        """Return a proof that no derivation costs less than this one. Return ``None`` if none is found in time.
+        """Return a proof that no derivation costs less than this one; ``None`` if there is none in time.
 
         Known cuts are tried first. If they do not suffice, the proof branches on ``cases``, the nested cases
         of an earlier search. Raises :class:`CheaperError` if a cheaper derivation is found.
@@ -302,7 +302,7 @@ class Prover:
         The proof is ``None`` if all attempts fail. They are made in this order:
         1. a greedy cost partition over ``known_cuts``,
         2. reduced-cost fixing by this partition; ``others`` proves the goal without the fixed actions,
-        3. the same two with the rounded duals of the LP as greatest weights of cuts,
+        3. a partition whose weights are at most the rounded duals of the LP, and fixing by it,
         4. :func:`prove_by_branching`, if ``at_root`` is true.
 
         All costs are multiples of ``step``. If it is 0, only the first attempt is made. If ``without_lp`` is
@@ -613,7 +613,7 @@ class _Node:
         return sorted({action for action, x in lp_values if round(x)} | self._used)
 
     def _separate(self) -> bool:
-        """Add cuts with disjoint landmarks that the last LP solution violates; return whether any was added."""
+        """Add cuts with disjoint landmarks that the last LP solution violates; return whether it has any."""
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
         count = len(self._actions)
