@@ -50,8 +50,8 @@ class Check(NamedTuple):
 
     Attributes:
         engine: The name of the engine.
-        objectives: The objectives by which the engine finds our tree optimal, the most important first. They
-            are empty if both say that there is no tree, and unless the engine agrees.
+        objectives: The objectives by which the engine finds our tree optimal, the most important first.
+            There are none if both say that there is no tree, or the engine does not agree.
         reason: Why the engine has checked nothing; ``None`` if it agrees or is refuted.
         seconds: The time that the engine took.
         package: The distribution that offers the engine; ``None`` for a built-in engine.
@@ -137,7 +137,7 @@ def _check_by_engine(engine: Engine, claim: Asked, seconds: float) -> tuple[Obje
 
     Raises :class:`NotCheckedError` in three cases: a rule does not merely forbid units, there are soft
     constraints, or the engine is not installed. Raises :class:`DisagreementError` if the engine's tree has a
-    forbidden unit. Raises both as :func:`agree` does.
+    forbidden unit. Also raises what :func:`agree` raises.
     """
     problem, covered = claim.outcome.problem, coverage(claim.settings)
     unsupported = [*covered.rules_beyond_removal(), *(name.partition(" ")[0] for name in covered.not_covered)]

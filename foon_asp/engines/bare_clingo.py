@@ -101,12 +101,14 @@ class Clingo:
         return answers[-1]
 
     def answers_by_kind(self, extra_facts: str, bounds: Sequence[int]) -> list[ClingoAnswer]:
-        """Return one answer of each kind whose costs are at most ``bounds``, the most important first.
+        """Return one answer of each kind, among the answers with costs up to ``bounds``.
 
-        Two answers are of one kind if they have equally many units of each cost by the rounded objective.
-        ``extra_facts`` are the facts ``_same_rate`` and ``_most_alike`` of ``second_opinion.lp``, which say
-        which units have the same cost. Raises :class:`NotCheckedError` if there are more than ``MAX_KINDS``
-        kinds, or clingo does not finish.
+        ``bounds``: the greatest costs, the most important first.
+        ``extra_facts``: the facts ``_same_rate`` and ``_most_alike`` of ``second_opinion.lp``, which say
+        which units have the same cost by the rounded objective.
+
+        Two answers are of one kind if they have equally many units of each such cost. Raises
+        :class:`NotCheckedError` if there are more than ``MAX_KINDS`` kinds, or clingo does not finish.
         """
         mode = ",".join(["--opt-mode=enum", *map(str, bounds)])
         options = (mode, f"--models={MAX_KINDS + 1}", "--project=project")
@@ -124,7 +126,7 @@ class Clingo:
     ) -> tuple[str, bool, list[ClingoAnswer]]:
         """Run clingo; return its result, whether the search was exhausted, and the answers it printed.
 
-        The result is a word of clingo's such as ``OPTIMUM FOUND``. ``options`` are words for clingo's command
+        The result is a text of clingo such as ``OPTIMUM FOUND``. ``options`` are words for clingo's command
         line. ``with_second_opinion`` adds ``second_opinion.lp`` to the program. Raises
         :class:`NotCheckedError` if time or memory runs out, or clingo fails.
         """

@@ -16,7 +16,7 @@ _NOT_CHECKED = f"{NotCheckedError.__module__}.{NotCheckedError.__name__}"
 
 
 def offered_engine(offer: Offer) -> Engine:
-    """Return the engine that a package offers, which counts as installed; each call runs in a process."""
+    """Return the engine that a package offers. It counts as installed, and runs in a process of its own."""
     return Engine(offer.name, lambda: True, functools.partial(_run_offered, offer), offer.package)
 
 

@@ -195,8 +195,8 @@ class Branching:
     def _close_or_branch(self, node: _Node, node_number: int, expired: Callable[[], bool]) -> bool:
         """Solve the relaxation at a node in rounds of cuts, and close the node or give it two children.
 
-        Returns ``True``; ``False`` if time or effort ran out before. A node is closed if it is ``hopeless``,
-        or if its bound is above the cutoff. Better derivations that are found become the incumbent.
+        A node is closed if it is ``hopeless``, or if its bound is above the cutoff. Better derivations that
+        are found become the incumbent. Returns ``False`` if time or effort ran out first, else ``True``.
 
         ``node_number``: the number of the node in the order of creation. Number 0 is the root, which gets
         more rounds. The primal heuristic is called at the root and at every few nodes.
@@ -298,9 +298,9 @@ class Branching:
         return added > 0
 
     def _raise_bound(self, node: _Node) -> None:
-        """Round the LP duals to weights of rows; store them and their bound in the node if it is greater.
+        """Round the LP duals to weights of rows, which prove a bound of the node.
 
-        If the node has no weights yet, they are stored in any case.
+        If they raise its bound, or it has no weights yet, they are stored in the node.
         """
         reduced_costs = self._costs_in_parts.copy()
         used_cost = sum(self._costs[a] for a in node.used) * PARTS
@@ -327,7 +327,7 @@ class Branching:
         return reduced_costs
 
     def _open_cuts(self, node: _Node) -> Iterator[tuple[int, int]]:
-        """Yield row and weight of those cuts in the node's weights whose landmark has no used action."""
+        """Yield the row and the weight of each open cut of a node: its landmark has no used action."""
         for row, weight in node.weights:
             if node.used.isdisjoint(self._relaxation.rows[row].tolist()):
                 yield row, weight

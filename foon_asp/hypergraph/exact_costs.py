@@ -249,7 +249,7 @@ class _Vectors:
 
 
 class CoarseCosts:
-    """Costs by one objective, the first, rounded down to small whole numbers, for estimates.
+    """Costs by a single objective, rounded down to small whole numbers, for estimates.
 
     Call the object with an action for its cost.
     """
@@ -262,8 +262,8 @@ class CoarseCosts:
     def __call__(self, action: int) -> int:
         """Return the approximate cost of an action.
 
-        Costs in whole numbers are unchanged. Costs in fractions, and ``-ln`` of rates, are in thousandths,
-        rounded down.
+        Costs in whole numbers are exact. Costs in fractions, and ``-ln`` of rates, are in thousandths,
+        rounded down. An action that takes a kitchen item costs 1 if the objective counts items, else 0.
         """
         problem = self._problem
         if action >= len(problem.network):

@@ -18,10 +18,11 @@ _FIRST = 500  # actions nearest to the required sets, among which an extension i
 def extend_tree(
     graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int], max_actions: int
 ) -> set[int] | None:
-    """Return the actions of a tree together with those of an extension, in which they cost nothing.
+    """Return the actions of a tree for the goals, together with the actions of an extension.
 
-    The extension follows h_add. It is looked for among the actions nearest to the required sets, and then in
-    a restricted subproblem of ``max_actions`` actions. Returns ``None`` if none is found.
+    The extension follows h_add; actions of the tree cost nothing in it. It is looked for among the actions
+    nearest to the required sets, and then in a restricted subproblem of at most ``max_actions`` actions.
+    Returns ``None`` if no extension is found.
     """
     required_graph = _graph_of_required(graph)
     remaining_cost = _cost_without(tree, cost)

@@ -52,8 +52,8 @@ class FirstAchievers:
     def landmark_of(self, cut: frozenset[int]) -> list[int]:
         """Return the landmark of a cut of :attr:`graph`, ascending.
 
-        It consists of the crossing actions of this graph. Actions of which an object of the cut is a landmark
-        are left out, since they cannot be the first to achieve an object of the cut.
+        It consists of the actions that cross the cut in this graph. An action is left out if an object of the
+        cut is a landmark of its preconditions: it cannot be the first to achieve an object of the cut.
         """
         achievers, needs, before = self.graph.makers, self.graph.needs, self._landmarks_before
         inside = _bit_set(cut)

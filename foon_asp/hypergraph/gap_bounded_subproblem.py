@@ -48,10 +48,9 @@ class Subproblem:
         return {achiever for o in needed.union(graph.goals) for achiever in graph.makers[o]}
 
     def rival_achievers(self, units: Iterable[int]) -> set[int]:
-        """Return all achievers of the objects that some units achieve.
+        """Return all achievers of the objects that some units achieve, including these units.
 
-        Kitchen items do not count, and units that achieve nothing else are missing. The other units are in
-        the result themselves.
+        Kitchen items do not count as objects. So a unit that achieves nothing else may be missing.
         """
         graph, kitchen = self.graph, self.problem.kitchen
         achieved = {o for unit in units for o in graph.gives[unit] if o not in kitchen}
@@ -67,7 +66,7 @@ class Subproblem:
         return {unit for unit in units if restriction is None or not restriction.removed(unit)}
 
     def with_only_achievers(self, units: Iterable[int], max_units: int) -> set[int]:
-        """Return some units, and each unit that is the only achiever of a precondition of a returned unit.
+        """Return these units, and each unit that is the only achiever of a precondition of a returned unit.
 
         Kitchen items do not count as preconditions. Stops at about ``max_units`` units.
         """

@@ -57,8 +57,9 @@ def tighten(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide | No
     """Raise the lower bound by cuts, look for better trees, and exclude candidates by reduced costs.
 
     Yields the gap after each step. If the cuts prove the incumbent optimal, the gap is marked as proved, and
-    no candidates are excluded. The other arguments are those of :func:`raise_bound` and
-    :func:`search_neighbourhood`. Raises ``KeyboardInterrupt`` if the search for cuts was interrupted.
+    no candidates are excluded. Candidates are excluded only if the task has the reduction ``dear``. The
+    other arguments are those of :func:`raise_bound` and :func:`search_neighbourhood`. Raises
+    ``KeyboardInterrupt`` if the search for cuts was interrupted.
     """
     gap, cuts = raise_bound(task, gap, h_values, guide)
     yield gap
@@ -110,8 +111,8 @@ def search_neighbourhood(task: Task, gap: Gap, cuts: Cuts, thorough: bool) -> Ga
 def search_repeatedly(task: Task, gap: Gap) -> Stage:
     """Search the neighbourhood thoroughly, again and again, until the incumbent stays as it is.
 
-    Also ends when time is up, or when more actions would be looked at than branching may. Yields the gap
-    after each search.
+    Also ends when time is up, or as many actions were looked at as branching may. Yields the gap after each
+    search.
     """
     budget, previous = task.tuning.branching_budget, frozenset[int]()
     while gap.incumbent != previous and not task.expired():

@@ -28,7 +28,7 @@ RUN = RunTuning()
 
 
 def libraries() -> tuple[Any, Any]:
-    """Import the modules highspy and numpy at the first call, since that is slow; return both."""
+    """Return the modules highspy and numpy; they are imported here, not earlier, since that is slow."""
     with uninterrupted():
         import highspy  # noqa: PLC0415
         import numpy as np  # noqa: PLC0415

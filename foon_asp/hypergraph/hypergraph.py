@@ -13,9 +13,9 @@ class Hypergraph:
     consumed. ``start`` are the initial objects. ``known_makers`` are the achievers of each object; if they
     are ``None``, they are computed when needed.
 
-    An action *can run*, and an object is *reachable*, if some order of actions makes it possible from the
-    initial objects. A *derivation* of some objects, the *targets*, is a set of actions that can run one after
-    the other and makes all targets that are not initial.
+    An object is *reachable* if some sequence of actions makes it from the initial objects. An action *can
+    run* if all of its preconditions are reachable. A *derivation* of some objects is a set of actions that
+    makes them from the initial objects. The objects to be made are the *targets*.
     """
 
     size: int

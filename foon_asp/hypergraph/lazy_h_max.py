@@ -10,7 +10,7 @@ from foon_asp.hypergraph.goal_graph import GoalGraph
 def lazy_h_max_test(
     graph: GoalGraph, allowed: Container[int], reduced_cost: Callable[[int], int]
 ) -> Callable[[int, float], bool]:
-    """Return a function of an object and a limit: whether the h_max of the object is at most the limit.
+    """Return a function that tests whether the h_max of an object is at most a limit.
 
     The h_max is that of ``allowed`` actions at their reduced costs. :func:`compute_h_values` computes h_max
     of all objects at once. The returned function goes backwards from one object instead, and prunes by the

@@ -64,7 +64,7 @@ class Rules(Protocol):
 
 
 class CheaperError(Exception):
-    """A derivation, ``actions``, was found that costs less than the one to be proved optimal."""
+    """The ``actions`` form a derivation that costs less than the one to be proved optimal."""
 
     def __init__(self, actions: Sequence[int]) -> None:
         super().__init__("a cheaper derivation was found")
@@ -80,7 +80,7 @@ class Prover:
 
     ``costs``: the cost of each action as a vector.
     ``order``: the order of these vectors.
-    ``forbidden``: actions. Derivations with one of them do not count.
+    ``forbidden``: the actions that derivations must not have.
     ``expired``: returns whether to give up. It is called between steps that take milliseconds on thousands of
     actions.
     ``known_cuts``: the cuts to begin with, each by its objects.

@@ -150,9 +150,8 @@ def reduce_under_rules(
     ``subproblem`` and ``bound`` of the result are valid under any rules; its ``tree`` may break them.
 
     ``redundant``: whether trees may have units that lead to no goal.
-    ``course``: the stages to run: :data:`BOUND` if the caller needs only a bound, or :data:`ROUNDS`, which
-    also ``None`` stands for.
-    Other arguments are those of :func:`reduce`.
+    ``course``: the stages to run; ``None`` for :data:`ROUNDS`. :data:`BOUND` is enough for a caller that
+    needs no particular tree. Other arguments are those of :func:`reduce`.
     """
     presolve_tuning = tuning.PRESOLVE._replace(branching_budget=0, landmark_actions=math.inf)
     with without_garbage_collection():
@@ -164,7 +163,7 @@ def reduce_under_rules(
 
 
 def h_add_tree(problem: Problem, objectives: Sequence[Objective]) -> frozenset[int] | None:
-    """Return the units of a tree that follows h_add; it is not proved optimal, but usually nearly is.
+    """Return the units of a tree that follows h_add, without proof; it is usually near the optimum.
 
     ``objectives`` are those of :func:`reduce`. Returns ``None`` if there is no tree. Raises
     ``KeyboardInterrupt`` if it is interrupted.

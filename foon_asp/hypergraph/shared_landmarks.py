@@ -185,7 +185,7 @@ class SharedLandmarks:
     def _record_reached(self, rows: Iterable[int]) -> None:
         """Record for each new landmark, given by number, which objects are reachable without its actions.
 
-        It is a landmark of every object that is not.
+        It is a landmark of all other objects.
         """
         for row in rows:
             landmark = frozenset(self._relaxation.rows[row].tolist())
@@ -205,7 +205,7 @@ class SharedLandmarks:
         return min(tree, *map(frozenset, trees), key=lambda tree: sum(map(costs, tree)))
 
     def _cut_of_row(self, row: int, targets: Iterable[int]) -> frozenset[int]:
-        """Return a cut with one of the targets whose landmark is within the landmark number ``row``.
+        """Return a cut of one of the targets; its landmark is a subset of the landmark number ``row``.
 
         ``targets`` are numbers in the relaxation. The result has object numbers of the whole graph.
         """

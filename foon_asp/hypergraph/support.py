@@ -45,8 +45,8 @@ class Support:
     def is_replaceable(self, action: int) -> bool:
         """Return whether each object in use that an action makes has another achiever in the tree.
 
-        A tree with redundant actions has such an action: of the actions that can be removed together, the
-        last in an executable order.
+        A tree with redundant actions has a replaceable action: of the actions that can be removed together,
+        the last in an executable order.
         """
         return all(len(self._achievers[o]) > 1 for o in self._graph.gives[action] if self._is_in_use(o))
 

@@ -13,7 +13,7 @@ class PresolveTuning(NamedTuple):
 
     ``lazy_actions``: a number of actions. If a network has more, only those near the goals are looked at
     first.
-    ``first_actions``: how many actions, the nearest to the goals, the first tree is looked for among.
+    ``first_actions``: among how many actions, the nearest to the goals, the first tree is looked for.
     ``required_achievers``: how many units of each required set are looked at while trees are looked for.
     ``neighbourhood_actions``: how many actions a neighbourhood has in which better trees are looked for.
     ``easy_actions``: a number of candidates. If there are fewer, clingo is faster than a thorough search for
