@@ -10,7 +10,7 @@ from foon_asp.certificate import coverage
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.engines import bare_clingo, bare_plans, fast_downward, highs
 from foon_asp.engines.engine import (
-    Asked,
+    ClaimedAnswer,
     DisagreementError,
     Engine,
     EngineAnswer,
@@ -28,7 +28,7 @@ _NOT_INSTALLED = "it is not installed (pip install 'foon-asp[cross-check]')"
 ENTRY_POINTS: Final = "foon_asp.engines"
 ENGINES: Final = (
     Engine(highs.HIGHS, lambda: True, highs.solve_with_highs),
-    Engine(fast_downward.FAST_DOWNWARD, fast_downward.installed, fast_downward.solve_with_fast_downward),
+    Engine(fast_downward.FAST_DOWNWARD, fast_downward.is_installed, fast_downward.solve_with_fast_downward),
 )
 """The built-in engines besides bare clingo."""
 
@@ -46,7 +46,7 @@ def find_engines() -> tuple[Engine, ...]:
 class Check(NamedTuple):
     """The verdict of an engine: it agrees, has checked nothing, or is refuted.
 
-    An engine that disagrees and may be right has no verdict: it raises :class:`DisagreementError`.
+    An engine that disagrees, and may be right, raises :class:`DisagreementError` and has no verdict.
 
     Attributes:
         engine: The name of the engine.
@@ -67,7 +67,7 @@ class Check(NamedTuple):
 
 
 def cross_check(
-    claim: Asked, seconds: float | None = None, engines: tuple[Engine, ...] = ENGINES
+    claim: ClaimedAnswer, seconds: float | None = None, engines: tuple[Engine, ...] = ENGINES
 ) -> list[Check]:
     """Have bare clingo and then each of the ``engines`` check an answer; return their verdicts in this order.
 
@@ -114,14 +114,14 @@ def cross_check(
         except KeyboardInterrupt:
             interrupted, reason = True, "interrupted"
         except DisagreementError as error:
-            if package is None or error.ours:
+            if package is None or error.is_our_bug:
                 raise
             refuted = str(error)
         checks.append(Check(name, objectives, reason, time.monotonic() - began, package, refuted))
     return checks
 
 
-def _check_by_clingo(claim: Asked, seconds: float) -> tuple[Objective, ...]:
+def _check_by_clingo(claim: ClaimedAnswer, seconds: float) -> tuple[Objective, ...]:
     """Return the objectives by which bare clingo agrees; an empty tuple if there is no tree.
 
     Raises as :func:`check_with_bare_clingo` or, for plans, :func:`check_plan_with_bare_clingo`.
@@ -132,12 +132,12 @@ def _check_by_clingo(claim: Asked, seconds: float) -> tuple[Objective, ...]:
     return () if claim.outcome.units is None else levels(claim.outcome.objectives)
 
 
-def _check_by_engine(engine: Engine, claim: Asked, seconds: float) -> tuple[Objective, ...]:
-    """Return the objectives by which an engine other than bare clingo agrees, as :func:`agree` does.
+def _check_by_engine(engine: Engine, claim: ClaimedAnswer, seconds: float) -> tuple[Objective, ...]:
+    """Return the objectives by which an engine other than bare clingo agrees with an answer.
 
     Raises :class:`NotCheckedError` in three cases: a rule does not merely forbid units, there are soft
     constraints, or the engine is not installed. Raises :class:`DisagreementError` if the engine's tree has a
-    forbidden unit. Also raises what :func:`agree` raises.
+    forbidden unit. Also raises what :func:`agreed_objectives` raises.
     """
     problem, covered = claim.outcome.problem, coverage(claim.settings)
     unsupported = [*covered.rules_beyond_removal(), *(name.partition(" ")[0] for name in covered.not_covered)]
@@ -149,10 +149,10 @@ def _check_by_engine(engine: Engine, claim: Asked, seconds: float) -> tuple[Obje
     answer = engine.solve(problem, levels(claim.outcome.objectives), forbidden, seconds)
     if not forbidden.isdisjoint(answer.units or ()):
         raise DisagreementError(f"the tree of {answer.engine} has a unit that the rules forbid", answer)
-    return agree(claim.outcome, answer)
+    return agreed_objectives(claim.outcome, answer)
 
 
-def agree(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
+def agreed_objectives(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
     """Return the objectives by which an engine finds our tree optimal, the most important first.
 
     Costs are computed anew from the units, as rational numbers. An engine that works in floats may call a
@@ -173,14 +173,14 @@ def agree(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
     costs = outcome.problem.costs(check_tree(outcome.problem, answer))
     if outcome.costs is None:
         raise DisagreementError(
-            f"we say no tree exists, {answer.engine} says a tree exists", answer, ours=True
+            f"we say no tree exists, {answer.engine} says a tree exists", answer, is_our_bug=True
         )
     agreed: list[Objective] = []
     for objective in answer.objectives:
         ours, theirs = outcome.costs.measure(objective), costs.measure(objective)
         if ours != theirs:
             difference = difference_error(str(objective), ours, theirs, answer, multiplies(objective))
-            if difference.ours or not _is_within_float_error(objective, outcome.costs, costs):
+            if difference.is_our_bug or not _is_within_float_error(objective, outcome.costs, costs):
                 raise difference
             break  # it optimized the less important objectives over other trees
         agreed.append(objective)

@@ -28,7 +28,7 @@ from foon_asp.asp.bare_program import BareProgram, bare_program
 from foon_asp.encoding.fact_writer import write_exactly_alike, write_given, write_most_alike, write_same_rates
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.engines.engine import (
-    Asked,
+    ClaimedAnswer,
     DisagreementError,
     EngineAnswer,
     NotCheckedError,
@@ -48,7 +48,7 @@ _STRING_OR_WEIGHT = re.compile(r'"(?:\\.|[^"\\])*"|(?<![\w\'])(?:risk\(|cost\((\
 _USED = re.compile(r"(?:use|times)\((\d+)(?:,(\d+))?\)")
 
 
-def check_with_bare_clingo(claim: Asked, seconds: float) -> None:
+def check_with_bare_clingo(claim: ClaimedAnswer, seconds: float) -> None:
     """Have bare clingo answer the question of a claim, and raise an exception unless it agrees.
 
     Raises :class:`DisagreementError` if the two answers contradict each other. Raises
@@ -188,7 +188,7 @@ class _Comparison:
     number of the unit. They are read from the facts at construction.
     """
 
-    def __init__(self, claim: Asked, program: BareProgram, clingo: Clingo) -> None:
+    def __init__(self, claim: ClaimedAnswer, program: BareProgram, clingo: Clingo) -> None:
         self.claim, self.clingo = claim, clingo
         self.outcome, self.problem = claim.outcome, claim.outcome.problem
         self.levels = levels(self.outcome.objectives)

@@ -11,13 +11,13 @@ from foon_asp.asp import Status
 from foon_asp.asp.bare_program import bare_plan_program
 from foon_asp.encoding.fact_writer import write_times
 from foon_asp.engines.bare_clingo import BARE_CLINGO, Clingo
-from foon_asp.engines.engine import Asked, DisagreementError, EngineAnswer, NotCheckedError
+from foon_asp.engines.engine import ClaimedAnswer, DisagreementError, EngineAnswer, NotCheckedError
 from foon_asp.plans.counting import order_that_runs
 from foon_asp.problem import Objective, levels
 from foon_asp.proof.replay import replay_for
 
 
-def check_plan_with_bare_clingo(claim: Asked, seconds: float) -> tuple[Objective, ...]:
+def check_plan_with_bare_clingo(claim: ClaimedAnswer, seconds: float) -> tuple[Objective, ...]:
     """Have bare clingo look for an optimal plan; return the objectives by which it agrees.
 
     These are the objectives before the first one with fractions. Both plans are executed and compared by

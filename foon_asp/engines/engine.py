@@ -11,7 +11,7 @@ from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.rules.passed_constraint import Constraint
 
 
-class Asked(NamedTuple):
+class ClaimedAnswer(NamedTuple):
     """An answer to be checked.
 
     ``outcome``: the answer.
@@ -83,13 +83,13 @@ class DisagreementError(Exception):
     """Two engines give answers that cannot both be right: one of them has a bug.
 
     ``answer``: the answer of the other engine.
-    ``ours``: whether the bug is known to be in foon-asp: the tree of the other engine is valid, and better
-    than the one that we call optimal.
+    ``is_our_bug``: whether the bug is known to be in foon-asp: the tree of the other engine is valid, and
+    better than the one that we call optimal.
     """
 
-    def __init__(self, message: str, answer: EngineAnswer, ours: bool = False) -> None:
+    def __init__(self, message: str, answer: EngineAnswer, is_our_bug: bool = False) -> None:
         super().__init__(message)
-        self.answer, self.ours = answer, ours
+        self.answer, self.is_our_bug = answer, is_our_bug
 
 
 def difference_error(
@@ -108,7 +108,7 @@ def difference_error(
     better = theirs > ours if more_is_better else theirs < ours
     verdict = "ours is not the best" if better else f"{answer.engine} calls a worse one the best"
     message = f"by {measure} our tree has {ours}, the one of {answer.engine} {theirs}; {verdict}"
-    return DisagreementError(message, answer, ours=better)
+    return DisagreementError(message, answer, is_our_bug=better)
 
 
 class NotCheckedError(Exception):
@@ -150,7 +150,7 @@ def scope_of(problem: Problem, forbidden: frozenset[int]) -> Scope:
     return Scope(sorted(units), sorted(objects), [goal for goal in problem.goals if goal in objects])
 
 
-def cost(problem: Problem, objective: Objective, unit: int) -> float:
+def float_cost(problem: Problem, objective: Objective, unit: int) -> float:
     """Return the cost of a unit by an objective other than ``kitchen``; for ``success``, -ln of its rate.
 
     Raises :class:`NotCheckedError` if the cost is above 10^9, since floats lose small costs beside it.

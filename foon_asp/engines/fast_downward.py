@@ -13,7 +13,7 @@ import tempfile
 from pathlib import Path
 from typing import Final
 
-from foon_asp.engines.engine import EngineAnswer, NotCheckedError, cost, kitchen_items, scope_of
+from foon_asp.engines.engine import EngineAnswer, NotCheckedError, float_cost, kitchen_items, scope_of
 from foon_asp.errors import BugError
 from foon_asp.problem import Objective, Problem
 from foon_asp.problem.number import INT32_MAX
@@ -23,7 +23,7 @@ _MEMORY_LIMIT = "4G"
 _UNSOLVABLE = ("Completely explored state space", "Initial state is a dead end", "unsolvable")
 
 
-def driver() -> Path | None:
+def driver_script() -> Path | None:
     """Return the path of Fast Downward's script in the installed package ``up_fast_downward``.
 
     Return ``None`` if there is no such package or no script in it; no other place is searched.
@@ -35,9 +35,9 @@ def driver() -> Path | None:
     return file if file.is_file() else None
 
 
-def installed() -> bool:
-    """Return whether Fast Downward is installed, as :func:`driver` finds it."""
-    return driver() is not None
+def is_installed() -> bool:
+    """Return whether Fast Downward is installed, as :func:`driver_script` finds it."""
+    return driver_script() is not None
 
 
 def solve_with_fast_downward(
@@ -52,7 +52,7 @@ def solve_with_fast_downward(
     Raises :class:`NotCheckedError` if costs are too large. Raises :class:`BugError` if Fast Downward is not
     installed or fails.
     """
-    program = driver()
+    program = driver_script()
     if program is None:
         raise BugError("Fast Downward is asked for where it is not installed")
     if not scope_of(problem, forbidden).goals:  # it refuses tasks without goals; the empty tree is optimal
@@ -98,7 +98,7 @@ def _task_text(problem: Problem, objective: Objective, forbidden: frozenset[int]
         outputs = [o for o in problem.gives[unit] if o in variables]
         added = [o for o in outputs if o not in items and o not in preconditions]
         if added:  # an operator has to have an effect
-            weight = round(scale * cost(problem, objective, unit))
+            weight = round(scale * float_cost(problem, objective, unit))
             total += weight
             facts = [variables[o] for o in preconditions], [variables[o] for o in added]
             operators.append(_operator_text(f"use {unit}", *facts, weight))

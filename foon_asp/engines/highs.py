@@ -11,7 +11,7 @@ of its achiever, so that no node supports itself.
 import time
 from typing import Any, Final
 
-from foon_asp.engines.engine import EngineAnswer, cost, kitchen_items, scope_of
+from foon_asp.engines.engine import EngineAnswer, float_cost, kitchen_items, scope_of
 from foon_asp.errors import BugError
 from foon_asp.hypergraph.highs_run import libraries, silent_highs
 from foon_asp.problem import Objective, Problem
@@ -125,4 +125,4 @@ class _Program:
         """
         if objective.row.item:
             return [(variable, 1.0) for variable in self._take.values()]
-        return [(used, cost(self._problem, objective, unit)) for unit, used in self._use.items()]
+        return [(used, float_cost(self._problem, objective, unit)) for unit, used in self._use.items()]

@@ -112,7 +112,7 @@ class ExactCosts:
         cost = self._cache.get(action)
         if cost is None:
             cost = self._multiplier * sum(
-                self._figure(o, action) * factor for o, factor in self._factors.items()
+                self._scaled_cost(o, action) * factor for o, factor in self._factors.items()
             )
             cost += self._price(action) if self._price else 0
             self._cache[action] = cost
@@ -187,12 +187,12 @@ class ExactCosts:
             total += figure * factor
         return total * self._multiplier
 
-    def figures(self, action: int) -> list[tuple[Objective, int]]:
+    def scaled_costs(self, action: int) -> list[tuple[Objective, int]]:
         """Return for each objective a pair: the objective, and the scaled cost of an action by it.
 
         For ``success``, the cost is a rounded logarithm.
         """
-        return [(objective, self._figure(objective, action)) for objective in self._objectives]
+        return [(objective, self._scaled_cost(objective, action)) for objective in self._objectives]
 
     def unscale(self, objective: Objective, figure: int) -> int | Fraction:
         """Return ``figure``, a sum of scaled costs by an additive objective, in the unit of the objective."""
@@ -208,7 +208,7 @@ class ExactCosts:
             return Fraction(1)
         return self._problem.rate(action)
 
-    def _figure(self, objective: Objective, action: int) -> int:
+    def _scaled_cost(self, objective: Objective, action: int) -> int:
         """Return the scaled cost of an action by one objective.
 
         If the action takes a kitchen item, it is 1 for an objective that counts items, and 0 for any other.
@@ -237,7 +237,7 @@ class _Vectors:
     def vector(self, action: int) -> list[int]:
         """Return the cost of an action as a vector; its rate has the exponent 1, other rates have 0."""
         vector: list[int] = []
-        for objective, figure in self._costs.figures(action):
+        for objective, figure in self._costs.scaled_costs(action):
             if multiplies(objective):
                 exponents = [0] * len(self._coordinates)
                 if figure:

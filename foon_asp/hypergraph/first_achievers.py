@@ -30,7 +30,7 @@ class FirstAchievers:
             if graph.size**2 <= tuning.RELAXATION.landmark_bits
             else tuning.RELAXATION.landmark_bits // graph.size
         )
-        self._landmarks = _landmarks(graph, tracked_count, expired)
+        self._landmarks = _object_landmarks(graph, tracked_count, expired)
         self._landmarks_before = [self._landmarks_of(needed) for needed in graph.needs]
         self.graph = Hypergraph(
             graph.size,
@@ -86,7 +86,7 @@ def _bit_set(objects: Iterable[int]) -> int:
     return bits
 
 
-def _landmarks(graph: Hypergraph, tracked_count: int, expired: Callable[[], bool]) -> list[int]:
+def _object_landmarks(graph: Hypergraph, tracked_count: int, expired: Callable[[], bool]) -> list[int]:
     """Return the landmarks of each object, as a bit set; only the first ``tracked_count`` objects are in it.
 
     It is a greatest fixpoint (Keyder, Richter and Helmert 2010). The landmarks of an object are the object

@@ -81,11 +81,11 @@ class Subproblem:
                         waiting.append(achiever)
         return closed
 
-    def total(self, units: Iterable[int]) -> int:
-        """Return the cost of the tree of these units, which is that of its :meth:`actions`."""
-        return sum(map(self.costs, self.actions(units)))
+    def tree_cost(self, units: Iterable[int]) -> int:
+        """Return the cost of the tree of these units, which is that of its :meth:`tree_actions`."""
+        return sum(map(self.costs, self.tree_actions(units)))
 
-    def actions(self, units: Iterable[int]) -> set[int]:
+    def tree_actions(self, units: Iterable[int]) -> set[int]:
         """Return the actions of the tree of these units.
 
         They are the units themselves and, if an objective counts kitchen items, the actions that take the

@@ -151,7 +151,7 @@ def landmark_cuts(
     the graph that cuts touch.
     """
     search = _Search(graph, allowed, cost, h_values)
-    queue = deque(_Target(o) for o in sorted(targets, key=search.guide_key, reverse=True))
+    queue = deque(_Target(o) for o in sorted(targets, key=search.h_value_key, reverse=True))
     next_guide = max(tuning.CUTS.guided_cuts, len(queue))  # how many cuts there are when the guide is asked
     effort = 0
     try:
@@ -202,7 +202,7 @@ class _Search:
         """Return the reduced cost of an action."""
         return self.reduced_costs[action] if action in self.reduced_costs else self._cost(action)
 
-    def guide_key(self, o: int) -> tuple[float, int]:
+    def h_value_key(self, o: int) -> tuple[float, int]:
         """Return a sort key of an object: its h-value, then its number."""
         return self.h_values.get(o, math.inf), o
 
@@ -242,7 +242,7 @@ class _Search:
         common = set(self.free.missing_preconditions(members[0])).intersection(
             *(needs[action] for action in members)
         )
-        return sorted(common, key=self.guide_key)
+        return sorted(common, key=self.h_value_key)
 
     def _grow_zone(self, level: _Level, outer_zones: set[int]) -> list[int] | None:
         """Grow the zone of a level through actions of reduced cost 0, and return its new objects.
@@ -265,7 +265,7 @@ class _Search:
                 lacking = self.free.missing_preconditions(action)
                 if not lacking:
                     return None
-                costliest = max(lacking, key=self.guide_key)
+                costliest = max(lacking, key=self.h_value_key)
                 zone.add(costliest)
                 new_objects.append(costliest)
             if i == len(new_objects):

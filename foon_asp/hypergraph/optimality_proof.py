@@ -71,7 +71,7 @@ class CheaperError(Exception):
         self.actions = tuple(actions)
 
 
-class _TimeUpError(Exception):
+class _GivenUpError(Exception):
     """A proof was given up, since time is up or floats led nowhere."""
 
 
@@ -130,14 +130,14 @@ class Prover:
         try:
             goal, nothing = self._cost_of(derivation), frozenset[int]()
             return self._prove(goal, nothing, self._forbidden, self._known_cuts, cases, at_root=True)
-        except _TimeUpError:
+        except _GivenUpError:
             return None
 
     def prove_none(self) -> Proof | None:
         """Return a proof that no derivation exists. Return ``None`` if none is found, or one exists."""
         try:
             return self._prove(None, frozenset(), self._forbidden)
-        except _TimeUpError:
+        except _GivenUpError:
             return None
 
     def relax(self, derivation: Iterable[int]) -> tuple[Packing, Vector] | None:
@@ -152,9 +152,9 @@ class Prover:
         if cutter.hopeless:
             return None
         try:
-            node = _Node(self, cutter, nothing, self._cost_of(derivation))
+            node = _NodeRelaxation(self, cutter, nothing, self._cost_of(derivation))
             exact = node.relax(None)
-        except _TimeUpError:
+        except _GivenUpError:
             return None
         return None if exact is None else (node.packing(exact), self.round_up(exact.value)[0])
 
@@ -175,7 +175,7 @@ class Prover:
         ``at_root``: whether there was no branching yet; reduced-cost fixing does not count.
 
         New limits that a rounded LP solution exceeds are added to the limits of the prover. Raises
-        :class:`CheaperError` as :meth:`prove` does, and :class:`_TimeUpError` if it gives up.
+        :class:`CheaperError` as :meth:`prove` does, and :class:`_GivenUpError` if it gives up.
         """
         targets = [*self._targets, *(o for action in sorted(used) for o in self._graph.needs[action])]
         bars = self._barred_actions(used, forbidden)
@@ -209,7 +209,7 @@ class Prover:
         if cases is not None:
             return self._branch(goal, used, forbidden, known_cuts, cases[0], cases[1:])
         while True:
-            node = _Node(self, cutter, used, goal)
+            node = _NodeRelaxation(self, cutter, used, goal)
             node.add_cuts(cuts)
             exact = node.relax(remaining_goal)
             if exact is not None and node.is_sufficient(exact.value, remaining_goal):
@@ -229,7 +229,7 @@ class Prover:
                 is_derivation = cutter.reached_by(rounded_solution)
                 if is_cheaper and is_derivation and not node.exceeds_limit(rounded_solution):
                     raise CheaperError(self._runnable_actions(rounded_solution))
-                raise _TimeUpError  # floats led nowhere
+                raise _GivenUpError  # floats led nowhere
             action = breaking[0]
         known_cuts = [frozenset(cut.objects) for cut in node.cuts]
         return self._branch(goal, used, forbidden, known_cuts, action, (None, None))
@@ -485,7 +485,7 @@ class Prover:
         return self._order.total(self._costs[a] for a in actions)
 
 
-class _Node:
+class _NodeRelaxation:
     """The relaxation at one node of the branching.
 
     It has a column for each action of the cutter and for the excess over each limit, and a row for each limit
@@ -551,7 +551,7 @@ class _Node:
         """Add cuts until the bound is ``enough``, or no cut is found that the LP solution violates.
 
         ``enough``: the bound that suffices; ``None`` for no such bound. Returns the exact optimum of the
-        rows. Returns ``None`` if exact arithmetic fails. Raises :class:`_TimeUpError` if time is up.
+        rows. Returns ``None`` if exact arithmetic fails. Raises :class:`_GivenUpError` if time is up.
         """
         order = self._prover._order
         wanted = math.inf if enough is None else self._prover.as_float(enough)
@@ -573,9 +573,9 @@ class _Node:
                 return exact
 
     def _check_time(self) -> None:
-        """Raise :class:`_TimeUpError` if time is up."""
+        """Raise :class:`_GivenUpError` if time is up."""
         if self._prover._expired():
-            raise _TimeUpError
+            raise _GivenUpError
 
     def _record_solution(self, x: Sequence[float]) -> None:
         """Record an LP solution; actions of cost 0 get the value 1, unless there are limits or rules."""

@@ -53,12 +53,12 @@ def search_within_limit(
     remaining: Units | None = None
     for _ in range(tuning.PRICES.prices):
         price = -(
-            -(subproblem.total(incumbent) - subproblem.total(exceeding))
+            -(subproblem.tree_cost(incumbent) - subproblem.tree_cost(exceeding))
             // (row.total(exceeding) - row.total(incumbent))
         )
         if price <= 0:
             break
-        max_priced_cost = subproblem.total(incumbent) + price * row.bound
+        max_priced_cost = subproblem.tree_cost(incumbent) + price * row.bound
         reduced = _reduced_at(
             subproblem,
             subproblem.costs.with_price(row.weight, price),
@@ -70,14 +70,14 @@ def search_within_limit(
         )
         if reduced.tree is None:
             break
-        amount, total = row.total(reduced.tree), subproblem.total(reduced.tree)
-        is_better = amount <= row.bound and total < subproblem.total(incumbent)
+        amount, total = row.total(reduced.tree), subproblem.tree_cost(reduced.tree)
+        is_better = amount <= row.bound and total < subproblem.tree_cost(incumbent)
         incumbent = reduced.tree if is_better else incumbent
         if remaining is None or len(reduced.units) < len(remaining):
             remaining = frozenset(reduced.units)
         if len(remaining) > tuning.PRICES.rising_units:
             return _by_rising_prices(subproblem, objectives, incumbent, exceeding, row, expired)
-        if amount > row.bound and total > subproblem.total(exceeding):
+        if amount > row.bound and total > subproblem.tree_cost(exceeding):
             exceeding = reduced.tree
         elif not is_better:
             break
@@ -101,12 +101,12 @@ def _by_rising_prices(
     replaces one of the two. The price with the greatest lower bound determines the units of better trees. A
     reduction at a low price takes hardly longer than one without a price.
     """
-    next_price = Fraction(subproblem.total(exceeding), len(exceeding))
+    next_price = Fraction(subproblem.tree_cost(exceeding), len(exceeding))
     greatest_bound: tuple[Fraction, Fraction] | None = None  # bound, and its price
     subproblem = _restricted_to_cost(subproblem, incumbent, expired)
     for _ in range(tuning.PRICES.rising_prices):
         tie_price = Fraction(
-            subproblem.total(incumbent) - subproblem.total(exceeding),
+            subproblem.tree_cost(incumbent) - subproblem.tree_cost(exceeding),
             row.total(exceeding) - row.total(incumbent),
         )
         if tie_price <= 0:
@@ -117,12 +117,12 @@ def _by_rising_prices(
             break
         bound = Fraction(reduced.bound, price.denominator) - price * row.bound
         greatest_bound = max(greatest_bound or (bound, price), (bound, price))
-        amount, total = row.total(reduced.tree), subproblem.total(reduced.tree)
-        incumbent_at_price = subproblem.total(incumbent) + price * row.total(incumbent)
+        amount, total = row.total(reduced.tree), subproblem.tree_cost(reduced.tree)
+        incumbent_at_price = subproblem.tree_cost(incumbent) + price * row.total(incumbent)
         is_tie = price == tie_price and total + price * amount >= incumbent_at_price
         if amount > row.bound:
             exceeding = reduced.tree
-        elif total < subproblem.total(incumbent):
+        elif total < subproblem.tree_cost(incumbent):
             incumbent = reduced.tree
             subproblem = _restricted_to_cost(subproblem, incumbent, expired)
         else:
@@ -132,7 +132,7 @@ def _by_rising_prices(
     if greatest_bound is None:
         return WithinLimit(incumbent)
     _, price = greatest_bound
-    max_priced_cost = subproblem.total(incumbent) * price.denominator + price.numerator * row.bound
+    max_priced_cost = subproblem.tree_cost(incumbent) * price.denominator + price.numerator * row.bound
     reduced = _reduced_at(
         subproblem,
         subproblem.costs.with_price(row.weight, price),
@@ -143,15 +143,16 @@ def _by_rising_prices(
     )
     if reduced.tree is None:
         return WithinLimit(incumbent)
-    if row.total(reduced.tree) <= row.bound and subproblem.total(reduced.tree) < subproblem.total(incumbent):
+    is_within_limit = row.total(reduced.tree) <= row.bound
+    if is_within_limit and subproblem.tree_cost(reduced.tree) < subproblem.tree_cost(incumbent):
         incumbent = reduced.tree
     return WithinLimit(incumbent, frozenset(reduced.units))
 
 
 def _restricted_to_cost(subproblem: Subproblem, tree: Units, expired: Callable[[], bool]) -> Subproblem:
     """Return the subproblem over the actions of ``tree`` and of trees that cost no more."""
-    remaining = subproblem.actions_within(subproblem.total(tree), expired)
-    return replace(subproblem, remaining={*remaining, *subproblem.actions(tree)})
+    remaining = subproblem.actions_within(subproblem.tree_cost(tree), expired)
+    return replace(subproblem, remaining={*remaining, *subproblem.tree_actions(tree)})
 
 
 def any_within_limit(

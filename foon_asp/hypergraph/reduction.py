@@ -132,7 +132,7 @@ def reduce(
             presolve.extend_or_run()
         else:
             presolve.run_with_solved_goals(solved)
-        return presolve.reduced()
+        return presolve.result()
 
 
 def reduce_under_rules(
@@ -159,7 +159,7 @@ def reduce_under_rules(
             task = _task_of(problem, objectives, reductions, expired, presolve_tuning)
             presolve = _Presolve(task, listener, guard, redundant)
         presolve.run(course or ROUNDS)
-        return presolve.reduced(redundant)
+        return presolve.result(redundant)
 
 
 def h_add_tree(problem: Problem, objectives: Sequence[Objective]) -> frozenset[int] | None:
@@ -212,8 +212,8 @@ def reduce_at_costs(
             return (yield from run_rounds(task, gap, h_values))
 
         presolve = _Presolve(task, None, nullcontext)
-        presolve.run(Course(run_near_goals, fix_before_rounds), subproblem.actions(known_tree))
-        return presolve.reduced(subproblem.redundant)
+        presolve.run(Course(run_near_goals, fix_before_rounds), subproblem.tree_actions(known_tree))
+        return presolve.result(subproblem.redundant)
 
 
 def _task_of(
@@ -512,7 +512,7 @@ class _Presolve:
         """Return the units among actions."""
         return frozenset(a for a in actions if a < self.task.graph.units)
 
-    def reduced(self, redundant: bool = False) -> Reduced:
+    def result(self, redundant: bool = False) -> Reduced:
         """Return the result; ``redundant`` tells whether trees of its subproblem may be redundant."""
         task, gap = self.task, self.gap
         if gap is None:
@@ -547,7 +547,7 @@ def _presolve_by_extension(presolve: _Presolve) -> None:
     goals_task = _with_costs(goals_task, range(len(goals_task.graph.needs)))
     goals_presolve = _Presolve(goals_task, presolve.bounds_listener, presolve.guard)
     goals_presolve.run(ROUNDS)
-    reduced, gap, costs = goals_presolve.reduced(), goals_presolve.gap, goals_task.costs
+    reduced, gap, costs = goals_presolve.result(), goals_presolve.gap, goals_task.costs
     if costs is None or gap is None or reduced.subproblem is None:
         return
     subproblem, h_values = reduced.subproblem, dict[int, int]()
