@@ -3,7 +3,7 @@
 clingo reads constraints, soft files, constants and encodings unchanged. The problem is not reduced, and
 nothing is reused from earlier questions. clingo searches with other options than ours and does not know our
 answer. The answers are compared in exact numbers. The costs that clingo adds up have to be the costs of its
-units, its tree has to execute in our simulation, and our tree has to keep to the rules in clingo.
+units. Its tree has to execute in our simulation, and our tree has to keep to the rules in clingo.
 
 Objectives with fractions, such as ``success``, have rounded weights in the facts, so clingo's optimum may not
 be the true one. Every tree at least as good as ours has a rounded weight up to a bound that is computed here

@@ -24,9 +24,9 @@ def check_plan_with_bare_clingo(claim: ClaimedAnswer, seconds: float) -> tuple[O
     them.
 
     Raises :class:`DisagreementError` if clingo says that our plan breaks rules, costs another amount, or is
-    not optimal; also if clingo's plan does not run. Raises :class:`NotCheckedError` if clingo does not finish
-    within ``seconds``. Also raises it if we have no optimal plan, nodes have amounts, the first objective has
-    fractions, or the number of executions of a unit is unbounded.
+    not optimal; also if clingo's plan does not run. Raises :class:`NotCheckedError` in these cases: we have
+    no optimal plan, nodes have amounts, the first objective has fractions, nothing bounds the number of
+    executions of a unit, or clingo does not finish within ``seconds``.
     """
     outcome, problem = claim.outcome, claim.outcome.problem
     if outcome.units is None or outcome.costs is None or outcome.status is not Status.OPTIMAL:

@@ -49,8 +49,8 @@ def _validate_reply(
 ) -> EngineAnswer:
     """Return the answer in a reply of an engine.
 
-    Raises :class:`UserError` if the reply has not the form of an :class:`EngineAnswer`, its objectives are
-    not the first ones of the question, or its units are not distinct ids.
+    Raises :class:`UserError` unless the reply has the form of an :class:`EngineAnswer`, names the first
+    objectives of the question, and has distinct ids as units.
     """
     try:
         _, optimized, units, finished = msgspec.convert(reply, tuple[Any, list[Any], Any, bool])

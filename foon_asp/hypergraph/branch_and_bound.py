@@ -5,8 +5,8 @@ actions are targets, too, and used actions cost nothing more. Cuts that an LP so
 in :mod:`foon_asp.hypergraph.cost_partition`. A cut is valid at every node at which it contains a target, so
 all nodes share their cuts.
 
-Integers alone close a node. It is closed by a cost partition, rounded so that the weights on each action add
-up to at most its cost, or by a cut with an empty landmark. The floats of HiGHS only guide the search.
+Integers alone close a node: a cost partition or a cut with an empty landmark. The weights of the partition
+are rounded so that they add up to at most the cost of each action. The floats of HiGHS only guide the search.
 """
 
 import math

@@ -129,12 +129,13 @@ class Subproblem:
         return self._units(self.actions_within(limit, expired))
 
     def actions_within(self, limit: int, expired: Callable[[], bool]) -> Collection[int]:
-        """Return a superset of the actions of trees that cost up to ``limit``; empty if there are none.
+        """Return a superset of the actions of trees that cost up to ``limit``.
 
         Let the gap be ``limit`` minus the bound of the cuts. The reduced costs of such a tree add up to at
         most the gap. So an action is excluded if its derivation has a greater reduced cost. Unless trees may
         be redundant, the path from the action to a goal is added to the derivation. Then new cuts are found
         among the remaining actions, as long as many are excluded. If time is up, the superset is larger.
+        It is empty if cuts prove that there is no such tree.
 
         Raises ``KeyboardInterrupt`` if the search for cuts is interrupted.
         """

@@ -386,8 +386,8 @@ def _first_tree_near_goals(task: Task) -> tuple[Gap, HValues] | None:
     Most of a large network is too far from the goals for a good tree, and is never looked at. Returns the gap
     with all actions as candidates, and the h_max of each object that was reached.
 
-    Returns ``None`` if the network is small, few actions lead to the goals, no tree is found, or none of the
-    reductions ``bounds`` and ``dear`` is made.
+    Returns ``None`` if the network is small, few actions lead to the goals, or no tree is found. Also returns
+    ``None`` if the task has neither the reduction ``bounds`` nor ``dear``.
     """
     size, limits = len(task.graph.needs), task.tuning
     if not task.reductions & {Reduction.BOUNDS, Reduction.DEAR} or size <= limits.lazy_actions:

@@ -132,8 +132,8 @@ class SolvedGoals:
 def can_use_solved_goals(task: Task) -> bool:
     """Return whether solved goals can help with a question.
 
-    They can if it has goals, it has no required sets, and its network is not so large that only a part of it
-    is looked at.
+    The question needs goals and must not have required sets. Its network must not be so large that only a
+    part of it is looked at.
     """
     restriction = task.problem.restriction
     return (

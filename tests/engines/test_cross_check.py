@@ -221,7 +221,7 @@ def test_what_no_whole_number_of_an_engine_or_float_holds_is_not_asked_of_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     seldom, asked = Fraction(1, 10**9), ((Objective.ATTEMPTS,), frozenset[int](), 60.0)
-    monkeypatch.setattr(fast_downward, "driver", lambda: Path("never-run"))
+    monkeypatch.setattr(fast_downward, "driver_script", lambda: Path("never-run"))
     with pytest.raises(NotCheckedError, match="more than its whole numbers hold"):
         solve_with_fast_downward(two_ways([str(seldom), "0.5"], ["0.2"]), *asked)
     assert solve_with_highs(two_ways([str(seldom), "0.5"], ["0.2"]), *asked).units == (2,)
