@@ -45,7 +45,7 @@ from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp.assembly import CLINGO_OPTIONS
 from foon_asp.comparison.many import makeable
 from foon_asp.deadline import Deadline
-from foon_asp.engines import EngineAnswer, agree
+from foon_asp.engines import EngineAnswer, agreed_objectives
 from foon_asp.hypergraph import reduce
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, executable_order, levels
 from foon_asp.proof.simulation import Verdict, simulate_for
@@ -285,7 +285,7 @@ def compare(question: Question, trials: Sequence[tuple[str, str, Trial]]) -> Non
         outcome = Outcome(problem, (objective,), Status(reference.said["status"]), units, costs, {}, {})
         for name, trial in answered[1:]:
             found = trial.said["units"]
-            agree(outcome, EngineAnswer(name, (objective,), found, True))
+            agreed_objectives(outcome, EngineAnswer(name, (objective,), found, True))
         return
     for name, trial in answered[1:]:
         found = trial.said["units"]

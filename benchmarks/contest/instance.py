@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 
-from foon_asp.engines.engine import cost
+from foon_asp.engines.engine import float_cost
 from foon_asp.problem import Objective, Problem, reach, relevant_units
 
 _STEPS = 2**53  # whole numbers that floats hold
@@ -121,7 +121,7 @@ def instance_of(problem: Problem, units: Sequence[int], objective: Objective) ->
         if objective is Objective.SUCCESS:
             motion = problem.network.motions[unit]
             if motion not in by_motion:
-                by_motion[motion] = round(scale * cost(problem, objective, unit))
+                by_motion[motion] = round(scale * float_cost(problem, objective, unit))
             costs.append(by_motion[motion])
         else:
             costs.append(whole[unit])

@@ -205,7 +205,7 @@ class Postconditions:
             actions += [size + o for o in needed & self.problem.kitchen]
         totals = dict.fromkeys(self.levels, 0)
         for action in actions:
-            for objective, figure in exact.figures(action):
+            for objective, figure in exact.scaled_costs(action):
                 totals[objective] += figure
         self.require(
             all(

@@ -328,7 +328,7 @@ class _Solver:
         """
         try:
             with self.deadline.watched("cutting the network", late=True):
-                candidates = subproblem.units_within(subproblem.total(tree), lambda: self.deadline.passed)
+                candidates = subproblem.units_within(subproblem.tree_cost(tree), lambda: self.deadline.passed)
         except KeyboardInterrupt:
             return self._outcome_at_limit(tree, ())
         if run is not None and run.units is not None and candidates <= set(self.prepared.units):

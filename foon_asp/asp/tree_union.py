@@ -122,7 +122,7 @@ class _UnionSearch:
                 }
                 limit = costs.combined_cost(Costs({**zero_costs, levels[0]: self._limit()}))
             else:
-                limit = subproblem.total(self._in_some) + costs.doubt
+                limit = subproblem.tree_cost(self._in_some) + costs.doubt
             with deadline.watched("cutting the network"):
                 kept = reduce_at_costs(
                     subproblem,

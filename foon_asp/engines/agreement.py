@@ -10,7 +10,7 @@ from foon_asp.certificate import coverage
 from foon_asp.deadline import Deadline, LimitError
 from foon_asp.engines import bare_clingo, bare_plans, fast_downward, highs
 from foon_asp.engines.engine import (
-    Asked,
+    ClaimedAnswer,
     DisagreementError,
     Engine,
     EngineAnswer,
@@ -28,7 +28,7 @@ _NOT_INSTALLED = "it is not installed (pip install 'foon-asp[cross-check]')"
 ENTRY_POINTS: Final = "foon_asp.engines"
 ENGINES: Final = (
     Engine(highs.HIGHS, lambda: True, highs.solve_with_highs),
-    Engine(fast_downward.FAST_DOWNWARD, fast_downward.installed, fast_downward.solve_with_fast_downward),
+    Engine(fast_downward.FAST_DOWNWARD, fast_downward.is_installed, fast_downward.solve_with_fast_downward),
 )
 """The built-in engines besides bare clingo."""
 
@@ -36,7 +36,7 @@ ENGINES: Final = (
 def find_engines() -> tuple[Engine, ...]:
     """Return all engines except bare clingo, the built-in ones first, then those of installed packages.
 
-    Raises :class:`UserError` where a package offers an engine by a name that another one has.
+    Raises :class:`UserError` if a package offers an engine whose name another engine has, ignoring case.
     """
     reserved = ["foon-asp", bare_clingo.BARE_CLINGO, *(engine.name for engine in ENGINES)]
     offers = offers_by_name(find_offers(ENTRY_POINTS), reserved)
@@ -44,13 +44,18 @@ def find_engines() -> tuple[Engine, ...]:
 
 
 class Check(NamedTuple):
-    """The verdict of an engine: it agrees, or has not checked the answer; disagreement is an exception.
+    """The verdict of an engine: it agrees, has checked nothing, or is refuted.
+
+    An engine that disagrees, and may be right, raises :class:`DisagreementError` and has no verdict.
 
     Attributes:
+        engine: The name of the engine.
         objectives: The objectives by which the engine finds our tree optimal, the most important first.
-        reason: Why the engine has checked nothing; ``None`` where it agrees.
+            There are none if both say that there is no tree, or the engine does not agree.
+        reason: Why the engine has checked nothing; ``None`` if it agrees or is refuted.
         seconds: The time that the engine took.
-        refuted: A wrong claim of an engine of another ``package``; ``None`` otherwise.
+        package: The distribution that offers the engine; ``None`` for a built-in engine.
+        refuted: The claim of an engine of another package that was found wrong; ``None`` if there is none.
     """
 
     engine: str
@@ -62,14 +67,17 @@ class Check(NamedTuple):
 
 
 def cross_check(
-    claim: Asked, seconds: float | None = None, engines: tuple[Engine, ...] = ENGINES
+    claim: ClaimedAnswer, seconds: float | None = None, engines: tuple[Engine, ...] = ENGINES
 ) -> list[Check]:
-    """Have every engine check an answer, each for at most ``seconds``; return a verdict of each.
+    """Have bare clingo and then each of the ``engines`` check an answer; return their verdicts in this order.
 
-    Without ``seconds``, the remaining time of the question is divided among the engines. Without a time
-    limit, each has a minute. Bare clingo comes first, and checks answers under any rules. The other
-    ``engines`` check answers only if all rules are built-in or forbid single units, and no items are used up.
-    Answers that are not proved are not checked. After ctrl-C, no other engine is asked.
+    ``seconds``: the time limit of each engine. With ``None``, the engines share the remaining time of the
+    question equally; if the question has no time limit, each engine has a minute.
+
+    Bare clingo checks answers under any rules. The ``engines`` check answers only if all rules are ready-made
+    ones that do nothing but forbid units. If items are used up, only bare clingo is asked, and the result has
+    one verdict. An answer that is not proved is not checked. After ctrl-C, the verdicts of the remaining
+    engines say ``interrupted``.
 
     Raises :class:`DisagreementError` for the first engine whose answer differs. For an engine of another
     package, this error is raised only if the engine's tree is valid and better than ours. Otherwise that
@@ -106,15 +114,15 @@ def cross_check(
         except KeyboardInterrupt:
             interrupted, reason = True, "interrupted"
         except DisagreementError as error:
-            if package is None or error.ours:
+            if package is None or error.is_our_bug:
                 raise
             refuted = str(error)
         checks.append(Check(name, objectives, reason, time.monotonic() - began, package, refuted))
     return checks
 
 
-def _check_by_clingo(claim: Asked, seconds: float) -> tuple[Objective, ...]:
-    """Return the objectives by which bare clingo agrees; none if there is no tree.
+def _check_by_clingo(claim: ClaimedAnswer, seconds: float) -> tuple[Objective, ...]:
+    """Return the objectives by which bare clingo agrees; an empty tuple if there is no tree.
 
     Raises as :func:`check_with_bare_clingo` or, for plans, :func:`check_plan_with_bare_clingo`.
     """
@@ -124,11 +132,12 @@ def _check_by_clingo(claim: Asked, seconds: float) -> tuple[Objective, ...]:
     return () if claim.outcome.units is None else levels(claim.outcome.objectives)
 
 
-def _check_by_engine(engine: Engine, claim: Asked, seconds: float) -> tuple[Objective, ...]:
-    """Return the objectives by which an engine other than clingo agrees, under rules that forbid units.
+def _check_by_engine(engine: Engine, claim: ClaimedAnswer, seconds: float) -> tuple[Objective, ...]:
+    """Return the objectives by which an engine other than bare clingo agrees with an answer.
 
-    Raises :class:`NotCheckedError` under other rules and where the engine is not installed. Raises
-    :class:`DisagreementError` as :func:`agree` does, and where the engine's tree has a forbidden unit.
+    Raises :class:`NotCheckedError` in three cases: a rule does not merely forbid units, there are soft
+    constraints, or the engine is not installed. Raises :class:`DisagreementError` if the engine's tree has a
+    forbidden unit. Also raises what :func:`agreed_objectives` raises.
     """
     problem, covered = claim.outcome.problem, coverage(claim.settings)
     unsupported = [*covered.rules_beyond_removal(), *(name.partition(" ")[0] for name in covered.not_covered)]
@@ -140,19 +149,20 @@ def _check_by_engine(engine: Engine, claim: Asked, seconds: float) -> tuple[Obje
     answer = engine.solve(problem, levels(claim.outcome.objectives), forbidden, seconds)
     if not forbidden.isdisjoint(answer.units or ()):
         raise DisagreementError(f"the tree of {answer.engine} has a unit that the rules forbid", answer)
-    return agree(claim.outcome, answer)
+    return agreed_objectives(claim.outcome, answer)
 
 
-def agree(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
+def agreed_objectives(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
     """Return the objectives by which an engine finds our tree optimal, the most important first.
 
     Costs are computed anew from the units, as rational numbers. An engine that works in floats may call a
-    tree optimal although its cost differs from ours by less than the engine's precision. Then neither this
-    objective nor any less important one counts as checked. The result is empty if both say that there is no
+    tree optimal although it costs more than ours by less than the engine's precision. Then neither this
+    objective nor any less important one is in the result. The result is empty if both say that there is no
     tree.
 
-    Raises :class:`DisagreementError` where both answers cannot be right. Raises :class:`NotCheckedError`
-    where the engine's answer implies nothing about ours.
+    Raises :class:`DisagreementError` if the two answers contradict each other, or the engine's tree does not
+    execute. Raises :class:`NotCheckedError` if the engine found no answer in time, or its precision is too
+    low for the first objective.
     """
     if not answer.finished:
         raise NotCheckedError("it found no answer in time")
@@ -163,14 +173,14 @@ def agree(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
     costs = outcome.problem.costs(check_tree(outcome.problem, answer))
     if outcome.costs is None:
         raise DisagreementError(
-            f"we say no tree exists, {answer.engine} says a tree exists", answer, ours=True
+            f"we say no tree exists, {answer.engine} says a tree exists", answer, is_our_bug=True
         )
     agreed: list[Objective] = []
     for objective in answer.objectives:
         ours, theirs = outcome.costs.measure(objective), costs.measure(objective)
         if ours != theirs:
             difference = difference_error(str(objective), ours, theirs, answer, multiplies(objective))
-            if difference.ours or not _is_within_float_error(objective, outcome.costs, costs):
+            if difference.is_our_bug or not _is_within_float_error(objective, outcome.costs, costs):
                 raise difference
             break  # it optimized the less important objectives over other trees
         agreed.append(objective)
@@ -180,11 +190,12 @@ def agree(outcome: Outcome, answer: EngineAnswer) -> tuple[Objective, ...]:
 
 
 def _is_within_float_error(objective: Objective, ours: Costs, theirs: Costs) -> bool:
-    """Return whether an engine that computes in floats may not distinguish the costs of two trees.
+    """Return whether rounding in floats can explain that two trees cost different amounts by an objective.
 
-    Costs count as equal if their relative difference is at most two millionths for each unit, since an engine
-    may round logarithms to millionths. A greater tolerance would hide wrong answers. A smaller one would
-    report rounding as a bug. Costs in whole numbers are never close.
+    The tolerance is two millionths for each unit of both trees, since an engine may round logarithms to
+    millionths. It is relative to the cost; for rates, it applies to the logarithm of their ratio. A greater
+    tolerance would hide wrong answers, and a smaller one would report rounding as a bug. Return ``False`` for
+    an objective in whole numbers, and if a rate is 0.
     """
     our_cost, their_cost = Fraction(ours.measure(objective)), Fraction(theirs.measure(objective))
     tolerance = 2e-6 * (1 + ours.units + theirs.units)

@@ -3,7 +3,7 @@
 clingo reads constraints, soft files, constants and encodings unchanged. The problem is not reduced, and
 nothing is reused from earlier questions. clingo searches with other options than ours and does not know our
 answer. The answers are compared in exact numbers. The costs that clingo adds up have to be the costs of its
-units, its tree has to execute in our simulation, and our tree has to keep to the rules in clingo.
+units. Its tree has to execute in our simulation, and our tree has to keep to the rules in clingo.
 
 Objectives with fractions, such as ``success``, have rounded weights in the facts, so clingo's optimum may not
 be the true one. Every tree at least as good as ours has a rounded weight up to a bound that is computed here
@@ -28,7 +28,7 @@ from foon_asp.asp.bare_program import BareProgram, bare_program
 from foon_asp.encoding.fact_writer import write_exactly_alike, write_given, write_most_alike, write_same_rates
 from foon_asp.encoding.own_encodings import question_encoding
 from foon_asp.engines.engine import (
-    Asked,
+    ClaimedAnswer,
     DisagreementError,
     EngineAnswer,
     NotCheckedError,
@@ -48,11 +48,12 @@ _STRING_OR_WEIGHT = re.compile(r'"(?:\\.|[^"\\])*"|(?<![\w\'])(?:risk\(|cost\((\
 _USED = re.compile(r"(?:use|times)\((\d+)(?:,(\d+))?\)")
 
 
-def check_with_bare_clingo(claim: Asked, seconds: float) -> None:
-    """Compare an answer with clingo's own; return if they agree.
+def check_with_bare_clingo(claim: ClaimedAnswer, seconds: float) -> None:
+    """Have bare clingo answer the question of a claim, and raise an exception unless it agrees.
 
-    Raises :class:`DisagreementError` where both cannot be right. Raises :class:`NotCheckedError` where clingo
-    did not finish within ``seconds``, or its answer implies nothing about ours.
+    Raises :class:`DisagreementError` if the two answers contradict each other. Raises
+    :class:`NotCheckedError` if clingo does not finish within ``seconds``, or its answer implies nothing about
+    ours.
     """
     outcome = claim.outcome
     program = bare_program(outcome.problem, outcome.objectives, claim.settings, claim.soft)
@@ -73,23 +74,23 @@ class ClingoAnswer(NamedTuple):
 class Clingo:
     """Runs of clingo on one program.
 
-    ``seconds`` limits the time of all runs together. ``memory`` limits the memory of each run, in bytes.
-    Without it, the limit is 4 GB; a higher limit is lowered to 4 GB.
+    ``seconds``: the time limit of all runs together, which begins at construction.
+    ``memory``: the memory limit of each run, in bytes. If it is ``None`` or above 4 GB, the limit is 4 GB.
     """
 
     def __init__(self, program: BareProgram, seconds: float, memory: int | None) -> None:
-        """Start the time of all runs."""
         self._program, self._seconds = program, seconds
         self._end = time.monotonic() + seconds
         max_memory = 4 * 2**30
         self._memory = max_memory if memory is None else min(memory, max_memory)
 
     def best_answer(self, extra_facts: str = "", with_second_opinion: bool = True) -> ClingoAnswer | None:
-        """Return an optimal answer, or ``None`` where no answer exists.
+        """Return an optimal answer of the program. Return ``None`` if it has no answer.
 
-        ``extra_facts`` are facts for the second-opinion encoding, which is then loaded. If
-        ``with_second_opinion`` is false, they are facts for the program itself. Raises
-        :class:`NotCheckedError` where clingo does not finish.
+        ``extra_facts``: facts that are added to the program. If there are any, ``second_opinion.lp``, which
+        reads them, is added as well; ``with_second_opinion=False`` leaves this encoding out.
+
+        Raises :class:`NotCheckedError` if clingo does not finish.
         """
         options = ("--opt-mode=opt", "--models=0", "--quiet=1")
         result, _, answers = self._run(extra_facts, options, bool(extra_facts) and with_second_opinion)
@@ -100,10 +101,14 @@ class Clingo:
         return answers[-1]
 
     def answers_by_kind(self, extra_facts: str, bounds: Sequence[int]) -> list[ClingoAnswer]:
-        """Return one answer of each kind with costs up to ``bounds``.
+        """Return one answer of each kind, among the answers with costs up to ``bounds``.
 
-        Answers are of one kind if they have the same number of units of each cost by the rounded objective.
-        Raises :class:`NotCheckedError` for more than ``MAX_KINDS`` kinds, and where clingo does not finish.
+        ``bounds``: the greatest costs, the most important first.
+        ``extra_facts``: the facts ``_same_rate`` and ``_most_alike`` of ``second_opinion.lp``, which say
+        which units have the same cost by the rounded objective.
+
+        Two answers are of one kind if they have equally many units of each such cost. Raises
+        :class:`NotCheckedError` if there are more than ``MAX_KINDS`` kinds, or clingo does not finish.
         """
         mode = ",".join(["--opt-mode=enum", *map(str, bounds)])
         options = (mode, f"--models={MAX_KINDS + 1}", "--project=project")
@@ -119,9 +124,11 @@ class Clingo:
     def _run(
         self, extra_facts: str, options: Iterable[str], with_second_opinion: bool
     ) -> tuple[str, bool, list[ClingoAnswer]]:
-        """Return clingo's result, whether the search was exhausted, and the answers.
+        """Run clingo; return its result, whether the search was exhausted, and the answers it printed.
 
-        Raises :class:`NotCheckedError` at the end of the time or the memory, and where clingo fails.
+        The result is a text of clingo such as ``OPTIMUM FOUND``. ``options`` are words for clingo's command
+        line. ``with_second_opinion`` adds ``second_opinion.lp`` to the program. Raises
+        :class:`NotCheckedError` if time or memory runs out, or clingo fails.
         """
         program, timeout_message = self._program, f"clingo did not finish within {self._seconds:g} s"
         second_opinion = (question_encoding("second_opinion.lp"),) if with_second_opinion else ()
@@ -163,9 +170,9 @@ class Clingo:
 
 
 def _read_witness(witness: dict[str, Any]) -> ClingoAnswer:
-    """Return the answer in a witness of clingo's JSON.
+    """Return the answer in a witness, which is one answer set in clingo's JSON.
 
-    Other atoms that a user's files show are ignored.
+    Atoms other than ``use/1`` and ``times/2``, which files of users may show, are ignored.
     """
     times: dict[int, int] = {}
     for used in filter(None, map(_USED.fullmatch, witness["Value"])):
@@ -177,12 +184,11 @@ def _read_witness(witness: dict[str, Any]) -> ClingoAnswer:
 class _Comparison:
     """The comparison of our answer with clingo's.
 
-    ``weights`` are the rounded costs in the facts: for each objective with fractions, by public number of the
-    unit.
+    ``weights``: for each objective with fractions, the rounded cost of each unit in the facts, by the public
+    number of the unit. They are read from the facts at construction.
     """
 
-    def __init__(self, claim: Asked, program: BareProgram, clingo: Clingo) -> None:
-        """Read the weights of units from the facts of the program."""
+    def __init__(self, claim: ClaimedAnswer, program: BareProgram, clingo: Clingo) -> None:
         self.claim, self.clingo = claim, clingo
         self.outcome, self.problem = claim.outcome, claim.outcome.problem
         self.levels = levels(self.outcome.objectives)
@@ -195,7 +201,14 @@ class _Comparison:
                 by_term[name].setdefault(int(number), int(weight))
 
     def check(self) -> None:
-        """Compare the answers; raise :class:`DisagreementError` or :class:`NotCheckedError`."""
+        """Compare the answers, and raise an exception unless they agree.
+
+        If neither side has a tree, they agree. If an encoding is replaced such that clingo adds up other
+        costs, only these sums are compared. If one objective is rounded in the facts, kinds of trees are
+        compared exactly. If several are rounded, nothing is checked.
+
+        Raises :class:`DisagreementError` or :class:`NotCheckedError`.
+        """
         theirs = self.clingo.best_answer()
         costs = self.outcome.costs
         if theirs is None or costs is None:
@@ -217,10 +230,10 @@ class _Comparison:
             self._require_same_costs(theirs, self.levels)
 
     def _check_our_tree(self, theirs: ClingoAnswer) -> ClingoAnswer:
-        """Return our tree as an answer of clingo, with the costs that clingo adds up.
+        """Have clingo add up the costs of our tree; return our tree as an answer of clingo with these costs.
 
-        Raises :class:`DisagreementError` where our tree breaks clingo's rules or its costs are wrong. The
-        error has clingo's own answer ``theirs`` or, for a wrong penalty, this answer.
+        Raises :class:`DisagreementError` if our tree does not execute, its claimed costs or penalty are
+        wrong, or it breaks rules in clingo. ``theirs``, clingo's own answer, is only for this error.
         """
         units = check_tree(self.problem, EngineAnswer("foon-asp", self.levels, self.outcome.units, True))
         if self.problem.costs(units) != self.outcome.costs:
@@ -236,10 +249,11 @@ class _Comparison:
         return ours
 
     def _has_standard_costs(self, answer: ClingoAnswer) -> bool:
-        """Return whether clingo adds up the costs of the units; a replaced encoding may add other numbers.
+        """Return whether the costs in an answer of clingo are the sums of the costs of its units.
 
-        Raises :class:`DisagreementError` where clingo adds other numbers without a replaced encoding. The
-        penalty of soft constraints is not compared.
+        A replaced encoding may add up other numbers. If no encoding is replaced, other numbers raise
+        :class:`DisagreementError`. The penalty of soft constraints is not compared. Raises as
+        :meth:`_executable_order` if the answer does not execute.
         """
         costs = self.problem.costs(self._executable_order(answer))
         figures = [
@@ -254,10 +268,10 @@ class _Comparison:
         return added_up == figures
 
     def _require_same_sums(self, ours: ClingoAnswer, theirs: ClingoAnswer) -> None:
-        """Raise :class:`DisagreementError` where the sums of clingo differ for two trees.
+        """Raise :class:`DisagreementError` if clingo adds up different costs for our tree and for its own.
 
-        The encodings are replaced, so that the sums may not be our costs. Raises :class:`NotCheckedError` if
-        an objective has fractions.
+        This comparison is for replaced encodings, whose sums may differ from our costs. Raises
+        :class:`NotCheckedError` if an objective has fractions.
         """
         if self.weights:
             names = " and ".join(self.weights)
@@ -270,7 +284,10 @@ class _Comparison:
             )
 
     def _require_same_costs(self, answer: ClingoAnswer, objectives: Iterable[Objective]) -> None:
-        """Raise :class:`DisagreementError` where the penalty, or an objective, differs from our tree."""
+        """Raise :class:`DisagreementError` if an answer and our tree differ in penalty or in an objective.
+
+        The costs by the given ``objectives`` are computed anew from the units of the answer.
+        """
         compared = self._engine_answer(answer)
         if self.claim.soft and self.claim.penalty != answer.costs[0]:
             raise difference_error("penalty", self.claim.penalty or 0, answer.costs[0], compared)
@@ -282,9 +299,9 @@ class _Comparison:
                 raise difference_error(str(objective), ours, theirs, compared, multiplies(objective))
 
     def _has_exact_weights(self, objective: Objective) -> bool:
-        """Return whether the weights are the costs of units times one factor, so that none is rounded.
+        """Return whether the weights for an objective are exact: the costs of units times one factor.
 
-        Where rates multiply, they are exact only if all rates are 1.
+        Where rates multiply, weights are exact only if all rates are 1.
         """
         weights = self.weights[objective]
         pairs = set(zip(self._unit_costs(weights, objective), weights.values(), strict=True))
@@ -294,17 +311,23 @@ class _Comparison:
         return len(ratios) <= 1 and all(figure or not weight for figure, weight in pairs)
 
     def _unit_costs(self, numbers: Iterable[int], objective: Objective) -> list[Fraction]:
-        """Return the cost of each unit by an objective, or its rate; units are given by public number."""
+        """Return for each public number the cost of the unit by an objective; for ``success``, its rate."""
         return [Fraction(self.problem.figure(objective, unit)) for unit in map(self._unit_id, numbers)]
 
     def _compare_exactly(
         self, theirs: ClingoAnswer, ours: ClingoAnswer, costs: Costs, rounded: Objective
     ) -> None:
-        """Compare lexicographically where one objective is ``rounded`` in the facts.
+        """Check that our tree is optimal although clingo knows only rounded weights of one objective.
 
-        Trees with the same number of units of each cost are of one kind. clingo enumerates the kinds up to a
-        bound on the weight of the rounded objective, and their costs are compared as fractions. Among the
-        kinds that are as good as our tree, clingo minimizes the less important objectives.
+        ``theirs``, ``ours``: clingo's tree and our tree, as answers of clingo.
+        ``costs``: the exact costs of our tree.
+        ``rounded``: the objective whose weights are rounded in the facts.
+
+        Trees with equally many units of each cost by this objective are of one kind. clingo enumerates the
+        kinds up to a bound on their weight. Their costs are compared with ours as fractions. Among the kinds
+        that are as good as our tree, clingo minimizes the less important objectives.
+
+        Raises :class:`DisagreementError` or :class:`NotCheckedError` unless the answers agree.
         """
         index = self.levels.index(rounded)
         more_important, from_rounded = self.levels[:index], self.levels[index:]
@@ -352,9 +375,9 @@ class _Comparison:
         )
 
     def _executable_order(self, answer: ClingoAnswer) -> tuple[int, ...]:
-        """Return the units of an answer in an executable order, by id.
+        """Return the ids of the units of an answer in an executable order.
 
-        Raises :class:`DisagreementError` where none exists; under replaced encodings,
+        If there is no such order, raises :class:`DisagreementError` or, with replaced encodings,
         :class:`NotCheckedError`.
         """
         try:
@@ -371,24 +394,27 @@ class _Comparison:
         return self.problem.costs(map(self._unit_id, answer.times)).key(objectives)
 
     def _unit_id(self, number: int) -> int:
-        """Return the id of the unit with a public number; raises if there is no such unit."""
+        """Return the id of the unit with a public number.
+
+        Raises :class:`DisagreementError` if there is no such unit, since clingo then uses an unknown unit.
+        """
         unit = self.problem.network.unit_of_number(number)
         if unit is None:
             raise self._disagreement(f"clingo uses a unit number {number}, which there is not", None)
         return unit
 
     def _engine_answer(self, answer: ClingoAnswer | None) -> EngineAnswer:
-        """Return an answer of clingo as the answer of an engine; ``None`` stands for no tree."""
+        """Return an answer of clingo as that of an engine; it has no tree if ``answer`` is ``None``."""
         units = None if answer is None else tuple(map(self._unit_id, sorted(answer.times)))
         return EngineAnswer(BARE_CLINGO, self.levels, units, True)
 
     def _disagreement(self, message: str, answer: ClingoAnswer | None) -> DisagreementError:
-        """Return a disagreement with an answer of clingo; ``None`` stands for no tree."""
+        """Return the error with this message and clingo's answer, which is ``None`` if it has no tree."""
         return DisagreementError(message, self._engine_answer(answer))
 
 
 def _count_each(classes: Iterable[Fraction], figures: Iterable[Fraction]) -> list[int]:
-    """Return for each class how many of the figures are equal to it."""
+    """Return for each of the ``classes``, which are distinct costs, how many of the ``figures`` equal it."""
     counted = Counter(figures)
     return [counted[figure] for figure in classes]
 
@@ -396,17 +422,18 @@ def _count_each(classes: Iterable[Fraction], figures: Iterable[Fraction]) -> lis
 def tree_weight_bound(
     weights: Collection[tuple[Fraction, int]], our_costs: Collection[Fraction], multiplies: bool = True
 ) -> int:
-    """Return an upper bound on the sum of weights of a tree that is at least as good as ours.
+    """Return an upper bound on the sum of the weights of any tree that is at least as good as ours.
 
-    ``weights`` are the distinct pairs of a unit's cost and its weight. ``our_costs`` are the costs of our
-    units. Where the objective ``multiplies``, costs are rates. The weights may have been rounded in any way.
+    ``weights``: the distinct pairs of a unit's cost and its weight, which may be rounded in any way.
+    ``our_costs``: the costs of our units.
+    ``multiplies``: whether the costs are rates, which multiply.
 
     Let L(c) = c for a cost, L(p) = -ln p for a rate, and S the maximum of w / L(c) over all units with a
     cost. Then w <= S * L(c) for every unit. So the weights of any tree T add up to at most S * L(T), where
     L(T) is the sum over its units. A tree as good as ours has an L(T) of at most that of our tree.
 
-    Raises :class:`NotCheckedError` for a unit without a cost that has a weight, since no such S exists then.
-    Raises it for rates of 0, too, which have no logarithm.
+    Raises :class:`NotCheckedError` for a unit that has a weight but no cost, since no such S exists then.
+    Also raises it for a rate of 0, which has no logarithm.
     """
     all_costs = {*our_costs, *(cost for cost, _ in weights)}
     bounds = {cost: _minus_log_interval(cost) if multiplies else (cost, cost) for cost in all_costs}
@@ -417,7 +444,7 @@ def tree_weight_bound(
 
 
 def _minus_log_interval(rate: Fraction) -> tuple[Fraction, Fraction]:
-    """Return an interval that contains -ln of a rate; both ends are above 0 where the rate is below 1.
+    """Return the ends of an interval that contains -ln of a rate; both are above 0 if the rate is below 1.
 
     Raises :class:`NotCheckedError` for a rate of 0.
     """
@@ -429,7 +456,7 @@ def _minus_log_interval(rate: Fraction) -> tuple[Fraction, Fraction]:
     context = Context(prec=100)  # digits, of which at most 50 cancel in the difference of two logarithms
 
     def logarithm_interval(number: int) -> tuple[Fraction, Fraction]:
-        """Return an interval that contains the logarithm of an integer."""
+        """Return the ends of an interval that contains the natural logarithm of an integer."""
         logarithm = context.ln(Decimal(number))  # correctly rounded: the exact one is between its neighbours
         if not logarithm:
             return Fraction(0), Fraction(0)
@@ -441,9 +468,9 @@ def _minus_log_interval(rate: Fraction) -> tuple[Fraction, Fraction]:
 
 
 def _limit_process(process: int, seconds: float, memory: int) -> None:
-    """Limit the memory (bytes) and the processor time of a process, if the system can.
+    """Limit the memory (in bytes) and the processor time of the process with this id.
 
-    This stops a grounding that does not end.
+    Such limits stop a grounding that does not end. On systems without such limits, nothing happens.
     """
     with contextlib.suppress(ImportError, AttributeError, OSError, ValueError):
         import resource  # noqa: PLC0415 (not everywhere)

@@ -11,18 +11,22 @@ from foon_asp.asp import Status
 from foon_asp.asp.bare_program import bare_plan_program
 from foon_asp.encoding.fact_writer import write_times
 from foon_asp.engines.bare_clingo import BARE_CLINGO, Clingo
-from foon_asp.engines.engine import Asked, DisagreementError, EngineAnswer, NotCheckedError
+from foon_asp.engines.engine import ClaimedAnswer, DisagreementError, EngineAnswer, NotCheckedError
 from foon_asp.plans.counting import order_that_runs
 from foon_asp.problem import Objective, levels
 from foon_asp.proof.replay import replay_for
 
 
-def check_plan_with_bare_clingo(claim: Asked, seconds: float) -> tuple[Objective, ...]:
-    """Compare a plan with clingo's own; return the objectives by which they agree.
+def check_plan_with_bare_clingo(claim: ClaimedAnswer, seconds: float) -> tuple[Objective, ...]:
+    """Have bare clingo look for an optimal plan; return the objectives by which it agrees.
 
-    These are the first objectives, as far as they are whole numbers. Raises :class:`DisagreementError` where
-    both cannot be right. Raises :class:`NotCheckedError` where clingo's answer implies nothing about ours, or
-    did not come within ``seconds``.
+    These are the objectives before the first one with fractions. Both plans are executed and compared by
+    them.
+
+    Raises :class:`DisagreementError` if clingo says that our plan breaks rules, costs another amount, or is
+    not optimal; also if clingo's plan does not run. Raises :class:`NotCheckedError` in these cases: we have
+    no optimal plan, nodes have amounts, the first objective has fractions, nothing bounds the number of
+    executions of a unit, or clingo does not finish within ``seconds``.
     """
     outcome, problem = claim.outcome, claim.outcome.problem
     if outcome.units is None or outcome.costs is None or outcome.status is not Status.OPTIMAL:

@@ -11,11 +11,12 @@ from foon_asp.proof.simulation import Verdict, simulate_for
 from foon_asp.rules.passed_constraint import Constraint
 
 
-class Asked(NamedTuple):
+class ClaimedAnswer(NamedTuple):
     """An answer to be checked.
 
-    ``outcome``, ``settings``: the answer, and the settings under which it was found.
-    ``soft``: the weights of soft constraints.
+    ``outcome``: the answer.
+    ``settings``: the settings under which the answer was found.
+    ``soft``: the weight of each soft constraint.
     ``penalty``: the claimed sum of the weights of the soft constraints that the tree of the outcome violates;
     ``None`` without soft constraints.
     """
@@ -29,10 +30,12 @@ class Asked(NamedTuple):
 class EngineAnswer(NamedTuple):
     """The answer of an engine.
 
-    ``objectives``: the first objectives of the question, at least one, by which the engine optimized.
-    ``units``: a tree that the engine claims to be optimal by them, as unit ids; ``None`` where it claims that
-    no tree exists.
-    ``finished``: false where the engine stopped before an answer.
+    ``engine``: the name of the engine.
+    ``objectives``: the objectives by which the engine optimized. They are the first ones of the question, at
+    least one.
+    ``units``: the unit ids of a tree that the engine claims to be optimal by these objectives; ``None`` if it
+    claims that no tree exists, or has not finished.
+    ``finished``: false if the engine stopped before it had an answer.
     """
 
     engine: str
@@ -54,8 +57,9 @@ class Solve(Protocol):
     ) -> EngineAnswer:
         """Search for a lexicographically optimal tree without the forbidden units.
 
-        An engine may optimize only the first objectives; its answer then names only these. The engine stops
-        after ``seconds``.
+        ``objectives`` are in order of importance, and ``forbidden`` are unit ids. An engine may optimize by
+        the first objectives only; its answer then names only these. After ``seconds``, the engine stops and
+        returns an answer that is not ``finished``.
 
         Raises :class:`NotCheckedError` for a problem or objective that the engine does not support.
         """
@@ -64,8 +68,9 @@ class Solve(Protocol):
 class Engine(NamedTuple):
     """A second engine, which supports no constraints except forbidden units.
 
-    ``installed`` returns whether it can run, and ``solve`` runs it. ``package`` is the distribution that
-    offers it; ``None`` for a built-in engine.
+    ``installed``: returns whether the engine can run.
+    ``solve``: runs the engine.
+    ``package``: the distribution that offers the engine; ``None`` for a built-in engine.
     """
 
     name: str
@@ -77,13 +82,14 @@ class Engine(NamedTuple):
 class DisagreementError(Exception):
     """Two engines give answers that cannot both be right: one of them has a bug.
 
-    ``answer`` is the other engine's. ``ours`` says that the bug is in foon-asp: the tree of the other engine
-    is valid, and better than the one that we call optimal.
+    ``answer``: the answer of the other engine.
+    ``is_our_bug``: whether the bug is known to be in foon-asp: the tree of the other engine is valid, and
+    better than the one that we call optimal.
     """
 
-    def __init__(self, message: str, answer: EngineAnswer, ours: bool = False) -> None:
+    def __init__(self, message: str, answer: EngineAnswer, is_our_bug: bool = False) -> None:
         super().__init__(message)
-        self.answer, self.ours = answer, ours
+        self.answer, self.is_our_bug = answer, is_our_bug
 
 
 def difference_error(
@@ -95,22 +101,25 @@ def difference_error(
 ) -> DisagreementError:
     """Return the error that two trees, both claimed to be optimal, have different costs by ``measure``.
 
-    The error says that ours is wrong if their cost is better: smaller or, if ``more_is_better``, greater.
+    ``ours`` and ``theirs`` are the costs of our tree and of the engine's tree. If the engine's tree is
+    better, the error says that the bug is ours. The better cost is the smaller one or, with
+    ``more_is_better``, the greater one.
     """
     better = theirs > ours if more_is_better else theirs < ours
     verdict = "ours is not the best" if better else f"{answer.engine} calls a worse one the best"
     message = f"by {measure} our tree has {ours}, the one of {answer.engine} {theirs}; {verdict}"
-    return DisagreementError(message, answer, ours=better)
+    return DisagreementError(message, answer, is_our_bug=better)
 
 
 class NotCheckedError(Exception):
-    """An engine neither confirms nor refutes an answer; the message says why."""
+    """An engine neither confirms an answer nor contradicts it; the message says why."""
 
 
 def check_tree(problem: Problem, answer: EngineAnswer) -> tuple[int, ...]:
-    """Return the units of an engine's tree in an executable order.
+    """Return the unit ids of an engine's tree in an executable order; an empty tuple if it has no tree.
 
-    Raises :class:`DisagreementError` where no order makes the tree executable.
+    The order is checked by simulation. Raises :class:`DisagreementError` if the tree does not execute in any
+    order.
     """
     order = executable_order(problem, answer.units or ())
     if order is None or simulate_for(problem, problem.tree(order)).verdict is not Verdict.AS_LISTED:
@@ -121,9 +130,9 @@ def check_tree(problem: Problem, answer: EngineAnswer) -> tuple[int, ...]:
 class Scope(NamedTuple):
     """The relevant part of a problem.
 
-    ``units``: the units that the goals can need, by id.
-    ``objects``: the ids of the object nodes that have to be made.
-    ``goals``: the ids of the goals among them.
+    ``units``: the ids of the units that the goals can need, ascending.
+    ``objects``: the ids of the object nodes that the goals can need and that the kitchen lacks, ascending.
+    ``goals``: the ids of the goals among these object nodes.
     """
 
     units: list[int]
@@ -132,19 +141,19 @@ class Scope(NamedTuple):
 
 
 def scope_of(problem: Problem, forbidden: frozenset[int]) -> Scope:
-    """Return the relevant part of a problem, by backward reachability from the goals.
+    """Return the part of a problem that is found backwards from the goals.
 
-    It passes through all units that are not forbidden. Kitchen items do not have to be made.
+    The search goes through units that are not forbidden, and stops at kitchen items.
     """
     allowed = frozenset(range(len(problem.network))) - forbidden
     units, objects = search_backward(problem.goals, problem.makers, problem.needs, problem.kitchen, allowed)
     return Scope(sorted(units), sorted(objects), [goal for goal in problem.goals if goal in objects])
 
 
-def cost(problem: Problem, objective: Objective, unit: int) -> float:
-    """Return the cost of a unit by an objective other than ``kitchen``; of ``success``, -ln of its rate.
+def float_cost(problem: Problem, objective: Objective, unit: int) -> float:
+    """Return the cost of a unit by an objective other than ``kitchen``; for ``success``, -ln of its rate.
 
-    Raises :class:`NotCheckedError` for a cost above 10^9, beside which floats lose small costs.
+    Raises :class:`NotCheckedError` if the cost is above 10^9, since floats lose small costs beside it.
     """
     if multiplies(objective):
         rate = problem.rate(unit)
@@ -156,5 +165,5 @@ def cost(problem: Problem, objective: Objective, unit: int) -> float:
 
 
 def kitchen_items(problem: Problem, units: Iterable[int]) -> list[int]:
-    """Return the kitchen items that are preconditions of units, by id, ascending."""
+    """Return the ids of the kitchen items that are preconditions of some units, ascending."""
     return sorted({o for unit in units for o in problem.needs[unit] if o in problem.kitchen})

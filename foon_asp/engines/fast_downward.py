@@ -13,7 +13,7 @@ import tempfile
 from pathlib import Path
 from typing import Final
 
-from foon_asp.engines.engine import EngineAnswer, NotCheckedError, cost, kitchen_items, scope_of
+from foon_asp.engines.engine import EngineAnswer, NotCheckedError, float_cost, kitchen_items, scope_of
 from foon_asp.errors import BugError
 from foon_asp.problem import Objective, Problem
 from foon_asp.problem.number import INT32_MAX
@@ -23,8 +23,11 @@ _MEMORY_LIMIT = "4G"
 _UNSOLVABLE = ("Completely explored state space", "Initial state is a dead end", "unsolvable")
 
 
-def driver() -> Path | None:
-    """Return the path of the program that starts Fast Downward; ``None`` where it is not installed."""
+def driver_script() -> Path | None:
+    """Return the path of Fast Downward's script in the installed package ``up_fast_downward``.
+
+    Return ``None`` if there is no such package or no script in it; no other place is searched.
+    """
     spec = importlib.util.find_spec("up_fast_downward")
     if spec is None or spec.origin is None:
         return None
@@ -32,9 +35,9 @@ def driver() -> Path | None:
     return file if file.is_file() else None
 
 
-def installed() -> bool:
-    """Return whether Fast Downward is installed."""
-    return driver() is not None
+def is_installed() -> bool:
+    """Return whether Fast Downward is installed, as :func:`driver_script` finds it."""
+    return driver_script() is not None
 
 
 def solve_with_fast_downward(
@@ -42,10 +45,14 @@ def solve_with_fast_downward(
 ) -> EngineAnswer:
     """Search for an optimal tree by the first objective alone, as :class:`Solve` does.
 
-    Fractions and logarithms of rates are rounded to millionths. Raises :class:`BugError` where Fast Downward
-    is not installed or fails.
+    Fractions and logarithms of rates are rounded to millionths. The time limit is ``seconds``, rounded to
+    whole seconds, at least 1. If time or memory (4 GB) runs out, the answer is not ``finished``. If all goals
+    are in the kitchen, the empty tree is returned at once.
+
+    Raises :class:`NotCheckedError` if costs are too large. Raises :class:`BugError` if Fast Downward is not
+    installed or fails.
     """
-    program = driver()
+    program = driver_script()
     if program is None:
         raise BugError("Fast Downward is asked for where it is not installed")
     if not scope_of(problem, forbidden).goals:  # it refuses tasks without goals; the empty tree is optimal
@@ -74,8 +81,11 @@ def solve_with_fast_downward(
 def _task_text(problem: Problem, objective: Objective, forbidden: frozenset[int]) -> str:
     """Return the planning task as text, in the format of Fast Downward's translator.
 
-    Each node that has to be made, or taken at a cost, is a binary variable. It is 0 once the node is
-    available. Raises :class:`NotCheckedError` where costs are too large for Fast Downward.
+    Each node that has to be made is a binary variable, which is 0 once the node is available. If the
+    objective counts kitchen items, each item that units need is a variable, and an operator of cost 1 takes
+    it. Every other operator is a unit; units that make none of these nodes are left out.
+
+    Raises :class:`NotCheckedError` if the costs add up to more than 32 bits hold.
     """
     scope = scope_of(problem, forbidden)
     items = kitchen_items(problem, scope.units) if objective.row.item else []
@@ -88,7 +98,7 @@ def _task_text(problem: Problem, objective: Objective, forbidden: frozenset[int]
         outputs = [o for o in problem.gives[unit] if o in variables]
         added = [o for o in outputs if o not in items and o not in preconditions]
         if added:  # an operator has to have an effect
-            weight = round(scale * cost(problem, objective, unit))
+            weight = round(scale * float_cost(problem, objective, unit))
             total += weight
             facts = [variables[o] for o in preconditions], [variables[o] for o in added]
             operators.append(_operator_text(f"use {unit}", *facts, weight))
@@ -134,7 +144,10 @@ begin_goal
 
 
 def _operator_text(name: str, preconditions: list[int], add_effects: list[int], weight: int) -> str:
-    """Return the text of an operator: its preconditions are variables that are 0, its effects become 0."""
+    """Return the text of an operator of cost ``weight``.
+
+    ``preconditions`` are the variables that have to be 0, and ``add_effects`` those that become 0.
+    """
     conditions = "".join(f"{variable} 0\n" for variable in preconditions)
     effects = "".join(f"0 {variable} -1 0\n" for variable in add_effects)
     return (

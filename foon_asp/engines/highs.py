@@ -11,7 +11,7 @@ of its achiever, so that no node supports itself.
 import time
 from typing import Any, Final
 
-from foon_asp.engines.engine import EngineAnswer, cost, kitchen_items, scope_of
+from foon_asp.engines.engine import EngineAnswer, float_cost, kitchen_items, scope_of
 from foon_asp.errors import BugError
 from foon_asp.hypergraph.highs_run import libraries, silent_highs
 from foon_asp.problem import Objective, Problem
@@ -30,7 +30,9 @@ def solve_with_highs(
 ) -> EngineAnswer:
     """Search for a lexicographically optimal tree, as :class:`Solve` does.
 
-    Objectives are minimized one after the other, each with the more important ones fixed at their optimum.
+    Objectives are minimized one after the other, each with the more important ones fixed at their optimum. If
+    time runs out before the last is minimized, the answer has no tree and is not ``finished``. If all goals
+    are in the kitchen, the empty tree is returned at once.
     """
     if not scope_of(problem, forbidden).goals:  # a program without variables; the empty tree is optimal
         return EngineAnswer(HIGHS, objectives, (), True)
@@ -80,7 +82,10 @@ class _Program:
             require(total(achievers[goal]) >= 1)
 
     def minimize(self, objective: Objective, seconds: float) -> str:
-        """Minimize one objective; return ``optimal``, ``infeasible`` or, out of time, ``stopped``."""
+        """Minimize one objective; return ``optimal``, ``infeasible`` or, if time ran out, ``stopped``.
+
+        Raises :class:`BugError` if HiGHS ends in another way.
+        """
         highs, statuses = self._highs, self._library.HighsModelStatus
         highs.setOptionValue("time_limit", float(highs.getRunTime() + seconds))
         highs.minimize(highs.qsum(weight * variable for variable, weight in self._variable_costs(objective)))
@@ -94,9 +99,9 @@ class _Program:
         raise BugError(f"HiGHS ends with {status}")
 
     def fix(self, objective: Objective) -> None:
-        """Add a row, so that later solutions are no worse by an objective than the current one.
+        """Add a row by which later solutions are no worse by an objective than the current solution.
 
-        A small tolerance is added for the floats of HiGHS.
+        The row allows for rounding in floats: 0.5 for an objective in whole numbers, else 1e-6.
         """
         values, costs = self._highs.getSolution().col_value, self._variable_costs(objective)
         max_cost = sum(weight * round(values[variable.index]) for variable, weight in costs)
@@ -114,7 +119,10 @@ class _Program:
         return tuple(unit for unit, used in self._use.items() if values[used.index] > 0.5)
 
     def _variable_costs(self, objective: Objective) -> list[tuple[Any, float]]:
-        """Return pairs of a variable that has a cost by an objective, and this cost."""
+        """Return pairs of a variable and its cost by an objective.
+
+        The variables are those that take items if the objective counts these, else those that use units.
+        """
         if objective.row.item:
             return [(variable, 1.0) for variable in self._take.values()]
-        return [(used, cost(self._problem, objective, unit)) for unit, used in self._use.items()]
+        return [(used, float_cost(self._problem, objective, unit)) for unit, used in self._use.items()]

@@ -16,7 +16,7 @@ _NOT_CHECKED = f"{NotCheckedError.__module__}.{NotCheckedError.__name__}"
 
 
 def offered_engine(offer: Offer) -> Engine:
-    """Return the engine that a package offers."""
+    """Return the engine that a package offers. It counts as installed, and runs in a process of its own."""
     return Engine(offer.name, lambda: True, functools.partial(_run_offered, offer), offer.package)
 
 
@@ -27,11 +27,11 @@ def _run_offered(
     forbidden: frozenset[int],
     seconds: float,
 ) -> EngineAnswer:
-    """Run an offered engine, as :class:`Solve` does.
+    """Run the engine of an offer in a process of its own; the other arguments are those of :class:`Solve`.
 
-    ``finished`` is false in the answer if the engine was stopped at the end of its time. Raises
-    :class:`NotCheckedError` where the engine raises it. Raises :class:`UserError` where the engine raises
-    another error or returns no valid answer.
+    ``finished`` is false in the answer if the engine was stopped after ``seconds``. Raises
+    :class:`NotCheckedError` if the engine raises it. Raises :class:`UserError` if the engine raises another
+    error or returns no valid answer.
     """
     try:
         reply = ask_offered(offer, Deadline(seconds), problem.plain, objectives, forbidden, seconds)
@@ -47,7 +47,11 @@ def _run_offered(
 def _validate_reply(
     offer: Offer, problem: Problem, objectives: tuple[Objective, ...], reply: Any
 ) -> EngineAnswer:
-    """Return the answer in a reply; raises :class:`UserError` where it is not a valid one."""
+    """Return the answer in a reply of an engine.
+
+    Raises :class:`UserError` unless the reply has the form of an :class:`EngineAnswer`, names the first
+    objectives of the question, and has distinct ids as units.
+    """
     try:
         _, optimized, units, finished = msgspec.convert(reply, tuple[Any, list[Any], Any, bool])
     except ValueError:

@@ -9,12 +9,12 @@ from foon_asp.hypergraph.goal_graph import GoalGraph
 def relevant_given_landmarks(graph: GoalGraph, allowed: Container[int]) -> set[int]:
     """Return the allowed actions that an irredundant tree can have: action landmarks and relevant others.
 
-    The only achiever of a goal is an action landmark: every tree has it. Its preconditions become goals, too.
-    Every tree makes its effects, so other achievers of these effects are redundant. So the backward search
-    from the goals stops at effects of landmarks.
+    If a goal has only one allowed achiever, this action is an action landmark: every tree has it. Then its
+    preconditions are handled as goals. Every tree makes the effects of a landmark, so other achievers of
+    these effects are redundant. So the backward search from the goals stops at effects of landmarks.
 
-    A landmark whose preconditions may be derived from its own effects is an exception: the search does not
-    stop at its effects.
+    There is one exception. If a precondition of a landmark may be derived from an effect of this landmark,
+    the search does not stop at its effects.
     """
     needs, gives, achievers = graph.needs, graph.gives, graph.makers
     goals = list(graph.goals)

@@ -5,8 +5,8 @@ actions are targets, too, and used actions cost nothing more. Cuts that an LP so
 in :mod:`foon_asp.hypergraph.cost_partition`. A cut is valid at every node at which it contains a target, so
 all nodes share their cuts.
 
-Integers alone close a node. It is closed by a cost partition, rounded so that the weights on each action add
-up to at most its cost, or by a cut with an empty landmark. The floats of HiGHS only guide the search.
+Integers alone close a node: a cost partition or a cut with an empty landmark. The weights of the partition
+are rounded so that they add up to at most the cost of each action. The floats of HiGHS only guide the search.
 """
 
 import math
@@ -37,12 +37,12 @@ class _Node:
 
     Actions are given as columns of the relaxation.
 
-    ``bound``: a lower bound on the cost of these derivations, as an integer: :data:`PARTS` is a cost of 1.
-    ``weights``: pairs of row and weight that prove the bound.
+    ``bound``: a lower bound on the cost of these derivations, in parts: :data:`PARTS` is a cost of 1.
+    ``weights``: pairs of a row and its weight. Their cuts prove the bound.
     ``hopeless``: a cut with an empty landmark if the node has no derivation, else ``None``.
-    ``above_cutoff``: actions whose derivations are no better than the incumbent.
+    ``above_cutoff``: actions whose derivations are no better than the incumbent. Both children forbid them.
     ``action``: the action branched on; ``None`` before branching.
-    ``without``, ``using``: the children that forbid and use this action.
+    ``without``, ``using``: the children that forbid and use this action; ``None`` before branching.
     """
 
     used: frozenset[int]
@@ -57,17 +57,21 @@ class _Node:
 
 
 class Branching:
-    """Branch and cut for derivations of the targets that cost less than ``total``.
+    """Branch and cut for the cheapest derivation of the targets that costs less than ``total``.
 
-    ``actions``: actions that derivations may have. All of them can run, and each costs more than 0.
-    ``cuts``: cuts to begin with, each as a set of objects.
-    ``guess``: the primal heuristic. It proposes derivations from the LP values of actions and the forbidden
-    actions.
-    ``incumbent``: the best derivation found, ``None`` before the first.
-    ``bound``: a lower bound on the cost of derivations that are better than the incumbent.
-    ``closed``: whether all nodes are closed. Then the incumbent is optimal. Without an incumbent, all
-    derivations cost at least ``total``.
-    ``effort``: the remaining budget of a search, in actions looked at.
+    Arguments of the constructor:
+    ``actions``: the actions that derivations may have. All of them can run, and each costs more than 0.
+    ``cuts``: the cuts to begin with, each as a set of objects.
+    ``guess``: the primal heuristic. It gets the LP value of each action and the set of forbidden actions, and
+    returns derivations.
+
+    Attributes:
+    ``incumbent``: the best derivation found that costs less than ``total``; ``None`` before the first.
+    ``bound``: a lower bound on the cost of every derivation. It never exceeds the cost of the incumbent or,
+    without one, ``total``.
+    ``closed``: whether all nodes are closed. Then the incumbent is optimal or, without one, all derivations
+    cost at least ``total``.
+    ``effort``: the remaining budget of the search, in actions looked at.
     """
 
     def __init__(
@@ -101,10 +105,11 @@ class Branching:
         self._relaxation.add_whole_cuts(cuts)
 
     def search(self, effort: int, expired: Callable[[], bool]) -> Iterator[None]:
-        """Branch, best bound first, until no node is open or ``effort`` actions were looked at.
+        """Search the tree of nodes, the least bound first, until all nodes are closed.
 
-        Yields after each new incumbent or bound, and once all nodes are closed. ``expired`` returns whether
-        time is up. The search also ends where time is up and where HiGHS fails; then ``closed`` stays false.
+        Yields ``None`` after each new incumbent or bound, and once all nodes are closed. Ends early, with
+        ``closed`` still false, in three cases: ``effort`` actions were looked at, ``expired`` returns true,
+        or HiGHS fails.
         """
         self.effort = effort
         waiting = [(0, 0, 0, self._root)]
@@ -132,10 +137,10 @@ class Branching:
         yield
 
     def proof(self, max_length: float = math.inf, expired: Callable[[], bool] = lambda: False) -> Proof:
-        """Return the proof of a search that closed all nodes.
+        """Return the proof of the search, which has to have closed all nodes.
 
-        Raises :class:`TooLongError` if ``expired`` returns true, or if the proof would list more than
-        ``max_length`` objects and landmark actions.
+        Raises :class:`TooLongError` if ``expired`` returns true, or the proof is longer than ``max_length``.
+        Its length is the number of objects and landmark actions in it, plus 5000 for each cost partition.
         """
         self._length_budget, self._expired = max_length, expired
         return self._proof_of(self._root)[0]
@@ -143,12 +148,13 @@ class Branching:
     def cases(self) -> Cases:
         """Return the case split of the whole search: the actions branched on, as nested cases.
 
-        Actions fixed by reduced cost are not listed.
+        Each split is a triple: an action, the split of the derivations without it, and that of those with it.
+        A closed node is ``None``. Actions fixed by reduced cost are not listed.
         """
         return self._cases_below(self._root)
 
     def _cases_below(self, node: _Node) -> Cases:
-        """Return the case split at a node; ``None`` where it was closed without branching."""
+        """Return the case split at a node, as :meth:`cases` does; ``None`` if it did not branch."""
         if node.hopeless or node.without is None or node.using is None or node.action is None:
             return None
         return self._actions[node.action], self._cases_below(node.without), self._cases_below(node.using)
@@ -158,20 +164,22 @@ class Branching:
         return self.effort <= 0 or expired()
 
     def _is_above_cutoff(self, bound: int) -> bool:
-        """Return whether a bound, in parts, excludes every derivation that is better than the incumbent."""
+        """Return whether no derivation whose cost is at least ``bound``, in parts, beats the incumbent."""
         return bound > self._cutoff() * PARTS
 
     def _cutoff(self) -> int:
         """Return the greatest cost that a derivation better than the incumbent can have.
 
-        All costs are multiples of their common divisor, and so is the cutoff.
+        Without an incumbent, ``total`` takes the place of its cost. All costs are multiples of their common
+        divisor, and so is the cutoff.
         """
         return (self._total - 1) // self._common_divisor * self._common_divisor
 
     def _set_bounds(self, node: _Node, targets: set[int]) -> None:
-        """Set the bounds of columns and rows of the relaxation for a node with these targets.
+        """Set the bounds of columns and rows of the relaxation for a node.
 
-        Used actions are fixed at 1 and forbidden ones at 0. Rows of cuts without a target are made redundant.
+        Used actions are fixed at 1 and forbidden ones at 0. ``targets`` are the targets at this node. Rows of
+        cuts that contain none of them are made redundant.
         """
         used, forbidden = self._relaxed_at
         for action in (used ^ node.used) | (forbidden ^ node.forbidden):
@@ -185,10 +193,13 @@ class Branching:
                 self._covering.set_row_minimum(row, float(active))
 
     def _close_or_branch(self, node: _Node, node_number: int, expired: Callable[[], bool]) -> bool:
-        """Solve the relaxation at a node, and close the node or give it two children.
+        """Solve the relaxation at a node in rounds of cuts, and close the node or give it two children.
 
-        ``node_number`` is 0 for the root, which gets more rounds of cuts. Returns ``False`` if time or effort
-        ran out before that.
+        A node is closed if it is ``hopeless``, or if its bound is above the cutoff. Better derivations that
+        are found become the incumbent. Returns ``False`` if time or effort ran out first, else ``True``.
+
+        ``node_number``: the number of the node in the order of creation. Number 0 is the root, which gets
+        more rounds. The primal heuristic is called at the root and at every few nodes.
         """
         targets = set(self._targets).union(*(self._graph.needs[a] for a in node.used))
         self.effort -= len(self._actions)
@@ -251,9 +262,10 @@ class Branching:
         return True
 
     def _rounded_derivation(self, cutter: Cutter, lp_values: Any, node: _Node) -> set[int]:
-        """Record the rounded LP solution as a derivation, and return its columns.
+        """Record the LP solution, rounded to 0 and 1, as a derivation, and return its columns.
 
-        If it does not reach all targets, add a cut that it violates, and return the empty set.
+        If it does not reach all targets, add a cut that it violates to the relaxation, and return the empty
+        set.
         """
         chosen = node.used.union(self._np.flatnonzero(lp_values > 0.5).tolist()) - node.forbidden
         self.effort -= len(cutter.actions)
@@ -265,13 +277,13 @@ class Branching:
         return set(chosen)
 
     def _record_derivation(self, actions: set[int]) -> None:
-        """Make a derivation, a set of actions, the incumbent if it is better."""
+        """Make these actions, which form a derivation, the incumbent if they cost less than it."""
         total = sum(self._costs[i] for i, a in enumerate(self._actions) if a in actions)
         if total < self._total:
             self._total, self.incumbent = total, frozenset(actions)
 
     def _try_guesses(self, lp_values: Any, node: _Node) -> None:
-        """Replace the incumbent by better derivations that the primal heuristic proposes."""
+        """Replace the incumbent by a better derivation, if the primal heuristic proposes one."""
         self.effort -= 2 * len(self._actions)
         solution = dict(zip(self._actions, lp_values.tolist(), strict=True))
         for derivation in self._guess(solution, {self._actions[a] for a in node.forbidden}):
@@ -279,16 +291,16 @@ class Branching:
                 self._record_derivation(set(derivation))
 
     def _separate(self, cutter: Cutter, lp_values: Any, node: _Node, expired: Callable[[], bool]) -> bool:
-        """Add disjoint cuts that an LP solution violates; return whether any was added."""
+        """Add cuts with disjoint landmarks that an LP solution violates; return whether any was added."""
         budget = min(self.effort, tuning.RELAXATION.cuts * len(cutter.actions))
         added, looks = self._relaxation.separate([cutter], node.used, lp_values.copy(), budget, expired)
         self.effort -= looks
         return added > 0
 
     def _raise_bound(self, node: _Node) -> None:
-        """Round the LP duals to weights of rows, and store them in the node if they raise its bound.
+        """Round the LP duals to weights of rows, which prove a bound of the node.
 
-        The first weights are stored in any case.
+        If they raise its bound, or it has no weights yet, they are stored in the node.
         """
         reduced_costs = self._costs_in_parts.copy()
         used_cost = sum(self._costs[a] for a in node.used) * PARTS
@@ -306,8 +318,8 @@ class Branching:
     def _reduced_costs(self, node: _Node) -> Any:
         """Return an array of the reduced cost of each action at a node, in parts.
 
-        It is the cost minus the weights of the node's open cuts with the action. A cut is open if its
-        landmark has no used action.
+        The reduced cost is the cost minus the weights of the open cuts whose landmark has the action. A cut
+        is open if its landmark has no used action.
         """
         reduced_costs = self._costs_in_parts.copy()
         for row, weight in self._open_cuts(node):
@@ -315,13 +327,16 @@ class Branching:
         return reduced_costs
 
     def _open_cuts(self, node: _Node) -> Iterator[tuple[int, int]]:
-        """Yield row and weight of each weighted cut of a node that no used action satisfies."""
+        """Yield the row and the weight of each open cut of a node: its landmark has no used action."""
         for row, weight in node.weights:
             if node.used.isdisjoint(self._relaxation.rows[row].tolist()):
                 yield row, weight
 
     def _proof_of(self, node: _Node) -> tuple[Proof, set[int]]:
-        """Return the proof of a closed node, and the columns of forbidden actions that it relies on."""
+        """Return the proof of a closed node, and the columns of the forbidden actions that it relies on.
+
+        The proof is valid for derivations without these actions. Raises as :meth:`proof` does.
+        """
         if node.hopeless is not None:
             cut = frozenset(node.hopeless.objects)
             return Hopeless(self._cut_in_whole_graph(cut, node)), {
@@ -343,8 +358,8 @@ class Branching:
     def _packing_of(self, node: _Node) -> tuple[Packing, set[int]]:
         """Return the cost partition of a node, and the columns of forbidden actions that it overloads.
 
-        An overloaded action carries more weight than it costs. Raises :class:`TooLongError` where the whole
-        proof becomes too long, or time is up.
+        The weights on an overloaded action add up to more than its cost. Raises :class:`TooLongError` if the
+        proof as a whole becomes too long, or time is up.
         """
         weights: list[tuple[Cut, tuple[Fraction]]] = []
         self._length_budget -= 5000  # which limits the depth of the branching, too
@@ -358,7 +373,10 @@ class Branching:
         return Packing(tuple(weights)), overloaded & node.forbidden
 
     def _cut_in_whole_graph(self, cut: frozenset[int], node: _Node) -> Cut:
-        """Return a cut by its numbers in the whole graph, without landmark actions that a node forbids."""
+        """Return a cut of the subgraph in numbers of the whole graph.
+
+        Its landmark lacks the actions that the node forbids.
+        """
         crossing = (self._actions[a] for a in self._relaxation.landmark_of(cut) if a not in node.forbidden)
         return Cut(tuple(sorted(self._relaxation.whole_cut(cut))), tuple(sorted(crossing)))
 
@@ -372,11 +390,13 @@ def prove_by_branching(
     total: int,
     expired: Callable[[], bool],
 ) -> Proof | None:
-    """Return a proof that no derivation costs less than ``total``; ``None`` where that takes too long.
+    """Return a proof that no derivation costs less than ``total``. Return ``None`` if there is none in time.
 
-    Arguments are those of :class:`Branching`. Costs are whole numbers, so it suffices that bounds of the
-    proof exceed ``total - 1``. The proof is also ``None`` where a derivation costs less, where an action
-    costs nothing, and where all costs have a common divisor above 1.
+    Arguments are those of :class:`Branching`; ``expired`` returns whether time is up. Costs are whole
+    numbers, so it suffices that bounds of the proof exceed ``total - 1``.
+
+    Also returns ``None`` if a derivation costs less, an action costs nothing, the costs have a common divisor
+    above 1, or the proof becomes too long.
     """
     costs = [cost(action) for action in actions]
     if math.gcd(*costs) != 1 or 0 in costs:

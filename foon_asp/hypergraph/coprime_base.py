@@ -13,7 +13,7 @@ from fractions import Fraction
 def coprime_base(numbers: Iterable[int]) -> list[int]:
     """Return pairwise coprime numbers above 1 such that each given number is a product of their powers.
 
-    For 4 and 6, these are 2 and 3. The given numbers are positive.
+    The numbers 4 and 6 have the coprime base 2 and 3. ``numbers`` are positive.
     """
     base: list[int] = []
     remaining = sorted(set(numbers))
@@ -33,9 +33,9 @@ def coprime_base(numbers: Iterable[int]) -> list[int]:
 
 
 def factor_exponents(number: int, base: Sequence[int]) -> dict[int, int]:
-    """Return the exponent of each factor of a coprime base in a number, without exponents of 0.
+    """Write a number as a product of powers of a coprime base; return the exponents that are not 0.
 
-    ``{2: 3, 3: 2}`` for 72 and the base ``[2, 3, 5]``. The number has no other factors.
+    The exponents of 72 over the base ``[2, 3, 5]`` are ``{2: 3, 3: 2}``. The number has to be such a product.
     """
     exponents: dict[int, int] = {}
     for factor in base:

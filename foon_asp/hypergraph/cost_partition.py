@@ -22,12 +22,12 @@ from foon_asp.hypergraph.landmark_relaxation import PARTS, LandmarkRelaxation
 
 
 class CostPartition(NamedTuple):
-    """A cost partition over cuts. Its costs are integers: :data:`PARTS` is a cost of 1.
+    """A cost partition over cuts. Its costs are integers in parts: :data:`PARTS` is a cost of 1.
 
-    ``bound``: a lower bound on the cost of derivations by the actions of the relaxation.
+    ``bound``: the sum of the weights. No derivation by the actions of the relaxation costs less.
     ``reduced_costs``: the reduced cost of each action.
-    ``cuts``: pairs of a cut, given by its objects, and its weight.
-    ``lp_values``: the LP value of each action.
+    ``cuts``: pairs of a cut, given by its objects, and its weight, which is not 0.
+    ``lp_values``: the LP value of each action, from 0 to about 1.
     ``tight``: the cuts that the LP solution satisfies with equality. The next relaxation begins with them.
     """
 
@@ -39,7 +39,7 @@ class CostPartition(NamedTuple):
 
 
 def float_quotient(a: int, b: int) -> float:
-    """Return ``a / b`` as a float; infinity where no float is so large."""
+    """Return ``a / b`` as a float; infinity if it is too large for a float."""
     try:
         return a / b
     except OverflowError:
@@ -47,10 +47,13 @@ def float_quotient(a: int, b: int) -> float:
 
 
 def has_stalled(values: Sequence[float], remaining_gap: float) -> bool:
-    """Return whether the last few of the LP ``values`` closed hardly any of the remaining gap.
+    """Return whether the last few LP solutions closed hardly any of the remaining gap.
 
-    Compares the last value with the one ``tuning.RELAXATION.stalled_solutions`` before; ``False`` if there is
-    none.
+    ``values``: the costs of all LP solutions so far, which grow as cuts are added.
+    ``remaining_gap``: the cost that is needed, minus the last of the ``values``.
+
+    Compares the last value with the one ``tuning.RELAXATION.stalled_solutions`` earlier. Returns ``False`` if
+    there are too few values.
     """
     return (
         len(values) > tuning.RELAXATION.stalled_solutions
@@ -60,10 +63,12 @@ def has_stalled(values: Sequence[float], remaining_gap: float) -> bool:
 
 
 class CostPartitioning:
-    """An optimal cost partition over landmark cuts of the targets, improved with each LP solution.
+    """A cost partition over landmark cuts of the targets, improved with each LP solution until it is optimal.
 
-    All of the actions can run, and actions of cost 0 count as used. ``known_cuts`` are cuts to begin with,
-    each by its objects. ``converged`` becomes true when further solutions would not help, or when time is up.
+    ``actions``: the actions of the relaxation. All of them have to be able to run.
+    ``expired``: returns whether time is up.
+    ``known_cuts``: the cuts to begin with, each by its objects.
+    ``converged``: an attribute that becomes true when further solutions would not help, or time is up.
     """
 
     def __init__(
@@ -92,9 +97,11 @@ class CostPartitioning:
     def advance(self, sufficient_bound: int, max_solutions: float = math.inf) -> CostPartition | None:
         """Solve the LP and add violated cuts in turn; return the cost partition of the last solution.
 
-        Ends when the bound is ``sufficient_bound``, after ``max_solutions`` solutions, or when
-        :attr:`converged` becomes true. ``None`` where the targets cannot be reached or are all initial, and
-        where HiGHS fails.
+        Ends when the bound reaches ``sufficient_bound``, when no cut is violated or the bound has stalled, or
+        when time is up. Then :attr:`converged` becomes true. Also ends after ``max_solutions`` solutions; the
+        next call continues from there.
+
+        Returns ``None`` if the targets cannot be reached or are all initial, or HiGHS never had a solution.
         """
         if self._cutter.hopeless or not self._cutter.targets:
             self.converged = True
@@ -129,9 +136,10 @@ class CostPartitioning:
         return None if self._last is None else self._rounded_partition(self._last)
 
     def _solve_lp(self) -> LpSolution | None:
-        """Return an LP solution; ``None`` where HiGHS finds none before time is up.
+        """Return a solution of the LP with all cuts so far; ``None`` if HiGHS fails.
 
-        It is an interior point. After the first failure, it is a basic solution.
+        The solution is an interior point as long as ``_interior_point`` is true. If HiGHS finds no such
+        point, this attribute becomes false, and the solution is basic.
         """
         if self._interior_point:
             solution = self._relaxation.covering.interior_point(self._expired)
@@ -145,7 +153,11 @@ class CostPartitioning:
         return LpSolution(basic.value, basic.x, self._relaxation.covering.duals())
 
     def _separate(self, x: list[float]) -> bool:
-        """Add disjoint cuts that an LP solution violates; return whether any was added."""
+        """Add cuts that an LP solution violates, with disjoint landmarks; return whether any was added.
+
+        ``x`` has the LP value of each column. Actions of cost 0 count as used. Cutters for single targets are
+        asked first, in random order.
+        """
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
         relaxation = self._relaxation
@@ -157,9 +169,10 @@ class CostPartitioning:
         return added > 0
 
     def _make_cutters(self, graph: Hypergraph) -> tuple[list[Cutter], list[Cutter]]:
-        """Return cutters for single targets with few relevant actions, and a cutter for all other targets.
+        """Return a list of cutters for one target each, and a list with one cutter for all other targets.
 
-        The second list is empty if there are no other targets.
+        A target has its own cutter if at most half of the actions are relevant to it. If there are no other
+        targets, the second list is empty.
         """
         count, targets = len(self._relaxation.actions), self._cutter.targets
         single_target_cutters: list[Cutter] = []

@@ -38,8 +38,8 @@ class UnsolvedError(BugError):
 class BasicSolution(NamedTuple):
     """A basic optimal solution: its cost ``value``, the values ``x`` of the columns, and its basis.
 
-    ``columns`` are the numbers of the basic columns, and ``rows`` those of as many tight rows. The square
-    matrix of these rows and columns determines the solution and the duals.
+    ``columns`` are the numbers of the basic columns. ``rows`` are the numbers of equally many tight rows. The
+    square matrix of these rows and columns determines the solution and the duals.
     """
 
     value: float
@@ -60,11 +60,12 @@ class LpSolution(NamedTuple):
 
 
 class Covering:
-    """A linear program: minimize the sum of ``costs[c] * x[c]`` where each row adds up to at least 1.
+    """A covering problem: minimize the sum of ``costs[c] * x[c]`` over all columns ``c``.
 
-    No ``x[c]`` is below 0. A row adds up the values of some columns. A limit is another kind of row: the sum
-    of ``amounts[c] * x[c]`` is at most ``max_amount``. Rows can be added between solutions. HiGHS then
-    continues from the last solution.
+    No ``x[c]`` is below 0. There are two kinds of rows. By a covering row, the values of some columns add up
+    to at least 1. By a limit, the sum of ``amounts[c] * x[c]`` is at most ``max_amount``. Rows are numbered
+    from 0 as they are added. They can be added between solutions. HiGHS then continues from the last
+    solution.
     """
 
     def __init__(self, costs: Sequence[float]) -> None:
@@ -78,13 +79,16 @@ class Covering:
         self._highs.changeColsCost(count, np.arange(count, dtype=np.int32), np.array(costs, dtype=float))
 
     def add_row(self, row: Sequence[int]) -> None:
-        """Add a row, given by its columns: their values add up to at least 1."""
+        """Add a covering row: the values of these columns add up to at least 1."""
         np_row = self._array(row, dtype="int32")
         ones = self._array([1.0] * len(row))
         self._highs.addRow(1.0, self._library.kHighsInf, len(row), np_row, ones)
 
     def add_limit(self, amounts: Mapping[int, Fraction], max_amount: Fraction) -> None:
-        """Add a limit: the sum of amounts times values is at most ``max_amount``. Amounts may be negative."""
+        """Add a limit: the sum of amounts times values is at most ``max_amount``.
+
+        ``amounts`` has the amount of each column; it may be negative.
+        """
         columns = self._array(list(amounts), dtype="int32")
         takes = self._array([-float(amount) for amount in amounts.values()])
         self._highs.addRow(-float(max_amount), self._library.kHighsInf, len(amounts), columns, takes)
@@ -94,7 +98,7 @@ class Covering:
         self._highs.changeColBounds(column, lower, upper)
 
     def set_row_minimum(self, row: int, lower: float) -> None:
-        """Set the least sum of the values in a row, at first 1. With 0, the row is redundant."""
+        """Set the least sum of the values in a covering row, at first 1; with 0, the row is redundant."""
         self._highs.changeRowBounds(row, lower, self._library.kHighsInf)
 
     def _set_options(self, options: dict[str, bool | str | float]) -> None:
@@ -105,8 +109,8 @@ class Covering:
     def interior_point(self, expired: Callable[[], bool] = lambda: False) -> LpSolution | None:
         """Return an interior-point solution: less exact than a basic one, but faster with many rows.
 
-        ``None`` where HiGHS does not converge within ``tuning.RELAXATION.run_seconds``, or before ``expired``
-        returns true.
+        Return ``None`` if HiGHS does not converge within ``tuning.RELAXATION.run_seconds``, or before
+        ``expired`` returns true.
         """
         self._at_vertex = False
         self._run(_INTERIOR_POINT, expired)
@@ -117,15 +121,18 @@ class Covering:
         return LpSolution(value, list(solution.col_value), list(solution.row_dual))
 
     def _run(self, options: dict[str, bool | str | float], expired: Callable[[], bool]) -> None:
-        """Run HiGHS with these options, for at most ``tuning.RELAXATION.run_seconds``."""
+        """Run HiGHS with these options, for at most ``tuning.RELAXATION.run_seconds``.
+
+        Ends early when ``expired`` returns true.
+        """
         self._set_options(options | {"time_limit": self._highs.getRunTime() + tuning.RELAXATION.run_seconds})
         run(self._highs, expired)
 
     def solve(self, expired: Callable[[], bool] = lambda: False) -> BasicSolution:
-        """Return a basic optimal solution; where time is up, the basic solution reached by then.
+        """Return a basic optimal solution; if time is up, the basic solution that was reached.
 
-        ``expired`` returns whether time is up. Raises :class:`UnsolvedError` where HiGHS fails for another
-        reason.
+        ``expired`` returns whether time is up. Raises :class:`UnsolvedError` if HiGHS ends without a solution
+        although time is not up.
         """
         highs = self._highs
         if not self._at_vertex:  # steps of the simplex algorithm would start from nothing
@@ -146,5 +153,5 @@ class Covering:
         )
 
     def duals(self) -> list[float]:
-        """Return the dual of each row in the last solution."""
+        """Return the dual of each row in the last solution of :meth:`solve`."""
         return list(self._highs.getSolution().row_dual)

@@ -33,9 +33,11 @@ class Cutter:
     ``actions``: the relevant actions. They can run and lead to a target.
     ``hopeless``: a cut with an empty landmark if a target cannot be reached, else ``None``.
 
-    Landmarks contain every crossing action that is not forbidden. Construction takes time linear in the size
-    of the hypergraph. If the ``reachable`` objects are given, as flags, the time is linear in the size of the
-    relevant part.
+    Landmarks contain every crossing action that is not forbidden.
+
+    ``reachable``: a flag for each object that is reachable without the forbidden actions. Construction takes
+    time linear in the size of the hypergraph. If ``reachable`` is given, the time is linear in the size of
+    the relevant part.
     """
 
     def __init__(
@@ -85,7 +87,7 @@ class Cutter:
         self._consumer_counts = {o: len(self._consumers[number]) for o, number in numbers.items()}
 
     def reached_by(self, actions: Collection[int]) -> bool:
-        """Return whether these actions alone reach all targets."""
+        """Return whether these actions alone reach all targets; only those in :attr:`actions` count."""
         return _Growth(self, self._missing).reaches_targets_with(
             self._positions[a] for a in actions if a in self._positions
         )
@@ -93,10 +95,12 @@ class Cutter:
     def cut(self, keep: Iterable[int], order: Iterable[int]) -> Cut | None:
         """Return a cut with a small landmark, which has no action of ``keep``.
 
-        Grows a set of actions that does not reach the targets, first by ``keep`` and then along ``order``. An
-        action with which the targets would be reached is refused. The landmark consists of refused actions,
-        so actions late in ``order`` are preferred. ``order`` should contain all :attr:`actions`, since no
-        other action can be in the landmark. ``None`` where ``keep`` alone reaches the targets.
+        Grows a set of actions that does not reach all targets: first by ``keep``, then by the actions of
+        ``order`` one by one. An action with which all targets would be reached is refused. The landmark
+        consists of refused actions, so actions late in ``order`` are more likely to be in it. ``order``
+        should contain all of :attr:`actions`.
+
+        Returns ``None`` if the actions of ``keep`` alone reach all targets.
         """
         growth = _Growth(self, self._missing)
         positions = self._positions
@@ -110,16 +114,19 @@ class Cutter:
         return self._grow_small_cut(target, refused, reached, self._consumer_counts)
 
     def without_forbidden(self, actions: Iterable[int]) -> tuple[int, ...] | None:
-        """Return the given actions that are not forbidden; ``None`` if one is not in :attr:`actions`."""
+        """Return the given actions without forbidden ones, in the same order.
+
+        Return ``None`` if one of those that remain is not in :attr:`actions`.
+        """
         remaining = tuple(a for a in actions if a not in self._forbidden)
         return remaining if self._positions.keys() >= set(remaining) else None
 
     def widen(self, objects: Iterable[int]) -> Cut:
-        """Return the cut of some objects, with unreachable objects added to keep its landmark small.
+        """Return the cut of some objects, with unreachable objects added so that its landmark is small.
 
-        Initial objects are left out. An action that cannot run needs an unreachable object. Once this object
-        is in the cut, the action does not cross the cut. So a cut found among actions that can run keeps its
-        landmark.
+        Initial objects are left out. If an action that cannot run crosses the cut, an unreachable
+        precondition of the action is added. Then the action no longer crosses. So a cut that was found among
+        the actions that can run keeps its landmark.
         """
         graph, reachable = self._graph, self._reachable
         inside = {o for o in objects if not graph.at_start[o]}
@@ -132,14 +139,17 @@ class Cutter:
     ) -> Cut:
         """Return a small cut of an unreached target, grown backwards; its landmark is within ``members``.
 
-        If another action crosses the cut, one of its unreached preconditions is added to the cut. Then the
-        action no longer crosses it. The precondition with the most consumers is chosen, since it helps
-        against other actions, too. ``consumer_counts`` are the numbers of consumers; objects that it lacks
-        are chosen first.
+        ``members``: the actions that may be in the landmark.
+        ``reached``: a flag for each object; the cut consists of objects that are not reached.
+        ``consumer_counts``: the number of consumers of each object.
+
+        If an action not among ``members`` crosses the cut, one of its unreached preconditions is added to the
+        cut. Then the action no longer crosses the cut. The precondition with the most consumers is chosen,
+        since it helps against other actions as well. Objects without a count are chosen first.
         """
 
         def most_consumed(action: int) -> int | None:
-            """Return the precondition to add against a crossing action; ``None`` if it is in ``members``."""
+            """Return the precondition of a crossing action to add; ``None`` if ``members`` has the action."""
             if action in members:
                 return None
             lacking = (o for o in self._graph.needs[action] if not reached[o])
@@ -148,10 +158,10 @@ class Cutter:
         return self._extend_to_cut({target}, most_consumed)
 
     def _extend_to_cut(self, inside: set[int], needed: Callable[[int], int | None]) -> Cut:
-        """Extend the set ``inside`` in place, and return it as a cut with its landmark.
+        """Extend a set of objects, ``inside``, in place; return it as a cut with its landmark.
 
-        For each crossing action, ``needed`` returns a precondition to add. If it returns ``None``, the action
-        stays in the landmark.
+        For each crossing action, ``needed`` returns a precondition to add to the set. If ``needed`` returns
+        ``None``, the action stays in the landmark.
         """
         graph, forbidden = self._graph, self._forbidden
         stack = list(inside)
@@ -172,7 +182,8 @@ class Cutter:
 class _Growth:
     """A set of actions, grown one by one, that never reaches all targets.
 
-    ``reached``: a flag for each object that the admitted actions reach, by its number in the cutter.
+    Actions are given by their position in :attr:`Cutter.actions`, and objects by their number in the cutter.
+    ``reached``: a flag for each object: 1 if the admitted actions reach it, else 0.
     """
 
     def __init__(self, cutter: Cutter, missing: list[int]) -> None:
@@ -187,18 +198,20 @@ class _Growth:
         self._targets = len(cutter.targets)
 
     def reaches_targets_with(self, actions: Iterable[int]) -> bool:
-        """Admit actions until all targets would be reached; return whether that happened.
+        """Admit actions until one is refused; return whether all targets are reached with that one.
 
-        After ``True``, the growth must not be used.
+        Also return ``True`` if there are no targets. After ``True``, this object must not be used any more.
         """
         return not self._unreached or bool(self.admit(actions, max_refused=1))
 
     def admit(self, actions: Iterable[int], max_refused: int = sys.maxsize) -> list[int]:
         """Admit actions one by one, and return the refused ones.
 
-        An action is refused if all targets would be reached with it. Ends after ``max_refused`` refusals.
-        Decisive objects are recorded: each of them alone suffices to reach all targets. So later actions that
-        achieve a decisive object are refused at once.
+        An action is refused if all targets would be reached with it. Ends after ``max_refused`` refusals. An
+        action whose preconditions are not reached yet is admitted, and takes effect once they are.
+
+        Decisive objects are recorded: reaching one of them would suffice to reach all targets. So later
+        actions that achieve a decisive object are refused at once.
         """
         waiting, missing, gives = self._waiting, self._missing, self._gives
         reached, decisive, reach_from = self.reached, self._decisive, self._reach_from
@@ -223,7 +236,10 @@ class _Growth:
         return refused
 
     def _record_decisive(self, refused: list[int]) -> None:
-        """If one of the ``refused`` objects alone suffices to reach all targets, record it as decisive."""
+        """Record the first of the ``refused`` objects that alone suffices to reach all targets as decisive.
+
+        If no object alone suffices, nothing changes.
+        """
         for o in refused:
             unreached = self._unreached
             newly_reached = None if len(refused) == 1 else self._reach_from([o])
@@ -234,9 +250,9 @@ class _Growth:
             self._unreached = unreached
 
     def _reach_from(self, objects: list[int]) -> list[int] | None:
-        """Mark objects as reached, and all objects that admitted actions make of them; return the new ones.
+        """Mark some objects as reached, and all that admitted actions then make; return the new ones.
 
-        If all targets would be reached, nothing changes, and ``None`` is returned.
+        If all targets would be reached, nothing changes, and the result is ``None``.
         """
         waiting, missing, reached = self._waiting, self._missing, self.reached
         consumers, gives, decisive, targets = self._consumers, self._gives, self._decisive, self._targets

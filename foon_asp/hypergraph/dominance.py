@@ -11,8 +11,9 @@ def undominated_actions(graph: GoalGraph, actions: Collection[int], cost: Callab
 
     Action A dominates action B if three things hold. The preconditions of A are a subset of B's, A has all
     effects of B, and A costs no more. Then A can replace B in any tree, and the tree costs no more, since
-    ``cost`` covers the whole list of objectives. Effects that no action or goal needs do not count; an action
-    without other effects is left out. Of actions that dominate each other, one stays.
+    ``cost`` covers the whole list of objectives. Initial objects do not count as preconditions. Effects that
+    no action or goal needs do not count; an action with no other effects is left out. If actions dominate
+    each other, one of them stays.
     """
     start = graph.start
     needed = {a: frozenset(o for o in graph.needs[a] if o not in start) for a in actions}
@@ -40,9 +41,10 @@ def undominated_actions(graph: GoalGraph, actions: Collection[int], cost: Callab
 
 
 class _PreconditionTrie:
-    """A set-trie (Savnik 2013) of actions by their preconditions, rare preconditions first.
+    """A set-trie (Savnik 2013) of actions by their preconditions.
 
-    At each node, the actions are indexed by effect.
+    ``ordered``: the preconditions of each action, rare ones first.
+    ``effects``: the effects of each action, by which the actions at a node of the trie are indexed.
     """
 
     def __init__(self, ordered: Mapping[int, Sequence[int]], effects: Mapping[int, frozenset[int]]) -> None:
@@ -56,7 +58,10 @@ class _PreconditionTrie:
                 self._achievers.setdefault((node, o), []).append(action)
 
     def achievers_with_subset(self, needs: Sequence[int], effect: int) -> Iterator[int]:
-        """Yield the achievers of ``effect`` whose preconditions are a subset of ``needs``."""
+        """Yield the achievers of ``effect`` whose preconditions are a subset of ``needs``.
+
+        ``needs`` has to be ordered like the preconditions of actions: rare ones first.
+        """
         children, achievers = self._children, self._achievers
         nodes = [0]  # reached by subsets of the preconditions so far
         yield from achievers.get((0, effect), ())

@@ -25,14 +25,14 @@ class TooFineError(Exception):
 class ExactCosts:
     """The cost of each action as one integer; sums of costs compare lexicographically.
 
-    Call the object with an action for its cost. An additive objective is scaled to integers, and multiplied
-    by more than the greatest sum of the objectives after it.
+    Call the object with an action for its cost. The cost by an additive objective is scaled to an integer.
+    Then it is multiplied by more than the greatest sum of the objectives after it.
 
     Where rates multiply, logarithms are added. Each factor of a coprime base of the rates has a logarithm
-    rounded to forty digits, so equal products have equal sums. ``doubt`` is greater than all rounding errors:
-    sums that differ by more compare exactly. It is 0 where nothing is rounded.
+    rounded to forty digits, so equal products have equal sums. The attribute ``doubt`` is greater than the
+    sum of all rounding errors: sums that differ by more compare exactly. It is 0 if nothing is rounded.
 
-    Raises :class:`TooFineError` for rates that are 0 or have large denominators.
+    Raises :class:`TooFineError` if a rate is 0 or has a denominator above 10^9.
     """
 
     def __init__(self, problem: Problem, objectives: Sequence[Objective], actions: Collection[int]) -> None:
@@ -60,8 +60,9 @@ class ExactCosts:
     ) -> "ExactCosts":
         """Return these costs with ``price * counts(unit)`` added to the cost of each unit.
 
-        If the price is a fraction, all costs are multiplied by its denominator. With a ``limit``, a search
-        ends as soon as a bound reaches the limit, or a tree costs less than it.
+        If the price is a fraction, all costs are multiplied by its denominator. Actions that take kitchen
+        items have no price. If there is a ``limit``, a search by these costs ends as soon as a lower bound
+        reaches the limit, or a tree costs less than it.
         """
         units, costs = self._units, copy(self)
         numerator, costs._multiplier = Fraction(price).as_integer_ratio()
@@ -76,21 +77,21 @@ class ExactCosts:
 
     @property
     def strict_upper_bound(self) -> int:
-        """A number above the cost of every set of actions."""
+        """A number above the cost of every set of actions, without any price."""
         first = self._objectives[0]
         return self._factors[first] * (1 + self._upper_bound(first, self._actions))
 
     def _common_denominator(self, objective: Objective, actions: Collection[int]) -> int:
         """Return the common denominator of the costs of actions by an objective.
 
-        It is 1 for an objective in whole numbers, and where rates multiply.
+        It is 1 for an objective in whole numbers, and for one whose rates multiply.
         """
         if objective.row.whole or objective in self._multiplied:
             return 1
         return math.lcm(*{cost.denominator for cost in self._unit_costs(objective, actions)})
 
     def _upper_bound(self, objective: Objective, actions: Collection[int]) -> int:
-        """Return an upper bound on the scaled cost of a set of actions by one objective."""
+        """Return an upper bound on the scaled cost, by one objective, of any subset of these actions."""
         if objective is Objective.UNITS:
             return len(actions)
         if objective in self._multiplied:
@@ -111,16 +112,17 @@ class ExactCosts:
         cost = self._cache.get(action)
         if cost is None:
             cost = self._multiplier * sum(
-                self._figure(o, action) * factor for o, factor in self._factors.items()
+                self._scaled_cost(o, action) * factor for o, factor in self._factors.items()
             )
             cost += self._price(action) if self._price else 0
             self._cache[action] = cost
         return cost
 
     def first_objective_bound(self, total: int) -> int | Fraction:
-        """Return a bound on the first objective, from a lower bound on total costs.
+        """Return a bound on the first objective of trees, given a lower bound ``total`` on their costs.
 
-        It is a lower bound in the unit of the objective; for success, an upper bound of at most 1.
+        For an additive objective, it is a lower bound in the unit of the objective. For ``success``, it is an
+        upper bound on the rate, at most 1.
         """
         figure = total // self._factors[self._objectives[0]]
         if self._objectives[0] not in self._multiplied:
@@ -131,9 +133,12 @@ class ExactCosts:
     def proves_optimal(self, cuts: Cuts, tree: Collection[int]) -> bool:
         """Return whether a cost partition proves this tree optimal, exactly.
 
-        With a limit, return instead whether the bound reaches the limit or the tree costs less. The weight of
-        each cut is the reduced cost of its cheapest action. Where rates multiply, weights and reduced costs
-        are recomputed exactly, as vectors of exponents of rates. ``False`` where these become too large.
+        If these costs have a limit, return instead whether the bound reaches the limit or the tree costs less
+        than it. If nothing is rounded, the bound is compared with the cost of the tree. Otherwise weights and
+        reduced costs are recomputed exactly, as vectors of exponents of rates. The weight of each cut is then
+        the reduced cost of its cheapest action.
+
+        Return ``False`` if these vectors become too large, or if costs are rounded and have a price.
         """
         total = sum(map(self, tree))
         if self._limit is not None:
@@ -168,9 +173,9 @@ class ExactCosts:
         return not _is_too_large(slack) and order.sign(slack) >= 0
 
     def combined_cost(self, costs: Costs) -> int:
-        """Return the cost of a tree as one integer, from its costs by objective.
+        """Return the cost of a tree as one integer, from its costs by objective; a price is not added.
 
-        Rounding may make it too great, but never too small.
+        Where rates multiply, rounding may make the result too great, but never too small.
         """
         total = 0
         for objective, factor in self._factors.items():
@@ -182,15 +187,15 @@ class ExactCosts:
             total += figure * factor
         return total * self._multiplier
 
-    def figures(self, action: int) -> list[tuple[Objective, int]]:
-        """Return each objective with the scaled cost of an action by it.
+    def scaled_costs(self, action: int) -> list[tuple[Objective, int]]:
+        """Return for each objective a pair: the objective, and the scaled cost of an action by it.
 
-        For ``success``, this is a rounded logarithm.
+        For ``success``, the cost is a rounded logarithm.
         """
-        return [(objective, self._figure(objective, action)) for objective in self._objectives]
+        return [(objective, self._scaled_cost(objective, action)) for objective in self._objectives]
 
     def unscale(self, objective: Objective, figure: int) -> int | Fraction:
-        """Return a cost by an additive objective in its own unit; ``figure`` is a sum of scaled costs."""
+        """Return ``figure``, a sum of scaled costs by an additive objective, in the unit of the objective."""
         return figure if objective.row.whole else Fraction(figure, self._denominators[objective])
 
     def is_logarithm(self, figure: int, product: Fraction) -> bool:
@@ -198,15 +203,15 @@ class ExactCosts:
         return abs(figure - _logarithm(product.denominator) + _logarithm(product.numerator)) < _ROUNDED
 
     def rate(self, action: int) -> Fraction:
-        """Return the rate of an action; taking an item from the kitchen never fails."""
+        """Return the rate of an action; 1 for an action that takes a kitchen item, since it never fails."""
         if action >= self._units:
             return Fraction(1)
         return self._problem.rate(action)
 
-    def _figure(self, objective: Objective, action: int) -> int:
-        """Return the scaled cost by one objective of an action.
+    def _scaled_cost(self, objective: Objective, action: int) -> int:
+        """Return the scaled cost of an action by one objective.
 
-        The action is a unit or takes a kitchen item.
+        If the action takes a kitchen item, it is 1 for an objective that counts items, and 0 for any other.
         """
         if action >= self._units:
             return objective.row.item
@@ -216,20 +221,23 @@ class ExactCosts:
 
 
 def _is_too_large(vector: Sequence[int]) -> bool:
-    """Return whether products of rates with these exponents take too long to be compared."""
+    """Return whether it would take too long to compare products of rates with these exponents."""
     return sum(map(abs, vector)) > 50_000
 
 
 class _Vectors:
-    """Costs as vectors: a coordinate for each additive objective, and for each rate where rates multiply."""
+    """Costs as vectors: a coordinate for each additive objective, and one for each rate where rates multiply.
+
+    ``coordinates``: the index of each rate among the coordinates of its objective.
+    """
 
     def __init__(self, costs: ExactCosts, coordinates: dict[Fraction, int]) -> None:
         self._costs, self._coordinates = costs, coordinates
 
     def vector(self, action: int) -> list[int]:
-        """Return the cost of an action as a vector."""
+        """Return the cost of an action as a vector; its rate has the exponent 1, other rates have 0."""
         vector: list[int] = []
-        for objective, figure in self._costs.figures(action):
+        for objective, figure in self._costs.scaled_costs(action):
             if multiplies(objective):
                 exponents = [0] * len(self._coordinates)
                 if figure:
@@ -241,7 +249,7 @@ class _Vectors:
 
 
 class CoarseCosts:
-    """Costs by the first objective only, rounded down to small whole numbers, for estimates.
+    """Costs by a single objective, rounded down to small whole numbers, for estimates.
 
     Call the object with an action for its cost.
     """
@@ -254,7 +262,8 @@ class CoarseCosts:
     def __call__(self, action: int) -> int:
         """Return the approximate cost of an action.
 
-        Costs in fractions, and ``-ln`` of rates, are in thousandths, rounded down.
+        Costs in whole numbers are exact. Costs in fractions, and ``-ln`` of rates, are in thousandths,
+        rounded down. An action that takes a kitchen item costs 1 if the objective counts items, else 0.
         """
         problem = self._problem
         if action >= len(problem.network):
@@ -270,16 +279,17 @@ class CoarseCosts:
 
 
 def _coarse_logarithm(rate: Fraction) -> int:
-    """Return ``-ln(rate)`` in thousandths; a rate of 0 counts as about ``10**-43``."""
+    """Return ``-ln(rate)`` in thousandths, rounded down; 100,000 for a rate of 0."""
     if not rate:
         return 100_000
     return int((math.log(rate.denominator) - math.log(rate.numerator)) * 1000)  # a float may not hold it
 
 
 def _scaled_logarithms(rates: set[Fraction]) -> dict[Fraction, int]:
-    """Return for each rate ``-log(rate)``, scaled: a sum of rounded logarithms of its coprime factors.
+    """Return for each rate ``-ln(rate)``, multiplied by ``10**40`` and rounded.
 
-    Raises :class:`TooFineError` for rates that are 0 or have large denominators.
+    It is a sum of rounded logarithms of the factors of a coprime base, so equal products of rates have equal
+    sums. Raises :class:`TooFineError` if a rate is 0 or has a denominator above 10^9.
     """
     # logarithms at this scale distinguish rates up to such denominators for sure
     if not all(0 < rate <= 1 and rate.denominator <= 10**9 for rate in rates):
@@ -288,7 +298,7 @@ def _scaled_logarithms(rates: set[Fraction]) -> dict[Fraction, int]:
     logarithms = {factor: _logarithm(factor) for factor in base}
 
     def logarithm_of(number: int) -> int:
-        """Return the logarithm of a number, as the sum over its factors."""
+        """Return the scaled logarithm of a number, as the sum of the logarithms of its factors."""
         return sum(power * logarithms[f] for f, power in factor_exponents(number, base).items())
 
     return {rate: logarithm_of(rate.denominator) - logarithm_of(rate.numerator) for rate in rates}

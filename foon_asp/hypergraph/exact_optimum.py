@@ -41,15 +41,15 @@ def exact_optimum(
 ) -> ExactOptimum | None:
     """Solve a covering problem over ordered costs exactly, from a basis near the optimum.
 
-    ``rows``: for each row, the columns that cover it.
+    ``rows``: for each covering row, its columns.
     ``costs``: the cost of each column, none below 0.
     ``order``: the order of the costs.
-    ``columns``, ``tight``: the first basis, as columns and as many tight rows.
-    ``limits``: pairs of the amount that each column consumes and the amount available. Limits are numbered as
-    rows before ``rows``.
+    ``columns``, ``tight``: the first basis, as numbers of columns and of equally many tight rows.
+    ``limits``: pairs of two values: the amount that each column consumes, and the amount available. As rows,
+    limits are numbered before ``rows``.
 
-    Each step solves the basis anew, and Bland's rule prevents cycling. ``None`` after too many steps, and
-    where a basis is singular or infeasible.
+    Each step solves the basis anew, and Bland's rule prevents cycling. Returns ``None`` after
+    ``tuning.PROOF.pivots`` steps, or if a basis is singular or infeasible.
     """
     basic_columns, tight_rows = set(columns), set(tight)
     all_rows = [{column: -amount for column, amount in amounts.items()} for amounts, _ in limits]
@@ -72,13 +72,13 @@ def exact_optimum(
 
 
 class _Basis:
-    """A basis: columns and as many tight rows, with its primal and dual solution.
+    """A basis: some columns and equally many tight rows, with its primal and dual solution.
 
-    ``x``: the values of the basic columns, by which tight rows hold with equality.
+    ``x``: the values of the basic columns. With them, tight rows hold with equality.
     ``slack``: the slack of each row.
-    ``duals``: the duals of the tight rows, by which basic columns have reduced cost 0.
+    ``duals``: the duals of the tight rows. With them, basic columns have reduced cost 0.
 
-    Raises :class:`UnusableBasisError` where the basis is singular, or a value or slack is negative.
+    Raises :class:`UnusableBasisError` if the basis is singular, or a value or slack is negative.
     """
 
     def __init__(
@@ -108,10 +108,10 @@ class _Basis:
             raise UnusableBasisError
 
     def entering_variable(self, order: Lexicographic) -> tuple[int, bool] | None:
-        """Return the entering variable by Bland's rule, and whether it is the slack of a row.
+        """Return the number of the entering column or row by Bland's rule, and whether it is a row.
 
-        The first column of negative reduced cost enters, else the first row of negative dual. ``None`` at the
-        optimum.
+        The first column of negative reduced cost enters. If there is none, the slack of the first row of
+        negative dual enters. Return ``None`` if there is no such row either: the basis is optimal.
         """
         loads: dict[int, list[Vector]] = {}
         for row, weight in self.duals.items():
@@ -124,9 +124,9 @@ class _Basis:
         return next(((row, True) for row in sorted(self.duals) if order.sign(self.duals[row]) < 0), None)
 
     def leaving_variable(self, number: int, is_row: bool) -> tuple[int, bool]:
-        """Return the column or row that leaves when a variable enters, and whether it is a row.
+        """Return the number of the column or row that leaves by the ratio test, and whether it is a row.
 
-        It is found by the ratio test. The entering variable is column or row ``number``.
+        The entering variable is column ``number`` or, if ``is_row`` is true, the slack of row ``number``.
         """
         entering_coefficients = [
             Fraction(-(row == number)) if is_row else coefficients.get(number, _ZERO)
@@ -150,8 +150,8 @@ def solve_exactly(matrix: Matrix, right_sides: Mapping[int, Vector]) -> dict[int
     """Solve a sparse square system for several right-hand sides at once, by Gaussian elimination.
 
     ``matrix[i]`` maps the unknowns of row i to coefficients. ``right_sides[i]`` has the right-hand sides of
-    row i. Returns for each unknown its values, one per right-hand side. The shortest row is eliminated first,
-    which keeps systems of cuts sparse. Raises :class:`UnusableBasisError` where the system is singular.
+    row i. Returns the values of each unknown, one for each right-hand side. The shortest row is eliminated
+    first, which keeps systems of cuts sparse. Raises :class:`UnusableBasisError` if the system is singular.
     """
     rows = {number: dict(row) for number, row in matrix.items()}
     sides = dict(right_sides)

@@ -18,9 +18,11 @@ _FIRST = 500  # actions nearest to the required sets, among which an extension i
 def extend_tree(
     graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int], max_actions: int
 ) -> set[int] | None:
-    """Return a tree with a unit of each required set added, and the actions that derive these units.
+    """Return the actions of a tree for the goals, together with the actions of an extension.
 
-    They are derived by h_add. ``None`` where no extension is found among ``max_actions`` actions.
+    The extension follows h_add; actions of the tree cost nothing in it. It is looked for among the actions
+    nearest to the required sets, and then in a restricted subproblem of at most ``max_actions`` actions.
+    Returns ``None`` if no extension is found.
     """
     required_graph = _graph_of_required(graph)
     remaining_cost = _cost_without(tree, cost)
@@ -46,11 +48,11 @@ def actions_of_extensions(
     limit: int,
     expired: Callable[[], bool],
 ) -> set[int]:
-    """Return a superset of the actions of extensions up to a cost of ``limit``; ``free`` ones cost nothing.
+    """Return a superset of the actions of all extensions that cost up to ``limit``.
 
-    An action is excluded if its derivation and its path to a required set cost more. All actions on the path
-    belong to the extension, so they count in full. Free actions of the derivation count as 0. Where time is
-    up, the superset is larger.
+    An action is excluded if its derivation and its path to a required set together cost more. All actions on
+    the path belong to the extension, so they count in full. In the derivation, ``free`` actions cost nothing.
+    If time is up, the superset is larger.
     """
     required_graph, remaining_cost = _graph_of_required(graph), _cost_without(free, cost)
     all_actions = range(len(graph.needs))

@@ -18,8 +18,9 @@ _STEPS = 1000  # actions processed between two looks at the time
 class FirstAchievers:
     """A graph without the add effects that an action never achieves first, computed at construction.
 
-    ``graph`` is the result. All actions of the given graph can run. In large graphs, only landmarks among the
-    first objects are computed. Where time is up, no add effect is removed.
+    The attribute ``graph`` is this graph. All actions of the graph that is passed have to be able to run. In
+    a large graph, only landmarks among the first objects are computed, so fewer add effects are removed. If
+    time is up, none is removed.
     """
 
     def __init__(self, graph: Hypergraph, expired: Callable[[], bool] = lambda: False) -> None:
@@ -29,7 +30,7 @@ class FirstAchievers:
             if graph.size**2 <= tuning.RELAXATION.landmark_bits
             else tuning.RELAXATION.landmark_bits // graph.size
         )
-        self._landmarks = _landmarks(graph, tracked_count, expired)
+        self._landmarks = _object_landmarks(graph, tracked_count, expired)
         self._landmarks_before = [self._landmarks_of(needed) for needed in graph.needs]
         self.graph = Hypergraph(
             graph.size,
@@ -42,14 +43,18 @@ class FirstAchievers:
         )
 
     def _landmarks_of(self, objects: Iterable[int]) -> int:
-        """Return the landmarks of some objects together, as a bit set."""
+        """Return the union of the landmarks of some objects, as a bit set."""
         made = 0
         for o in objects:
             made |= self._landmarks[o]
         return made
 
     def landmark_of(self, cut: frozenset[int]) -> list[int]:
-        """Return the landmark of a cut, ascending: the crossing actions that can achieve an object first."""
+        """Return the landmark of a cut of :attr:`graph`, ascending.
+
+        It consists of the actions that cross the cut in this graph. An action is left out if an object of the
+        cut is a landmark of its preconditions: it cannot be the first to achieve an object of the cut.
+        """
         achievers, needs, before = self.graph.makers, self.graph.needs, self._landmarks_before
         inside = _bit_set(cut)
         return sorted(
@@ -57,7 +62,7 @@ class FirstAchievers:
         )
 
     def widen(self, cut: frozenset[int]) -> frozenset[int]:
-        """Return the cut of the given graph with the same landmark as this cut of :attr:`graph`.
+        """Extend a cut of :attr:`graph` to a cut of the original graph with the same landmark; return it.
 
         Suppose an action achieves an object of the cut, but never first. Then one of its preconditions has a
         landmark in the cut. This precondition is added, so that the action does not cross the cut.
@@ -81,12 +86,12 @@ def _bit_set(objects: Iterable[int]) -> int:
     return bits
 
 
-def _landmarks(graph: Hypergraph, tracked_count: int, expired: Callable[[], bool]) -> list[int]:
-    """Return the landmarks of each object as a bit set, among the first ``tracked_count`` objects alone.
+def _object_landmarks(graph: Hypergraph, tracked_count: int, expired: Callable[[], bool]) -> list[int]:
+    """Return the landmarks of each object, as a bit set; only the first ``tracked_count`` objects are in it.
 
-    A greatest fixpoint (Keyder, Richter and Helmert 2010). The landmarks of an object are the object itself
-    and the landmarks that all its achievers share. The landmarks of an achiever are those of its
-    preconditions. All bit sets are empty where time is up.
+    It is a greatest fixpoint (Keyder, Richter and Helmert 2010). The landmarks of an object are the object
+    itself and the landmarks that all its achievers share. The landmarks of an achiever are those of its
+    preconditions. If time is up, all bit sets are empty.
     """
     own = [1 << o if o < tracked_count else 0 for o in range(graph.size)]
     landmarks: list[int | None] = [None] * graph.size

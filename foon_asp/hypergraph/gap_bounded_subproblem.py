@@ -15,10 +15,11 @@ from foon_asp.problem import Problem
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Subproblem:
-    """A question with landmark cuts from before any reduction, so that they hold for every tree.
+    """A question before any reduction, with landmark cuts that hold for all of its trees.
 
-    ``remaining`` are the actions over which the cuts were found. With ``redundant``, trees may have units
-    that lead to no goal, since rules can require such units. Then ``costs`` cover all actions.
+    ``remaining``: the actions over which the cuts were found.
+    ``redundant``: whether trees may have units that lead to no goal, since rules can require such units. Then
+    ``costs`` cover all actions.
     """
 
     problem: Problem
@@ -29,9 +30,9 @@ class Subproblem:
     redundant: bool
 
     def landmarks(self) -> list[frozenset[int]]:
-        """Return disjunctive landmarks, as sets of units: those of the cuts, and the required sets.
+        """Return disjunctive landmarks, as sets of unit ids: those of the cuts, and the required sets.
 
-        Landmarks with an action that takes a kitchen item are left out.
+        Landmarks of cuts with an action that takes a kitchen item are left out.
         """
         graph, restriction = self.graph, self.problem.restriction
         landmarks = [frozenset(cut.members) for cut in self.cuts.cuts if max(cut.members) < graph.units]
@@ -41,30 +42,33 @@ class Subproblem:
         return landmarks
 
     def achievers_for(self, units: Iterable[int]) -> set[int]:
-        """Return the achievers of the goals and of the preconditions of some units."""
+        """Return the achievers of the goals and of the preconditions of some units, except kitchen items."""
         graph, kitchen = self.graph, self.problem.kitchen
         needed = {o for unit in units for o in graph.needs[unit] if o not in kitchen}
         return {achiever for o in needed.union(graph.goals) for achiever in graph.makers[o]}
 
     def rival_achievers(self, units: Iterable[int]) -> set[int]:
-        """Return all achievers of the objects that some units achieve, including these units."""
+        """Return all achievers of the objects that some units achieve, including these units.
+
+        Kitchen items do not count as objects. So a unit that achieves nothing else may be missing.
+        """
         graph, kitchen = self.graph, self.problem.kitchen
         achieved = {o for unit in units for o in graph.gives[unit] if o not in kitchen}
         return {achiever for o in achieved for achiever in graph.makers[o]}
 
     def units_of_numbers(self, numbers: Iterable[int]) -> set[int]:
-        """Return the ids of units, given by public numbers.
+        """Return the ids of the units with these public numbers.
 
-        Units that are removed or of other networks are left out.
+        Numbers of removed units, and numbers that no unit of the network has, are left out.
         """
         network, restriction = self.problem.network, self.problem.restriction
         units = {unit for number in numbers if (unit := network.unit_of_number(number)) is not None}
         return {unit for unit in units if restriction is None or not restriction.removed(unit)}
 
     def with_only_achievers(self, units: Iterable[int], max_units: int) -> set[int]:
-        """Return units with the only achievers of their preconditions added, transitively.
+        """Return these units, and each unit that is the only achiever of a precondition of a returned unit.
 
-        Stops at about ``max_units`` units.
+        Kitchen items do not count as preconditions. Stops at about ``max_units`` units.
         """
         graph, kitchen = self.graph, self.problem.kitchen
         closed, waiting = set(units), list(units)
@@ -77,12 +81,16 @@ class Subproblem:
                         waiting.append(achiever)
         return closed
 
-    def total(self, units: Iterable[int]) -> int:
-        """Return the cost of a tree, with the kitchen items that it takes if an objective counts these."""
-        return sum(map(self.costs, self.actions(units)))
+    def tree_cost(self, units: Iterable[int]) -> int:
+        """Return the cost of the tree of these units, which is that of its :meth:`tree_actions`."""
+        return sum(map(self.costs, self.tree_actions(units)))
 
-    def actions(self, units: Iterable[int]) -> set[int]:
-        """Return the actions of a tree: its units and, if an objective counts items, those that take them."""
+    def tree_actions(self, units: Iterable[int]) -> set[int]:
+        """Return the actions of the tree of these units.
+
+        They are the units themselves and, if an objective counts kitchen items, the actions that take the
+        items that the units need.
+        """
         tree = set(units)
         if self.graph.start:
             return tree
@@ -90,7 +98,11 @@ class Subproblem:
         return tree | {self.graph.units + o for o in needed & self.problem.kitchen}
 
     def nearest_units(self, min_units: int) -> frozenset[int]:
-        """Return the units nearest to the goals by reduced cost: at least ``min_units``, or all."""
+        """Return the units among the actions nearest to the goals by reduced cost.
+
+        The search ends when ``min_units`` actions are found. These may include actions that take kitchen
+        items.
+        """
         return self._units(
             neighbourhood(
                 self.graph,
@@ -102,7 +114,10 @@ class Subproblem:
         )
 
     def all_units(self) -> frozenset[int]:
-        """Return all units that a tree of any cost can have."""
+        """Return all units that a tree of any cost can have.
+
+        They are the units that can run. Unless trees may be redundant, they also have to lead to a goal.
+        """
         if self.redundant:
             return self._units(self._runnable_actions(self._all_actions()))
         cone, _ = self.graph.cone()
@@ -110,18 +125,19 @@ class Subproblem:
         return self._units(relevant)
 
     def units_within(self, limit: int, expired: Callable[[], bool]) -> frozenset[int]:
-        """Return a superset of the units of trees that cost up to ``limit``; a larger one if time is up."""
+        """Return the units among :meth:`actions_within`."""
         return self._units(self.actions_within(limit, expired))
 
     def actions_within(self, limit: int, expired: Callable[[], bool]) -> Collection[int]:
-        """Return a superset of the actions of trees that cost up to ``limit``; a larger one where time is up.
+        """Return a superset of the actions of trees that cost up to ``limit``.
 
-        Let the gap be ``limit`` minus the bound of the cuts. The reduced costs of a tree add up to at most
-        the gap. So an action is excluded if its derivation costs more than the gap. In an irredundant tree,
-        the path from the action to a goal counts, too. New cuts are then found among the remaining actions,
-        as long as that excludes many.
+        Let the gap be ``limit`` minus the bound of the cuts. The reduced costs of such a tree add up to at
+        most the gap. So an action is excluded if its derivation has a greater reduced cost. Unless trees may
+        be redundant, the path from the action to a goal is added to the derivation. Then new cuts are found
+        among the remaining actions, as long as many are excluded. If time is up, the superset is larger.
+        It is empty if cuts prove that there is no such tree.
 
-        Raises ``KeyboardInterrupt`` where the search for cuts is interrupted.
+        Raises ``KeyboardInterrupt`` if the search for cuts is interrupted.
         """
         graph, costs, cuts = self.graph, self.costs, self.cuts
         remaining: Collection[int] = self._all_actions() if self.redundant else self.remaining
@@ -157,7 +173,11 @@ class Subproblem:
         return remaining
 
     def _all_actions(self) -> list[int]:
-        """Return all actions that a tree may have: units that are not removed, and the taking of items."""
+        """Return all actions that a tree may have.
+
+        They are the units that are not removed and, if an objective counts kitchen items, the actions that
+        take these.
+        """
         units, restriction = self.graph.units, self.problem.restriction
         actions = (
             range(units) if restriction is None else [u for u in range(units) if not restriction.removed(u)]
@@ -166,9 +186,9 @@ class Subproblem:
         return [*actions, *(units + o for o in self.problem.kitchen if counted)]
 
     def _runnable_actions(self, actions: Collection[int]) -> Collection[int]:
-        """Return the given actions that can run, if only these are allowed.
+        """Return those of the given actions that can run if no other actions are allowed.
 
-        All costs count as 0, since not every action has a known cost.
+        Costs are not looked at, since not every action has a known cost.
         """
         return compute_h_values(self.graph, actions, lambda _: 0, h_add=False).h_actions
 

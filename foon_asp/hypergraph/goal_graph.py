@@ -12,10 +12,11 @@ from foon_asp.problem import FilteredSets, Objective, Problem, search_backward
 class GoalGraph(Hypergraph):
     """A hypergraph with goals; it shares the lists of the network where possible.
 
-    Action ``a`` below ``units`` is the unit with that id. ``start`` is the kitchen, and ``goals`` are not
-    initial. Add effects may be initial objects. A restriction of the question has required sets: a tree has a
-    unit of each. Each required set is an additional object, one of ``required``. It is a goal, and each unit
-    of the set achieves it.
+    ``units``: the number of units. Action ``a`` below it is the unit with the id ``a``.
+    ``goals``: the goals that are not initial.
+    ``start``: the kitchen. Add effects may be initial objects.
+    ``required``: the additional objects of required sets. A tree has a unit of each set. So the object of a
+    set is a goal, and each unit of the set achieves it.
 
     If an objective counts the items taken from the kitchen, ``start`` is empty. Then action ``units + o``
     takes item ``o``: it has no preconditions and the effect ``o``.
@@ -29,15 +30,15 @@ class GoalGraph(Hypergraph):
     def cone(self, allowed: Container[int] | None = None) -> tuple[set[int], set[int]]:
         """Return the relevant actions and objects, found backwards from the goals through allowed actions.
 
-        Stops at initial objects. If ``allowed`` is ``None``, all actions are allowed.
+        The search stops at initial objects. ``allowed``: the actions that are allowed; ``None`` for all.
         """
         return search_backward(self.goals, self.makers, self.needs, self.start, allowed)
 
     def thin(self, max_achievers: int, cost: Callable[[int], int]) -> "GoalGraph":
         """Return a graph in which each required set has at most ``max_achievers`` units, for estimates.
 
-        The units with the fewest non-initial preconditions stay; of equal ones, the cheapest. The achievers
-        of other objects do not change.
+        The units with the fewest non-initial preconditions stay. Among units with equally many, the cheapest
+        stay. The achievers of other objects do not change.
         """
 
         def sort_key(action: int) -> tuple[int, int, int]:

@@ -26,10 +26,11 @@ class Bounded(NamedTuple):
 
 
 def raise_bound(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide | None) -> Bounded:
-    """Raise the lower bound by landmark cuts over the candidates, which have to contain a tree.
+    """Find landmark cuts over the candidates, which have to contain a tree, and raise the lower bound.
 
-    ``h_values`` and ``guide`` are as for :func:`landmark_cuts`. The cuts become evidence if they are the
-    first ones, or if no earlier bound is as great.
+    ``h_values`` and ``guide`` are those of :func:`landmark_cuts`. The bound is raised at most to the cost of
+    the incumbent. In the evidence, the cuts become ``first`` if there were none before, and ``cuts`` if no
+    earlier bound is as great. If ctrl-C interrupts the search, the cuts found so far are returned.
     """
     costs = task.costs
     assert costs is not None
@@ -53,10 +54,12 @@ def raise_bound(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide 
 
 
 def tighten(task: Task, gap: Gap, h_values: Mapping[int, int], guide: Guide | None, thorough: bool) -> Stage:
-    """Raise the lower bound by cuts, look for better trees, and fix candidates by reduced costs.
+    """Raise the lower bound by cuts, look for better trees, and exclude candidates by reduced costs.
 
-    Yields the gap after each step. Where the cuts prove the incumbent optimal, no candidates are fixed, and
-    the gap is marked as proved. Raises ``KeyboardInterrupt`` where the search for cuts was interrupted.
+    Yields the gap after each step. If the cuts prove the incumbent optimal, the gap is marked as proved, and
+    no candidates are excluded. Candidates are excluded only if the task has the reduction ``dear``. The
+    other arguments are those of :func:`raise_bound` and :func:`search_neighbourhood`. Raises
+    ``KeyboardInterrupt`` if the search for cuts was interrupted.
     """
     gap, cuts = raise_bound(task, gap, h_values, guide)
     yield gap
@@ -84,15 +87,15 @@ def h_max_guide(task: Task, gap: Gap) -> Guide:
 
 
 def is_proved_by(task: Task, gap: Gap, cuts: Cuts) -> bool:
-    """Return whether cuts prove the incumbent optimal and only better trees are wanted."""
+    """Return whether cuts prove the incumbent optimal; ``False`` if equally good trees are wanted as well."""
     assert task.costs is not None
     return task.only_better(gap) and task.costs.proves_optimal(cuts, gap.incumbent)
 
 
 def search_neighbourhood(task: Task, gap: Gap, cuts: Cuts, thorough: bool) -> Gap:
-    """Look for a better tree in the reduced-cost neighbourhood; return the gap with it.
+    """Look for a better tree among the candidates of small reduced cost; return the gap with it.
 
-    Returns the same gap if there is none. ``thorough`` is as for :func:`improve_locally`.
+    If none is found, returns the same object ``gap``. ``thorough`` is as for :func:`improve_locally`.
     """
     costs = task.costs
     assert costs is not None
@@ -106,9 +109,10 @@ def search_neighbourhood(task: Task, gap: Gap, cuts: Cuts, thorough: bool) -> Ga
 
 
 def search_repeatedly(task: Task, gap: Gap) -> Stage:
-    """Search the neighbourhood thoroughly from each new incumbent, within the budget of branching.
+    """Search the neighbourhood thoroughly, again and again, until the incumbent stays as it is.
 
-    Yields the gap after each search.
+    Also ends when time is up, or as many actions were looked at as branching may. Yields the gap after each
+    search.
     """
     budget, previous = task.tuning.branching_budget, frozenset[int]()
     while gap.incumbent != previous and not task.expired():
@@ -122,7 +126,10 @@ def search_repeatedly(task: Task, gap: Gap) -> Stage:
 
 
 def follow_h_add(task: Task, gap: Gap) -> Gap:
-    """Replace the incumbent by the tree that follows h_add, if that is better."""
+    """Replace the incumbent by an irredundant tree that follows h_add over the candidates, if it is better.
+
+    If the candidates contain no tree, an irredundant subset of the incumbent is tried instead.
+    """
     costs = task.costs
     assert costs is not None
     tree = compute_h_values(task.graph, gap.candidates, costs, h_add=True).tree(task.graph, task.graph.goals)
@@ -131,7 +138,7 @@ def follow_h_add(task: Task, gap: Gap) -> Gap:
 
 
 def fix_candidates(task: Task, gap: Gap, cuts: Cuts) -> Gap:
-    """Exclude the candidates above the cutoff by reduced-cost fixing, with the reduced costs of cuts."""
+    """Return the gap without the candidates that the reduced costs of cuts put above the cutoff."""
     assert task.costs is not None
     reduced_cost, distance = reduced_costs_of(task.costs, cuts), task.cutoff(gap) - cuts.bound
     return gap.with_candidates(
@@ -140,16 +147,16 @@ def fix_candidates(task: Task, gap: Gap, cuts: Cuts) -> Gap:
 
 
 def prune_dominated(task: Task, gap: Gap) -> Gap:
-    """Exclude the candidates that others dominate, if the task asks for that and has exact costs."""
+    """Return the gap without dominated candidates, if the task has this reduction and exact costs."""
     if task.costs is None or Reduction.DOMINATED not in task.reductions:
         return gap
     return gap.with_candidates(undominated_actions(task.graph, gap.candidates, task.costs))
 
 
 def prune_by_landmarks(task: Task, gap: Gap) -> Gap:
-    """Exclude the candidates that action landmarks make irrelevant, if the task asks for that.
+    """Return the gap without the candidates that action landmarks make irrelevant.
 
-    Does nothing if there are many candidates.
+    Returns the same gap if the task lacks this reduction, or if there are many candidates.
     """
     large = len(gap.candidates) > task.tuning.neighbourhood_actions
     if large or Reduction.FORCED not in task.reductions:
@@ -158,10 +165,10 @@ def prune_by_landmarks(task: Task, gap: Gap) -> Gap:
 
 
 def restrict_to_relevant(task: Task, gap: Gap) -> tuple[Gap, dict[int, int]] | None:
-    """Return the gap over the relevant actions that can run, and the h_max of each object.
+    """Return the gap with all relevant actions that can run as candidates, and the h_max of each object.
 
-    A gap without an incumbent gets the tree that follows h_max. ``None`` if there is no tree. Costs are the
-    rough ones of the task.
+    h_max is computed at the rough costs of the task. If the incumbent is empty, the tree that follows h_max
+    becomes the incumbent. Returns ``None`` if there is no tree.
     """
     graph = task.graph
     cone, _ = graph.cone(task.scope)

@@ -9,13 +9,15 @@ from foon_asp.problem import follow_achievers
 
 
 class Derivations(NamedTuple):
-    """The h-values and best achievers of the objects that some actions reach, cheapest first.
+    """The h-values and best achievers of the objects that some actions reach.
 
     ``h_objects``: the h-value of each object.
-    ``best_achievers``: the best achiever of each object. Following best achievers is acyclic.
+    ``best_achievers``: the achiever by which each object has its h-value. Following best achievers is
+    acyclic.
     ``h_actions``: for each action, its cost plus the h-value of its preconditions.
 
-    Actions that cannot run, objects that are not reached, and initial objects are missing.
+    All three are in ascending order of h-values. Actions that cannot run, objects that are not reached, and
+    initial objects are missing.
     """
 
     h_objects: dict[int, int]
@@ -23,7 +25,10 @@ class Derivations(NamedTuple):
     h_actions: dict[int, int]
 
     def tree(self, graph: GoalGraph, objects: Iterable[int]) -> set[int] | None:
-        """Return the actions that derive objects by best achievers; ``None`` if an object is not reached."""
+        """Return the actions that derive some objects by best achievers.
+
+        Return ``None`` if one of the objects is not reached.
+        """
         return follow_achievers(objects, self.best_achievers, graph.needs, graph.start)
 
 
@@ -32,9 +37,10 @@ def compute_h_values(
 ) -> Derivations:
     """Return the h-values and best achievers of the objects that actions reach; no cost is below 0.
 
-    With ``h_add``, the h-values of an action's preconditions are added, so shared actions count more than
-    once. Otherwise their maximum counts (h_max), which is a lower bound on every derivation (Bonet and
-    Geffner 2001). The algorithm is Dijkstra's, generalized, with a bucket for each h-value.
+    The h-value of an object is that of its best achiever: the cost of the achiever plus the h-value of its
+    preconditions. With ``h_add``, the h-values of the preconditions are added, so shared actions count more
+    than once. Otherwise, their maximum is taken (h_max), and no derivation costs less (Bonet and Geffner
+    2001). The algorithm is Dijkstra's, generalized, with a bucket for each h-value.
     """
     price = cost.__getitem__ if isinstance(cost, Mapping) else cost
     needs, gives, start = graph.needs, graph.gives, graph.start

@@ -10,10 +10,12 @@ from foon_asp.deadline import uninterrupted
 class RunTuning(NamedTuple):
     """How HiGHS is run such that it ends when time is up.
 
-    ``small_size``: columns and rows of a program, together. A larger program is run in a thread of its own.
-    ``steps``: steps of the simplex algorithm between two checks of the time; they take about a second.
+    ``small_size``: columns plus rows of a program. A larger program is run in a thread of its own.
+    ``steps``: steps of the simplex algorithm between two checks of the time, outside a thread. They take
+    about a second.
     ``poll_seconds``: seconds between two checks of the time, for a program in a thread.
-    ``end_seconds``: seconds that HiGHS has to end; a step of the interior-point method may take longer.
+    ``end_seconds``: seconds that HiGHS has to end in its thread when time is up. A step of the interior-point
+    method may take longer.
     """
 
     small_size: int = 6000
@@ -26,10 +28,7 @@ RUN = RunTuning()
 
 
 def libraries() -> tuple[Any, Any]:
-    """Import and return the modules highspy and numpy.
-
-    They are imported only when needed, since that is slow.
-    """
+    """Return the modules highspy and numpy; they are imported here, not earlier, since that is slow."""
     with uninterrupted():
         import highspy  # noqa: PLC0415
         import numpy as np  # noqa: PLC0415
@@ -59,8 +58,9 @@ def silent_highs() -> Any:
 def run(highs: Any, expired: Callable[[], bool], has_integers: bool = False) -> bool:
     """Run HiGHS on its model; return whether it ended before time was up.
 
-    ``has_integers`` says that the model has integer variables. If time was up, the current solution can be
-    read. Raises ``KeyboardInterrupt`` if HiGHS does not stop; the instance must not be used after that.
+    ``expired`` returns whether time is up, and ``has_integers`` tells whether the model has integer
+    variables. If time was up, the current solution can be read. Raises ``KeyboardInterrupt`` if HiGHS does
+    not stop when time is up. After that, ``highs`` must not be used.
     """
     if has_integers or highs.getNumCol() + highs.getNumRow() > RUN.small_size:
         return _Run(highs, expired).wait()
@@ -78,7 +78,7 @@ def run(highs: Any, expired: Callable[[], bool], has_integers: bool = False) -> 
 class _Run:
     """A run of HiGHS in a thread of its own, with a callback that can interrupt it.
 
-    In the main thread, ctrl-C could come during the callback. HiGHS does not survive exceptions there.
+    In the main thread, ctrl-C could raise an exception during the callback. HiGHS does not survive that.
     """
 
     def __init__(self, highs: Any, expired: Callable[[], bool]) -> None:
@@ -86,9 +86,9 @@ class _Run:
         self._stopped = False
 
     def wait(self) -> bool:
-        """Run HiGHS until it ends or time is up; return whether it ended.
+        """Run HiGHS until it ends or time is up; return whether it ended by itself.
 
-        Raises ``KeyboardInterrupt`` where it does not stop.
+        Raises ``KeyboardInterrupt`` if HiGHS does not stop within ``RUN.end_seconds`` after time is up.
         """
         import highspy  # noqa: PLC0415 (slow to import, so only when it is there already)
 
@@ -109,6 +109,6 @@ class _Run:
         return bool(self._highs.getModelStatus() != highspy.HighsModelStatus.kInterrupt)
 
     def _interrupt_if_stopped(self, _: object, __: object, ___: object, answer: Any, ____: object) -> None:
-        """Interrupt HiGHS once the run is stopped; HiGHS calls this between its steps."""
+        """Make HiGHS end if :meth:`wait` has stopped the run; HiGHS calls this between its steps."""
         if self._stopped:
             answer.user_interrupt = True

@@ -9,9 +9,13 @@ from functools import cached_property
 class Hypergraph:
     """Actions ``0 .. len(needs) - 1`` over objects ``0 .. size - 1``.
 
-    Action ``a`` has the preconditions ``needs[a]`` and the add effects ``gives[a]``. ``start`` are the
-    initial objects. No object is ever consumed. ``known_makers`` are the achievers of each object, if the
-    caller has them already.
+    Action ``a`` has the preconditions ``needs[a]`` and the add effects ``gives[a]``. No object is ever
+    consumed. ``start`` are the initial objects. ``known_makers`` are the achievers of each object; if they
+    are ``None``, they are computed when needed.
+
+    An object is *reachable* if some sequence of actions makes it from the initial objects. An action *can
+    run* if all of its preconditions are reachable. A *derivation* of some objects is a set of actions that
+    makes them from the initial objects. The objects to be made are the *targets*.
     """
 
     size: int
@@ -45,9 +49,9 @@ class Hypergraph:
         return [sum(not at_start[o] for o in set(needed)) for needed in self.needs]
 
     def landmark_of(self, objects: frozenset[int]) -> tuple[int, ...]:
-        """Return the landmark of a cut: the actions that achieve one of its objects and need none.
+        """Return the landmark of a cut, ascending.
 
-        They are in ascending order.
+        It consists of the actions that achieve an object of the cut and need none of its objects.
         """
         makers, needs = self.makers, self.needs
         return tuple(sorted({a for o in objects for a in makers[o] if objects.isdisjoint(needs[a])}))

@@ -21,12 +21,12 @@ class FirstCuts(NamedTuple):
 class Evidence(NamedTuple):
     """The cuts and the case split that prove the lower bound of a gap.
 
-    ``first``: the cuts found before any reduction.
+    ``first``: the landmark cuts found before any reduction.
     ``cuts``: the greedy cost partition with the greatest bound.
     ``partition``: the last optimal cost partition that raised the bound.
     ``tight``: the tight cuts of all LP solutions so far, in order.
     ``starting``: the tight cuts of the last LP solution. The next relaxation begins with them.
-    ``cases``: the actions branched on; ``None`` if branching proved nothing.
+    ``cases``: the actions branched on, as nested cases; ``None`` if branching proved nothing.
     """
 
     first: FirstCuts | None = None
@@ -47,7 +47,7 @@ class Gap:
     ``incumbent``: the actions of the best tree so far.
     ``lower_bound``: a lower bound on the cost of every tree, in the units of :class:`ExactCosts`.
     ``candidates``: the actions that better trees can have. If equally good trees are wanted, their actions
-    are candidates, too.
+    are candidates as well.
     ``budget``: the number of actions that branch and bound may still look at.
     ``proved``: whether the incumbent is proved optimal.
     ``evidence``: the cuts that prove the lower bound.

@@ -15,8 +15,8 @@ if TYPE_CHECKING:  # few questions need it
 def irredundant_subset(graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int]) -> set[int]:
     """Return an irredundant subset of a tree, by removing redundant actions, expensive ones first.
 
-    All actions of the tree have to be able to run. Some actions are removed before any others: those that the
-    cheapest derivations by h_add do not use.
+    All actions of the tree have to be able to run. Actions that best achievers by h_add do not use are
+    removed first, all at once.
     """
     support = Support(graph, tree, cost)
     waiting = [(-cost(action), action) for action in support.actions]
@@ -40,10 +40,10 @@ def trees_by_lp_values(
     lp_values: Mapping[int, float],
     without: Collection[int],
 ) -> Iterator[set[int]]:
-    """Yield irredundant trees that follow LP values and have no action of ``without``.
+    """Yield an irredundant tree that follows h_add and one that follows h_max, both guided by LP values.
 
-    The greater the LP value of an action, the less it costs. One tree follows h_add, one h_max, if they
-    exist.
+    For the h-values, the cost of an action is multiplied by 1 minus its LP value. The trees have no action of
+    ``without``. Yields nothing if there is no such tree.
     """
     allowed = [a for a in actions if a not in without]
 
@@ -68,7 +68,10 @@ def _scaled_cost(cost: int, share: float) -> int:
 def trees_by_partition(
     graph: GoalGraph, actions: Collection[int], cost: Callable[[int], int], partition: "CostPartition"
 ) -> Iterator[set[int]]:
-    """Yield irredundant trees that follow an LP solution, by its values and by its reduced costs."""
+    """Yield up to four irredundant trees that follow an LP solution: by h_add and by h_max, at two prices.
+
+    One price is the cost times 1 minus the LP value, the other is about the reduced cost.
+    """
 
     def price_by_lp_value(action: int) -> int:
         """Return about 1000 times the cost of an action times 1 minus its LP value."""
@@ -96,15 +99,15 @@ def perturbation_search(
     random_number: Callable[[], float],
     tries: int,
 ) -> set[int]:
-    """Return a cheaper tree found by perturbation search, else ``tree``.
+    """Return a tree of ``actions`` cheaper than ``tree``, found by perturbation search, else ``tree``.
 
-    Each round derives a tree by h_add or h_max at perturbed costs: each cost is multiplied by a random factor
-    from 0.5 to 1.5. In half of the rounds, costs are also multiplied by 1 minus the LP values. In the other
-    half, a random part of the current tree costs nothing; sometimes only a random part of the other actions
-    is allowed. A tree that costs no more than the current tree replaces it.
+    Each round derives an irredundant tree by h_add or h_max at perturbed costs: each cost is multiplied by a
+    random factor from 0.5 to 1.5. In half of the rounds, costs are also multiplied by 1 minus the LP values.
+    In the other half, a random part of the current tree costs nothing, and sometimes only a random part of
+    the other actions is allowed. A tree that costs no more than the current tree replaces it.
 
-    Ends at a cost of ``sufficient_cost`` or where time is up. Also ends when each action was looked at
-    ``tries`` times since the last improvement.
+    Ends when a tree costs at most ``sufficient_cost``, or time is up. Also ends when each action was looked
+    at ``tries`` times since the last improvement.
     """
     best = current_tree = tree
     total = sum(map(cost, tree))
@@ -142,17 +145,18 @@ def improve_locally(
     expired: Callable[[], bool],
     thorough: bool,
 ) -> set[int]:
-    """Return a cheaper tree among the actions by local search, else ``tree``.
+    """Return a tree of ``actions`` cheaper than ``tree``, found by local search, else ``tree``.
 
-    First tries the trees that follow h_add and h_max, by costs and by reduced costs. If ``thorough``, then
-    tries to do without each action of the best tree. For that, it derives a tree without this action, while
-    the other actions of the best tree cost nothing.
+    Four trees are tried first: those that follow h_add and h_max, by costs and by reduced costs. If
+    ``thorough``, the search then tries to do without each action of the best tree. For that, it derives a
+    tree without this action, while the other actions of the best tree cost nothing. This ends when all
+    actions of the best tree were tried, or time is up.
     """
     best = tree
     total = sum(map(cost, best))
 
     def try_derived_tree(actions: Collection[int], price: Callable[[int], int], h_add: bool) -> None:
-        """Derive a tree by h_add or h_max at some prices, and keep it if it is the best so far."""
+        """Derive a tree at some prices, and keep an irredundant subset of it if it is the best so far."""
         nonlocal best, total
         derived = compute_h_values(graph, actions, price, h_add).tree(graph, graph.goals)
         if derived is not None:

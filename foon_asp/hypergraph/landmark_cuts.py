@@ -2,6 +2,10 @@
 
 Landmarks are as in :mod:`foon_asp.hypergraph.cut`. The weight of each landmark is the least reduced cost of
 its actions. It is subtracted from the reduced costs of all of them.
+
+Cuts are *goal zones*. The goal zone of an object grows backwards from it through actions of reduced cost 0:
+of each such action, the precondition of the greatest h-value is added. Actions that cross the zone form the
+landmark.
 """
 
 import math
@@ -14,10 +18,13 @@ from foon_asp.hypergraph.hypergraph import Hypergraph
 
 
 class WeightedCut(NamedTuple):
-    """A cut with its landmark ``members``, its ``weight``, and the ``cheapest`` landmark action.
+    """A cut with its landmark and its weight.
 
-    The weight is the reduced cost of the cheapest action when the cut was found. Cuts form chains, to save
-    memory: this cut has its ``added_objects`` and all objects of ``earlier_cut``.
+    ``members``: the actions of the landmark.
+    ``cheapest``: the landmark action of the least reduced cost when the cut was found.
+    ``weight``: this least reduced cost.
+    ``added_objects``, ``earlier_cut``: the cut has the ``added_objects`` and all objects of the earlier cut,
+    if there is one. Such chains save memory.
     """
 
     added_objects: frozenset[int]
@@ -30,7 +37,7 @@ class WeightedCut(NamedTuple):
     def objects(self) -> frozenset[int]:
         """All objects of the cut, among them a target.
 
-        They are computed at each access, since the chain may be long.
+        They are computed anew at each access, to save memory.
         """
         objects, cut = [self.added_objects], self.earlier_cut
         while cut is not None:
@@ -40,8 +47,9 @@ class WeightedCut(NamedTuple):
 
 
 class Cuts(NamedTuple):
-    """A cost partition over cuts: the sum ``bound`` of its weights is a lower bound on every derivation.
+    """A cost partition over cuts.
 
+    ``bound``: the sum of the weights of the cuts, a lower bound on the cost of every derivation.
     ``reduced_costs``: the reduced cost of actions; an action that is missing has its full cost.
     ``hopeless``: whether the allowed actions have no derivation.
     ``interrupted``: whether ctrl-C ended the search for cuts. Then the bound holds, but ``reduced_costs``
@@ -56,12 +64,12 @@ class Cuts(NamedTuple):
 
 
 class _Level:
-    """Objects that every derivation makes, and the goal zone of the last of them.
+    """Some objects that every derivation of a target makes, and the goal zone of the last of them.
 
-    ``zone``: the goal zone, a set of objects that grows backwards from the last object. It becomes a cut.
+    ``zone``: the objects of the goal zone; empty until it is grown.
     ``frontier``: the actions of reduced cost above 0 that achieve an object of the zone, as keys.
-    ``cut``: the latest cut of this zone. Before the first, it is ``earlier_cut``, the latest cut of the level
-    below.
+    ``earlier_cut``: the latest cut of the level below; ``None`` for the lowest level.
+    ``cut``: the latest cut of this zone. Before the first one, it is ``earlier_cut``.
     """
 
     def __init__(self, objects: Sequence[int], earlier_cut: WeightedCut | None) -> None:
@@ -77,9 +85,10 @@ class _Level:
 
 
 class _Target:
-    """A target with a stack of levels; objects of a level are made before objects of the level below.
+    """A target with a stack of levels, of which the lowest has the target alone.
 
-    ``outer_zones`` are the objects in the zones of all levels except the topmost.
+    Objects of a level are made before objects of the level below. ``outer_zones`` are the objects in the
+    zones of all levels except the topmost.
     """
 
     def __init__(self, target: int) -> None:
@@ -89,8 +98,8 @@ class _Target:
     def top_level(self, free: Container[int]) -> _Level | None:
         """Return the topmost level whose last object is not free; ``None`` if the target itself is free.
 
-        An object is free if it can be made at reduced cost 0. Free objects and empty levels above are
-        removed.
+        An object is free if it can be made at reduced cost 0. Levels above that have only free objects are
+        removed, and so are free objects at the end of a level.
         """
         while self.levels:
             level = self.levels[-1]
@@ -106,9 +115,9 @@ class _Target:
         return None
 
     def add_level(self, needed: Sequence[int]) -> None:
-        """Add a level of ``needed``, the common preconditions of the latest landmark, if there are any.
+        """Put a level on the stack with the objects ``needed``, the common preconditions of a landmark.
 
-        The search continues from the last of them.
+        Does nothing if there are none.
         """
         if needed:
             self.outer_zones |= self.levels[-1].zone
@@ -125,21 +134,24 @@ def landmark_cuts(
     guide: Callable[[Callable[[int], int]], Mapping[int, int]] | None = None,
     max_landmark_actions: float = math.inf,
 ) -> Cuts:
-    """Find landmark cuts and a cost partition by LM-cut, until the targets have reduced cost 0.
+    """Find landmark cuts by LM-cut until all targets have reduced cost 0; return the cost partition.
 
     ``allowed``: the only actions that count. All of them cost more than 0.
-    ``h_values``: h-values of objects, infinite where missing. As in LM-cut, a cut passes through the
-    precondition of the greatest h-value.
-    ``guide``: a function that computes new h-values from reduced costs. It is called each time that a certain
-    number of cuts was found; ``None`` keeps the first h-values.
+    ``h_values``: the h-value of each object; a missing one is infinite. They decide through which
+    preconditions a goal zone grows.
+    ``guide``: a function that computes new h-values from reduced costs. It is called whenever a certain
+    number of cuts has been found. ``None`` keeps the first h-values.
     ``max_landmark_actions``: ends the search when the landmarks have about this many actions together.
 
-    Ends early where time is up, too. Targets take turns, the greatest h-value first, so that the cuts of one
-    target do not use up the costs that others need. The set of objects of reduced cost 0 only grows, so the
-    time is linear in the parts of the graph that cuts touch.
+    Also ends when ``expired`` returns true. If a target cannot be reached, the result is ``hopeless``. After
+    ctrl-C, nothing is raised, and the result is ``interrupted``.
+
+    Targets take turns, the greatest h-value first, so that the cuts of one target do not use up the costs
+    that others need. The set of objects of reduced cost 0 only grows, so the time is linear in the parts of
+    the graph that cuts touch.
     """
     search = _Search(graph, allowed, cost, h_values)
-    queue = deque(_Target(o) for o in sorted(targets, key=search.guide_key, reverse=True))
+    queue = deque(_Target(o) for o in sorted(targets, key=search.h_value_key, reverse=True))
     next_guide = max(tuning.CUTS.guided_cuts, len(queue))  # how many cuts there are when the guide is asked
     effort = 0
     try:
@@ -190,14 +202,15 @@ class _Search:
         """Return the reduced cost of an action."""
         return self.reduced_costs[action] if action in self.reduced_costs else self._cost(action)
 
-    def guide_key(self, o: int) -> tuple[float, int]:
+    def h_value_key(self, o: int) -> tuple[float, int]:
         """Return a sort key of an object: its h-value, then its number."""
         return self.h_values.get(o, math.inf), o
 
     def add_cut(self, level: _Level, outer_zones: set[int]) -> WeightedCut | None:
-        """Find the next cut of a level, and subtract its weight from reduced costs; return the cut.
+        """Find the next cut of a level, record it, and subtract its weight from reduced costs; return it.
 
-        ``None`` where no action crosses the zone.
+        Return ``None`` if no action crosses the zone, so that the target cannot be reached. ``outer_zones``
+        are those of the :class:`_Target`.
         """
         new_objects = self._grow_zone(level, outer_zones)
         while new_objects is None:
@@ -221,17 +234,21 @@ class _Search:
         return level.cut
 
     def common_preconditions(self, members: Sequence[int]) -> list[int]:
-        """Return the common preconditions of a landmark that are not free, the greatest h-value last."""
+        """Return the preconditions that all actions of a landmark share, the greatest h-value last.
+
+        Free and initial objects are left out.
+        """
         needs = self._graph.needs
         common = set(self.free.missing_preconditions(members[0])).intersection(
             *(needs[action] for action in members)
         )
-        return sorted(common, key=self.guide_key)
+        return sorted(common, key=self.h_value_key)
 
     def _grow_zone(self, level: _Level, outer_zones: set[int]) -> list[int] | None:
-        """Grow a zone backwards through actions of reduced cost 0, and return its new objects.
+        """Grow the zone of a level through actions of reduced cost 0, and return its new objects.
 
-        ``None`` if all preconditions of such an action are free. Then the zone has to start anew.
+        Actions that need an object of ``outer_zones`` are skipped. Return ``None`` if all preconditions of an
+        action of reduced cost 0 are free. Then the zone has to be cleared.
         """
         needs, achievers, reduced_costs = self._graph.needs, self._graph.makers, self.reduced_costs
         zone, frontier = level.zone, level.frontier
@@ -248,7 +265,7 @@ class _Search:
                 lacking = self.free.missing_preconditions(action)
                 if not lacking:
                     return None
-                costliest = max(lacking, key=self.guide_key)
+                costliest = max(lacking, key=self.h_value_key)
                 zone.add(costliest)
                 new_objects.append(costliest)
             if i == len(new_objects):

@@ -20,12 +20,16 @@ PARTS = 720720  # of 1: most weights are simple fractions
 
 
 class LandmarkRelaxation:
-    """The relaxation over some actions, which all can run; objects and actions are numbered anew.
+    """The relaxation over some actions, which all have to be able to run.
 
-    ``actions``: the old number of each action.
-    ``graph``, ``targets``: the subgraph of first achievers, and its targets.
-    ``costs``, ``greatest_cost``: the cost of each action, and the greatest cost.
-    ``relative_costs``: costs divided by the greatest one, since costs may be too great for floats.
+    Objects and actions of the relaxation have new numbers, from 0.
+
+    ``actions``: for each action, its number in the whole graph.
+    ``graph``: the graph of first achievers over these actions, the *subgraph*.
+    ``targets``: the targets in the subgraph.
+    ``costs``: the cost of each action.
+    ``greatest_cost``: the greatest of the costs.
+    ``relative_costs``: the costs divided by the greatest one, since costs may be too great for floats.
     ``covering``: the linear program, with ``relative_costs`` as the costs of columns.
     ``cuts``: the cut of each row, given by its objects in the subgraph.
     ``rows``: the landmark of each row, as an array of actions.
@@ -62,7 +66,10 @@ class LandmarkRelaxation:
         self.covering.add_row(self.rows[-1])
 
     def add_whole_cuts(self, cuts: Iterable[Iterable[int]]) -> None:
-        """Add rows for cuts of the whole graph, each given by its objects."""
+        """Add rows for cuts of the whole graph, each given by its objects.
+
+        Objects that the subgraph lacks are left out.
+        """
         position = {o: i for i, o in enumerate(self._objects)}
         for objects in cuts:
             self.add_cut(frozenset(position[o] for o in objects if o in position))
@@ -72,9 +79,9 @@ class LandmarkRelaxation:
         return self._achievers.landmark_of(cut)
 
     def whole_cut(self, cut: frozenset[int]) -> frozenset[int]:
-        """Return the cut of the whole graph with the same landmark as a cut of this subgraph.
+        """Return the cut of the whole graph with the same landmark as a cut of the subgraph.
 
-        The result has object numbers of the whole graph. It is cached.
+        The result has object numbers of the whole graph. Results are cached.
         """
         if cut not in self._whole_cuts:
             self._whole_cuts[cut] = frozenset(self._objects[o] for o in self._achievers.widen(cut))
@@ -88,11 +95,11 @@ class LandmarkRelaxation:
         budget: int,
         stopped: Callable[[], bool],
     ) -> tuple[int, int]:
-        """Add disjoint cuts that an LP solution violates, until ``budget`` actions were looked at.
+        """Add cuts that an LP solution violates; return the numbers of cuts added and of actions looked at.
 
-        ``lp_values`` is an array of the LP value of each action. It is changed in place. No landmark has an
-        action of ``used``. Ends early where ``stopped`` returns true. Returns the number of cuts added and
-        the number of actions looked at.
+        ``cutters`` are asked one after the other. Landmarks are disjoint, and have no action of ``used``.
+        ``lp_values``, an array of the LP value of each action, is changed in place. Ends when no cut is left,
+        ``budget`` actions were looked at, or ``stopped`` returns true.
         """
         added = looks = 0
         for cutter in cutters:
@@ -107,16 +114,20 @@ class LandmarkRelaxation:
         return added, looks
 
     def costs_in_parts(self) -> Any:
-        """Return an array of costs in parts: integers of 64 bits where their sum fits, else of Python."""
+        """Return an array of the cost of each action, in parts: :data:`PARTS` is a cost of 1.
+
+        It has integers of 64 bits if the sum of the costs fits, else integers of Python.
+        """
         fits = sum(self.costs) * PARTS < 2**62
         return self._np.array(self.costs, dtype=self._np.int64 if fits else object) * PARTS
 
     def feasible_weights(self, dual_values: Iterable[tuple[int, float]], capacity: Any) -> dict[int, int]:
-        """Return a feasible weight, in parts, of each row: its dual rounded and limited by ``capacity``.
+        """Return for each row a feasible weight, in parts: its dual, rounded and limited by ``capacity``.
 
-        ``dual_values`` are pairs of row and dual. ``capacity`` is an array of the cost of each action, in
-        parts. Weights are subtracted from it in place, so that reduced costs remain. Afterwards, weights are
-        raised greedily while capacity is left. The weights add up to a lower bound, whatever the duals are.
+        ``dual_values`` are pairs of a row and its dual. ``capacity`` is an array of the cost of each action,
+        in parts. Weights are subtracted from it in place, so that reduced costs remain in it. If costs remain
+        on all actions of a landmark, its weight is then raised. The weights add up to a lower bound, whatever
+        the duals are.
         """
         scale = self.greatest_cost * PARTS
         rounded_duals = {row: round(Fraction(w) * scale) if 0 < w < math.inf else 0 for row, w in dual_values}
@@ -135,9 +146,10 @@ class LandmarkRelaxation:
 def _subgraph(
     graph: Hypergraph, targets: Iterable[int], actions: Sequence[int]
 ) -> tuple[Hypergraph, list[int], list[int]]:
-    """Return the graph of the given actions, the old numbers of its objects, and its targets.
+    """Return the graph of the given actions, and for each of its objects the number in the whole graph.
 
-    It has the targets and the non-initial preconditions of the actions as objects.
+    The third value are the targets in the new graph. Its objects are the targets and the non-initial
+    preconditions of the actions, and none of them is initial.
     """
     targets, start = tuple(targets), graph.start
     objects = sorted({o for a in actions for o in graph.needs[a] if o not in start}.union(targets))

@@ -10,11 +10,12 @@ from foon_asp.hypergraph.goal_graph import GoalGraph
 def lazy_h_max_test(
     graph: GoalGraph, allowed: Container[int], reduced_cost: Callable[[int], int]
 ) -> Callable[[int, float], bool]:
-    """Return a function of an object and a limit: whether the h_max of the object is at most the limit.
+    """Return a function that tests whether the h_max of an object is at most a limit.
 
-    Only ``allowed`` actions count, at reduced cost. :func:`compute_h_values` computes h_max of all objects at
-    once. This function goes backwards from one object and prunes by the limit. With a low limit, it looks at
-    a small part of a large network. It also returns ``True`` where it would go too deep or take too long.
+    The h_max is that of ``allowed`` actions at their reduced costs. :func:`compute_h_values` computes h_max
+    of all objects at once. The returned function goes backwards from one object instead, and prunes by the
+    limit. With a low limit, it looks at a small part of a large network. It returns ``True`` without proof if
+    it would go too deep or take too long. It keeps bounds between calls.
     """
     needs, achievers, start = graph.needs, graph.makers, graph.start
     lower_bounds: dict[int, float] = {}  # on the h_max of objects
@@ -22,7 +23,10 @@ def lazy_h_max_test(
     budget = tuning.CUTS.lazy_looks
 
     def is_within(o: int, limit: float, depth: int = tuning.CUTS.lazy_depth) -> bool:
-        """Return whether the h_max of an object is at most a limit; updates the bounds known so far."""
+        """Return whether the h_max of an object is at most a limit, and record what this implies.
+
+        Preconditions are looked at up to this ``depth`` of recursion.
+        """
         nonlocal budget
         if lower_bounds.get(o, 0) > limit:
             return False

@@ -23,7 +23,7 @@ _DIGITS = 60  # of a logarithm, at first
 class Lexicographic:
     """An order on cost vectors.
 
-    ``levels``: for each level the tuple of its rates, or ``None`` if the level counts. Rates lie strictly
+    ``levels``: for each level, the tuple of its rates; ``None`` for a level that counts. Rates lie strictly
     between 0 and 1.
     ``width``: the number of coordinates of a vector.
     """
@@ -43,14 +43,14 @@ class Lexicographic:
         return (Fraction(0),) * self.width
 
     def total(self, vectors: Iterable[Vector]) -> Vector:
-        """Return the sum of costs."""
+        """Return the sum of costs; :attr:`zero` for no costs."""
         return tuple(sum(coordinates, Fraction(0)) for coordinates in zip(self.zero, *vectors, strict=True))
 
     def sign(self, vector: Sequence[Fraction | int]) -> int:
         """Return -1, 0 or 1 for a cost below, equal to or above the cost of nothing.
 
-        The sign is exact. A vector with coordinates other than 0 can cost nothing: 7/10 * 7/10 divided by
-        49/100 is 1.
+        The result is exact. A vector with coordinates other than 0 can cost nothing: the product of
+        ``(7/10) ** 2`` and ``(49/100) ** -1`` is 1.
         """
         for level, coordinates in self._split_by_level(vector):
             rates = self.levels[level]
@@ -62,13 +62,13 @@ class Lexicographic:
         return 0
 
     def compare(self, one: Vector, other: Vector) -> int:
-        """Return -1, 0 or 1 for a cost below, equal to or above another. The comparison is exact."""
+        """Return -1, 0 or 1 if ``one`` is below, equal to or above ``other``. The result is exact."""
         return self.sign(subtract(one, other))
 
     def approximate(self, vector: Sequence[Fraction | int]) -> list[float]:
         """Return the cost at each level as a float, for heuristics.
 
-        Coordinates are capped at 10^12, since HiGHS fails far above.
+        Coordinates are limited to the range from -10^12 to 10^12, since HiGHS fails far beyond it.
         """
         greatest = 10**12
         return [
@@ -79,7 +79,7 @@ class Lexicographic:
     def _split_by_level(
         self, vector: Sequence[Fraction | int]
     ) -> Iterator[tuple[int, Sequence[Fraction | int]]]:
-        """Yield the index of each level and its coordinates."""
+        """Yield for each level a pair: its index, and its coordinates in the vector."""
         start = 0
         for level, measures in enumerate(self._float_factors):
             end = start + len(measures)
@@ -87,15 +87,16 @@ class Lexicographic:
             start = end
 
     def _log_terms(self, level: int, exponents: Sequence[Fraction | int]) -> list[float]:
-        """Return each exponent times ``-log`` of its rate, as floats; a count stays as it is."""
+        """Return each exponent of a level times ``-log`` of its rate, as floats; a count stays as it is."""
         return [float(e) * measure for e, measure in zip(exponents, self._float_factors[level], strict=True)]
 
     def _sign_of_product(
         self, level: int, rates: Sequence[Fraction], exponents: Sequence[Fraction | int]
     ) -> int:
-        """Return the sign of ``-log`` of a product of powers of rates: -1 for a product above 1.
+        """Return the sign of ``-log`` of the product of all ``rates[i] ** exponents[i]``.
 
-        Floats decide where they are exact enough. Otherwise logarithms of more and more digits do.
+        It is -1 for a product above 1, and exact. Floats decide it if they are precise enough. Otherwise,
+        logarithms with more and more digits do.
         """
         if not any(exponents):
             return 0
@@ -121,10 +122,10 @@ class Lexicographic:
 
     @cached_property
     def _coprime_factors(self) -> list[dict[int, dict[int, int]]]:
-        """The factors of each level: a coprime base of its rates.
+        """For each level, the factors of a coprime base of its rates.
 
-        Each factor has its exponents in the rates, by index of the rate. A factor of a denominator has a
-        negative exponent.
+        Each factor is mapped to its exponents in the rates, by index of the rate. A factor of a denominator
+        has a negative exponent.
         """
         factors_by_level: list[dict[int, dict[int, int]]] = []
         for rates in self.levels:
@@ -158,7 +159,7 @@ def multiply(vector: Vector, factor: Fraction) -> Vector:
 
 @lru_cache(maxsize=4096)
 def minus_log(rate: Fraction, digits: int) -> tuple[Fraction, Fraction]:
-    """Return ``-log(rate)`` to ``digits`` digits, and a bound on its error; the rate is below 1.
+    """Return ``-log(rate)`` of a rate below 1 to ``digits`` digits, and a bound on its error.
 
     Results are cached.
     """
@@ -172,5 +173,5 @@ def minus_log(rate: Fraction, digits: int) -> tuple[Fraction, Fraction]:
 
 
 def _sign(number: Fraction | float) -> int:
-    """Return -1, 0 or 1 as a number is negative, 0 or positive."""
+    """Return -1, 0 or 1 for a number below, equal to or above 0."""
     return (number > 0) - (number < 0)

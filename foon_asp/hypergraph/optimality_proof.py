@@ -47,42 +47,46 @@ class Rules(Protocol):
     """Rules on derivations that neither targets nor limits express."""
 
     def barred_actions(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
-        """Return for each rule, by number, the actions that it bars.
+        """Return the actions that each rule bars, by the number of the rule.
 
-        Take a derivation with all ``used`` actions and no action of ``without``. It breaks the rule if it
-        also has a barred action.
+        A derivation with all ``used`` actions and no action of ``without`` breaks the rule if it also has a
+        barred action.
         """
 
     def breaking_actions(self, derivation: frozenset[int]) -> Sequence[int]:
         """Return actions of a derivation that together break a rule; empty if it breaks none."""
 
     def exceeded_limit(self, derivation: frozenset[int]) -> Limit | None:
-        """Return a limit that a derivation exceeds and that was not returned before; ``None`` without one."""
+        """Return a limit that a derivation exceeds and that was not returned earlier.
+
+        Return ``None`` if there is no such limit.
+        """
 
 
 class CheaperError(Exception):
-    """A derivation was found that costs less than the incumbent; ``actions`` are its actions."""
+    """The ``actions`` form a derivation that costs less than the one to be proved optimal."""
 
     def __init__(self, actions: Sequence[int]) -> None:
         super().__init__("a cheaper derivation was found")
         self.actions = tuple(actions)
 
 
-class _TimeUpError(Exception):
-    """A proof was given up."""
+class _GivenUpError(Exception):
+    """A proof was given up, since time is up or floats led nowhere."""
 
 
 class Prover:
     """Searches for optimality proofs over one hypergraph, its targets and the cost of each action.
 
-    ``costs``, ``order``: the cost of each action as a vector, and the order of the vectors.
-    ``forbidden``: actions. Derivations with one of them do not count.
+    ``costs``: the cost of each action as a vector.
+    ``order``: the order of these vectors.
+    ``forbidden``: the actions that derivations must not have.
     ``expired``: returns whether to give up. It is called between steps that take milliseconds on thousands of
     actions.
-    ``known_cuts``: cuts to begin with, each by its objects.
+    ``known_cuts``: the cuts to begin with, each by its objects.
     ``limits``, ``rules``: derivations that exceed a limit or break a rule do not count.
-    ``multiples``: a number for each coordinate, of which all costs are multiples. So bounds are rounded up to
-    a multiple. 0 or a missing number means no rounding.
+    ``multiples``: for each coordinate, a number of which all costs are multiples. Bounds are rounded up to a
+    multiple of it. For 0 or a missing number, nothing is rounded.
     """
 
     def __init__(
@@ -114,33 +118,33 @@ class Prover:
             scale *= 1e-4 / (1 + largest / unit)  # so that a level weighs much less than the one before
 
     def as_float(self, vector: Vector) -> float:
-        """Return a cost as one float: a sum in which each level weighs much less than the one before."""
+        """Return a cost as one float: a sum in which each level weighs much less than the level above it."""
         return sum(map(mul, self._order.approximate(vector), self._scales), 0.0)
 
     def prove(self, derivation: Iterable[int], cases: Cases = None) -> Proof | None:
-        """Return a proof that no derivation costs less than this one; ``None`` where that takes too long.
+        """Return a proof that no derivation costs less than this one; ``None`` if there is none in time.
 
-        Known cuts are tried first. If they do not suffice, the proof branches on ``cases``. Raises
-        :class:`CheaperError` if a cheaper derivation is found.
+        Known cuts are tried first. If they do not suffice, the proof branches on ``cases``, the nested cases
+        of an earlier search. Raises :class:`CheaperError` if a cheaper derivation is found.
         """
         try:
             goal, nothing = self._cost_of(derivation), frozenset[int]()
             return self._prove(goal, nothing, self._forbidden, self._known_cuts, cases, at_root=True)
-        except _TimeUpError:
+        except _GivenUpError:
             return None
 
     def prove_none(self) -> Proof | None:
-        """Return a proof that no derivation exists; ``None`` if one exists or the proof takes too long."""
+        """Return a proof that no derivation exists. Return ``None`` if none is found, or one exists."""
         try:
             return self._prove(None, frozenset(), self._forbidden)
-        except _TimeUpError:
+        except _GivenUpError:
             return None
 
     def relax(self, derivation: Iterable[int]) -> tuple[Packing, Vector] | None:
-        """Return the optimal cost partition of the relaxation at the root and its sum, a lower bound.
+        """Return the optimal cost partition of the relaxation, before any branching, and its lower bound.
 
-        The relaxation may exceed limits, at a cost far above that of ``derivation``. ``None`` where time is
-        up, and where the targets cannot be reached.
+        The relaxation may exceed limits, at a cost far above that of ``derivation``. The lower bound is
+        rounded up. Return ``None`` if the targets cannot be reached, time is up, or exact arithmetic fails.
         """
         nothing: frozenset[int] = frozenset()
         barred = self._barred_actions(nothing, self._forbidden).values()
@@ -148,9 +152,9 @@ class Prover:
         if cutter.hopeless:
             return None
         try:
-            node = _Node(self, cutter, nothing, self._cost_of(derivation))
+            node = _NodeRelaxation(self, cutter, nothing, self._cost_of(derivation))
             exact = node.relax(None)
-        except _TimeUpError:
+        except _GivenUpError:
             return None
         return None if exact is None else (node.packing(exact), self.round_up(exact.value)[0])
 
@@ -165,10 +169,13 @@ class Prover:
     ) -> Proof:
         """Return a proof that derivations with all used and no forbidden actions cost at least ``goal``.
 
-        If the goal is ``None``, it proves that there is no such derivation. ``known_cuts`` are tried first.
-        ``at_root`` is true before any branching, also after reduced-cost fixing. Raises :class:`CheaperError`
-        as :meth:`prove` does, and :class:`_TimeUpError` where it gives up. Limits that a rounded solution
-        exceeds are added to the limits of the prover.
+        ``goal``: the cost to be proved; ``None`` to prove that there is no such derivation.
+        ``known_cuts``: the cuts that are tried first.
+        ``cases``: nested cases to branch on if cuts do not suffice; ``None`` to choose actions by LP values.
+        ``at_root``: whether there was no branching yet; reduced-cost fixing does not count.
+
+        New limits that a rounded LP solution exceeds are added to the limits of the prover. Raises
+        :class:`CheaperError` as :meth:`prove` does, and :class:`_GivenUpError` if it gives up.
         """
         targets = [*self._targets, *(o for action in sorted(used) for o in self._graph.needs[action])]
         bars = self._barred_actions(used, forbidden)
@@ -202,7 +209,7 @@ class Prover:
         if cases is not None:
             return self._branch(goal, used, forbidden, known_cuts, cases[0], cases[1:])
         while True:
-            node = _Node(self, cutter, used, goal)
+            node = _NodeRelaxation(self, cutter, used, goal)
             node.add_cuts(cuts)
             exact = node.relax(remaining_goal)
             if exact is not None and node.is_sufficient(exact.value, remaining_goal):
@@ -222,7 +229,7 @@ class Prover:
                 is_derivation = cutter.reached_by(rounded_solution)
                 if is_cheaper and is_derivation and not node.exceeds_limit(rounded_solution):
                     raise CheaperError(self._runnable_actions(rounded_solution))
-                raise _TimeUpError  # floats led nowhere
+                raise _GivenUpError  # floats led nowhere
             action = breaking[0]
         known_cuts = [frozenset(cut.objects) for cut in node.cuts]
         return self._branch(goal, used, forbidden, known_cuts, action, (None, None))
@@ -236,9 +243,10 @@ class Prover:
         action: int,
         cases: Sequence[Cases],
     ) -> Branch:
-        """Return a proof by branching: for the derivations without an action, and for those with it.
+        """Return a proof that branches on an action: one proof without the action, one with it.
 
-        ``cases`` are the known cases without it and with it.
+        ``cases`` are two nested cases, without the action and with it. Other arguments are those of
+        :meth:`_prove`.
         """
         without, using = cases
         return Branch(
@@ -250,8 +258,8 @@ class Prover:
     def round_up(self, bound: Vector) -> tuple[Vector, int | None]:
         """Round up a bound at its first coordinate that is no multiple of its number in ``multiples``.
 
-        Coordinates after it become 0. Returns the bound and the index of the rounded coordinate, ``None`` if
-        no coordinate was rounded.
+        Later coordinates become 0. Returns the bound, and the index of the coordinate that was rounded. The
+        index is ``None`` if none was rounded.
         """
         for i, (coordinate, multiple) in enumerate(zip(bound, self._multiples, strict=False)):
             if multiple and coordinate % multiple:
@@ -260,20 +268,20 @@ class Prover:
         return bound, None
 
     def _barred_actions(self, used: frozenset[int], without: frozenset[int]) -> Mapping[int, frozenset[int]]:
-        """Return the barred actions of each rule, as :meth:`Rules.barred_actions` does."""
+        """Return what :meth:`Rules.barred_actions` returns; an empty mapping without rules."""
         return {} if self._rules is None else self._rules.barred_actions(used, without)
 
     def _breaking_actions(self, derivation: Iterable[int]) -> Sequence[int]:
-        """Return actions that together break a rule, as :meth:`Rules.breaking_actions` does."""
+        """Return what :meth:`Rules.breaking_actions` returns; an empty tuple without rules."""
         return () if self._rules is None else self._rules.breaking_actions(frozenset(derivation))
 
     def _exceeded_limit(self, derivation: Iterable[int]) -> Limit | None:
-        """Return a new limit that a derivation exceeds; ``None`` without one, or without rules."""
+        """Return what :meth:`Rules.exceeded_limit` returns; ``None`` without rules or without actions."""
         chosen = frozenset(derivation)
         return None if self._rules is None or not chosen else self._rules.exceeded_limit(chosen)
 
     def _runnable_actions(self, actions: Sequence[int]) -> list[int]:
-        """Return the actions that can run in a derivation by the given actions alone."""
+        """Return those of the given actions that can run if no other actions are allowed."""
         graph = self._graph
         reached = graph.reach(frozenset(range(len(graph.needs))).difference(actions))
         return [action for action in actions if all(reached[o] for o in graph.needs[action])]
@@ -289,12 +297,16 @@ class Prover:
         without_lp: bool,
         at_root: bool,
     ) -> tuple[Proof | None, Sequence[Cut]]:
-        """Return a proof of ``goal`` without exact linear programming, else ``None``; and the cuts looked at.
+        """Return a proof of ``goal`` without exact linear programming, and the cuts looked at.
 
-        First tries a greedy cost partition over ``known_cuts``, then reduced-cost fixing by it. For the
-        derivations without the fixed actions, ``others`` proves the goal. Then both are tried with the
-        rounded duals of the LP. At the root, :func:`prove_by_branching` comes last. If ``without_lp`` is true
-        or ``step`` is 0, the LP is not used.
+        The proof is ``None`` if all attempts fail. They are made in this order:
+        1. a greedy cost partition over ``known_cuts``,
+        2. reduced-cost fixing by this partition; ``others`` proves the goal without the fixed actions,
+        3. a partition whose weights are at most the rounded duals of the LP, and fixing by it,
+        4. :func:`prove_by_branching`, if ``at_root`` is true.
+
+        All costs are multiples of ``step``. If it is 0, only the first attempt is made. If ``without_lp`` is
+        true, the first two are.
         """
         targets = set(cutter.targets)
         known_cuts = [cut for cut in known_cuts if not targets.isdisjoint(cut)]
@@ -308,7 +320,7 @@ class Prover:
             return proof, cuts
 
         def cost_in_steps(action: int) -> int:
-            """Return the remaining cost of an action as a multiple of ``step``."""
+            """Return the cost of an action divided by ``step``; 0 for a used action."""
             return 0 if action in used else int(self._costs[action][0] / step)
 
         enough = math.ceil(goal[0] / step)
@@ -333,9 +345,10 @@ class Prover:
     def _optimal_partition(
         self, cutter: Cutter, cost: Callable[[int], int], known_cuts: Iterable[frozenset[int]], enough: int
     ) -> CostPartition | None:
-        """Return the optimal cost partition, or an earlier one that puts many actions above the cutoff.
+        """Return a cost partition that is optimal, or that puts many actions above the cutoff.
 
-        ``enough`` is the bound that is needed. ``None`` where there is no partition.
+        ``enough`` is the bound that is needed; the search ends when it is reached. Return ``None`` if
+        there is no cost partition.
         """
         partitioning = CostPartitioning(
             self._graph, cutter.targets, cutter.actions, cost, self._expired, known_cuts
@@ -350,9 +363,9 @@ class Prover:
                 return partition
 
     def _cost_step(self) -> Fraction:
-        """Return a number that all costs are multiples of; 0 for costs of several coordinates.
+        """Return a number of which all costs are multiples.
 
-        It is also 0 if there are limits or rules.
+        It is 0 if no such number is known, costs have several coordinates, or there are limits or rules.
         """
         constrained = self._limits or self._rules is not None
         one_number = len(self._multiples) == 1 == len(self._order.zero)
@@ -369,11 +382,13 @@ class Prover:
         known_cuts: Collection[frozenset[int]],
         step: Fraction,
     ) -> Proof | None:
-        """Return a proof by reduced-cost fixing; ``None`` if too few actions are above the cutoff.
+        """Return a proof by reduced-cost fixing.
 
-        A derivation with an action costs at least the sum of the weights plus the reduced cost of the action.
-        For derivations without the actions above the cutoff, ``others`` proves the goal. If its proof needs
-        no such action, it is returned as it is. ``None`` also if ``step`` is 0.
+        A derivation with an action costs at least the sum of the weights of ``packing`` plus the reduced cost
+        of the action. For derivations without the actions above the cutoff, ``others`` proves the goal. If
+        the cuts of that proof have no such action in their landmarks, it is returned as it is.
+
+        Return ``None`` if too few actions are above the cutoff, or ``step`` is 0.
         """
         if not step:
             return None
@@ -387,12 +402,15 @@ class Prover:
         return CostFixing(tuple(sorted(fixed)), packing._replace(rounded=0), proof) if fixed else proof
 
     def _landmark_actions(self, proof: Proof) -> Iterator[int]:
-        """Yield the actions that cross cuts of a proof, including fixed actions."""
+        """Yield the actions that cross the cuts of a proof, also fixed and forbidden ones."""
         for objects in {cut.objects for cut in cuts_of(proof)}:
             yield from self._landmark_of(frozenset(objects))
 
     def _widen(self, cutter: Cutter, objects: Iterable[int]) -> Cut:
-        """Return the cut of some objects, and add objects to it if an action that cannot run crosses it."""
+        """Return the cut of some objects; it is widened if an action that cannot run crosses it.
+
+        Initial objects are left out. Forbidden actions are not in the landmark.
+        """
         inside = frozenset(o for o in objects if not self._graph.at_start[o])
         members = cutter.without_forbidden(self._landmark_of(inside))
         return cutter.widen(inside) if members is None else Cut(tuple(sorted(inside)), members)
@@ -400,9 +418,9 @@ class Prover:
     def _prove_by_search(
         self, cutter: Cutter, goal: Vector, known_cuts: Sequence[Cut], step: Fraction
     ) -> Proof | None:
-        """Return a proof by :func:`prove_by_branching`; ``None`` without a proof, and if ``step`` is 0.
+        """Return a proof by :func:`prove_by_branching`. Return ``None`` if it has none, or ``step`` is 0.
 
-        Its cuts are widened, so that they are valid for all actions.
+        The cuts of the proof are widened, so that they are valid for all actions.
         """
         if not step:
             return None
@@ -415,13 +433,13 @@ class Prover:
         widened = cache(partial(self._widen, cutter))
 
         def widen_packing(packing: Packing) -> Packing:
-            """Return a cost partition with widened cuts, and with its costs as vectors."""
+            """Return a cost partition with widened cuts, and with vectors as weights."""
             weights = [(widened(cut.objects), (weight[0] * step,)) for cut, weight in packing.weights]
             _, rounded = self.round_up(self._order.total(weight for _, weight in weights))
             return Packing(tuple(weights), rounded=rounded)
 
         def widen_proof(proof: Proof) -> Proof:
-            """Return a proof with widened cuts."""
+            """Return a proof with widened cuts, and with vectors as weights."""
             if isinstance(proof, Branch):
                 return Branch(proof.action, widen_proof(proof.without), widen_proof(proof.using))
             if isinstance(proof, Hopeless):
@@ -440,8 +458,8 @@ class Prover:
     ) -> tuple[Packing, dict[int, Vector]]:
         """Partition costs greedily: each cut in turn gets the least reduced cost of its landmark actions.
 
-        Each cut comes with the maximum of its weight, ``None`` for no maximum. Returns the cost partition,
-        and the reduced costs of all landmark actions.
+        ``cuts`` are pairs of a cut and the greatest weight that it may get; ``None`` for no maximum. Cuts of
+        weight 0 are left out. Returns the cost partition, and the reduced costs of its landmark actions.
         """
         reduced_costs: dict[int, Vector] = {}
         weights: list[tuple[Cut, Vector]] = []
@@ -463,15 +481,19 @@ class Prover:
         return self._order.compare(value, goal) >= 0
 
     def _cost_of(self, actions: Iterable[int]) -> Vector:
-        """Return the sum of the costs of actions."""
+        """Return the sum of the costs of actions, as a vector."""
         return self._order.total(self._costs[a] for a in actions)
 
 
-class _Node:
-    """The relaxation at one node of the branching: a column for each action, a row for each limit and cut.
+class _NodeRelaxation:
+    """The relaxation at one node of the branching.
 
-    ``lp_values`` are the LP values of the columns in the last solution. ``cuts`` are the cuts in order of
-    rows. The excess over a limit costs 1000 times the ``goal``, which is the bound to be proved.
+    It has a column for each action of the cutter and for the excess over each limit, and a row for each limit
+    and each cut.
+
+    ``goal``: the bound to be proved. The excess over a limit costs 1000 times as much.
+    ``lp_values``: the LP values of the columns in the last solution.
+    ``cuts``: the cuts, in the order of their rows.
     """
 
     def __init__(self, prover: Prover, cutter: Cutter, used: frozenset[int], goal: Vector | None) -> None:
@@ -498,9 +520,9 @@ class _Node:
         self.lp_values: Sequence[float]
 
     def _limit_over_columns(self, row: int, limit: Limit) -> Limit:
-        """Return limit number ``row`` over columns, reduced by the amounts of the used actions.
+        """Return a limit on actions as a limit on columns; ``row`` is its number.
 
-        An additional column is the excess over the limit.
+        The amounts of the used actions are subtracted. An additional column is the excess over the limit.
         """
         amounts, max_amount = limit
         columns = {self._columns[a]: amount for a, amount in amounts.items() if a in self._columns}
@@ -508,7 +530,7 @@ class _Node:
         return {**columns, len(self._actions) + row: Fraction(-1)}, remaining
 
     def exceeds_limit(self, actions: Iterable[int]) -> bool:
-        """Return whether actions exceed a limit."""
+        """Return whether actions exceed a limit of the prover."""
         chosen = set(actions)
         return any(
             sum(amount for a, amount in amounts.items() if a in chosen) > max_amount
@@ -516,7 +538,10 @@ class _Node:
         )
 
     def is_sufficient(self, value: Vector, enough: Vector | None) -> bool:
-        """Return whether a bound, rounded up, is at least ``enough``; for ``None``, whether it is above 0."""
+        """Return whether a bound, rounded up, is at least ``enough``.
+
+        If ``enough`` is ``None``, return whether the bound is above 0.
+        """
         order = self._prover._order
         if enough is None:
             return order.sign(value) > 0
@@ -525,8 +550,8 @@ class _Node:
     def relax(self, enough: Vector | None) -> ExactOptimum | None:
         """Add cuts until the bound is ``enough``, or no cut is found that the LP solution violates.
 
-        Returns the exact optimum of the rows; ``None`` where exact arithmetic fails. Raises
-        :class:`_TimeUpError` where time is up.
+        ``enough``: the bound that suffices; ``None`` for no such bound. Returns the exact optimum of the
+        rows. Returns ``None`` if exact arithmetic fails. Raises :class:`_GivenUpError` if time is up.
         """
         order = self._prover._order
         wanted = math.inf if enough is None else self._prover.as_float(enough)
@@ -548,12 +573,12 @@ class _Node:
                 return exact
 
     def _check_time(self) -> None:
-        """Raise :class:`_TimeUpError` if time is up."""
+        """Raise :class:`_GivenUpError` if time is up."""
         if self._prover._expired():
-            raise _TimeUpError
+            raise _GivenUpError
 
     def _record_solution(self, x: Sequence[float]) -> None:
-        """Record an LP solution; actions that cost 0 get the value 1 if there are no limits and rules."""
+        """Record an LP solution; actions of cost 0 get the value 1, unless there are limits or rules."""
         self.lp_values = [*x]
         for column in self._free:
             self.lp_values[column] = 1.0
@@ -569,9 +594,9 @@ class _Node:
         )
 
     def most_fractional_action(self) -> int | None:
-        """Return the action whose LP value is nearest to 1/2; ``None`` if all are integers.
+        """Return the action whose LP value is nearest to 1/2; of equally near ones, the most expensive.
 
-        Of equal ones, the most expensive is returned.
+        Return ``None`` if all LP values are integers.
         """
         fractional = [
             (abs(x - 0.5), -self._floats[column], self._actions[column])
@@ -581,14 +606,14 @@ class _Node:
         return min(fractional)[2] if fractional else None
 
     def rounded_solution(self) -> list[int]:
-        """Return the actions of the rounded LP solution and the used ones, ascending."""
+        """Return the used actions and those whose LP value is above 1/2, ascending."""
         lp_values = zip(
             self._actions, self.lp_values, strict=False
         )  # after those of actions come those of limits
         return sorted({action for action, x in lp_values if round(x)} | self._used)
 
     def _separate(self) -> bool:
-        """Add violated cuts with disjoint landmarks; return whether any was added."""
+        """Add cuts with disjoint landmarks that the last LP solution violates; return whether it has any."""
         import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 
         count = len(self._actions)
@@ -601,7 +626,7 @@ class _Node:
         return bool(violated)
 
     def add_cuts(self, cuts: Iterable[Cut]) -> None:
-        """Add cuts as rows, except cuts with a landmark action that has no column."""
+        """Add cuts as rows. A cut is left out if a landmark action has no column."""
         for cut in cuts:
             if self._columns.keys() >= set(cut.members):
                 row = [self._columns[a] for a in cut.members]

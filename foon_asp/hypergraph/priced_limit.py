@@ -18,8 +18,9 @@ Units = frozenset[int]
 class WithinLimit(NamedTuple):
     """The result of a search for trees within a limit.
 
-    ``tree``: a tree within the limit; ``None`` if there is no such tree.
-    ``units``: all units that better trees within the limit can have; ``None`` if no price excludes a unit.
+    ``tree``: the units of a tree within the limit; ``None`` if it is proved that there is none.
+    ``units``: all units that this tree and better trees within the limit can have; ``None`` if no unit is
+    excluded.
     """
 
     tree: Units | None
@@ -33,15 +34,17 @@ def search_within_limit(
     row: LinearRow,
     expired: Callable[[], bool],
 ) -> WithinLimit | None:
-    """Search for the best tree within an upper limit on a sum over units; ``tree`` exceeds the limit.
+    """Search for the best tree within an upper limit on a sum over units.
 
-    ``row`` has the amounts of units and the limit on their sum. A first tree within the limit is found by
-    :func:`any_within_limit`. The price of an amount of 1 is the Lagrange multiplier at which this tree and
-    ``tree`` cost the same. It raises the cost of a tree within the limit by at most the price times the
-    limit, so lower bounds carry over. If many units remain at this price, lower prices that rise up to it are
-    tried.
+    ``tree``: the units of a tree that exceeds the limit.
+    ``row``: the amount of each unit, and the limit on the sum of the amounts of a tree.
 
-    Returns ``None`` if neither a tree is found nor its absence proved.
+    A first tree within the limit is found by :func:`any_within_limit`. The price of an amount of 1 is the
+    Lagrange multiplier at which this first tree and ``tree`` cost the same. It raises the cost of a tree
+    within the limit by at most the price times the limit, so lower bounds carry over. If many units remain at
+    this price, lower prices that rise up to it are tried.
+
+    Returns ``None`` if no tree within the limit is found and it is not proved that there is none.
     """
     first_result = any_within_limit(subproblem, row, expired)
     if first_result is None or first_result.tree is None:
@@ -50,12 +53,12 @@ def search_within_limit(
     remaining: Units | None = None
     for _ in range(tuning.PRICES.prices):
         price = -(
-            -(subproblem.total(incumbent) - subproblem.total(exceeding))
+            -(subproblem.tree_cost(incumbent) - subproblem.tree_cost(exceeding))
             // (row.total(exceeding) - row.total(incumbent))
         )
         if price <= 0:
             break
-        max_priced_cost = subproblem.total(incumbent) + price * row.bound
+        max_priced_cost = subproblem.tree_cost(incumbent) + price * row.bound
         reduced = _reduced_at(
             subproblem,
             subproblem.costs.with_price(row.weight, price),
@@ -67,14 +70,14 @@ def search_within_limit(
         )
         if reduced.tree is None:
             break
-        amount, total = row.total(reduced.tree), subproblem.total(reduced.tree)
-        is_better = amount <= row.bound and total < subproblem.total(incumbent)
+        amount, total = row.total(reduced.tree), subproblem.tree_cost(reduced.tree)
+        is_better = amount <= row.bound and total < subproblem.tree_cost(incumbent)
         incumbent = reduced.tree if is_better else incumbent
         if remaining is None or len(reduced.units) < len(remaining):
             remaining = frozenset(reduced.units)
         if len(remaining) > tuning.PRICES.rising_units:
             return _by_rising_prices(subproblem, objectives, incumbent, exceeding, row, expired)
-        if amount > row.bound and total > subproblem.total(exceeding):
+        if amount > row.bound and total > subproblem.tree_cost(exceeding):
             exceeding = reduced.tree
         elif not is_better:
             break
@@ -91,18 +94,19 @@ def _by_rising_prices(
     row: LinearRow,
     expired: Callable[[], bool],
 ) -> WithinLimit:
-    """Search for trees within the limit that are better than ``incumbent``; ``exceeding`` is beyond it.
+    """Search for trees within the limit that are better than ``incumbent``, at rising prices.
 
-    A question at a low price is about as quick as one without a price. Prices rise from about the cost of a
-    unit to the price at which ``incumbent`` and ``exceeding`` cost the same. The optimal tree at a price
-    replaces one of the two. The price with the greatest bound determines the units of better trees.
+    ``incumbent`` is a tree within the limit, and ``exceeding`` a tree that exceeds it. Prices rise from about
+    the cost of a unit to the price at which the two trees cost the same. The optimal tree at each price
+    replaces one of the two. The price with the greatest lower bound determines the units of better trees. A
+    reduction at a low price takes hardly longer than one without a price.
     """
-    next_price = Fraction(subproblem.total(exceeding), len(exceeding))
+    next_price = Fraction(subproblem.tree_cost(exceeding), len(exceeding))
     greatest_bound: tuple[Fraction, Fraction] | None = None  # bound, and its price
     subproblem = _restricted_to_cost(subproblem, incumbent, expired)
     for _ in range(tuning.PRICES.rising_prices):
         tie_price = Fraction(
-            subproblem.total(incumbent) - subproblem.total(exceeding),
+            subproblem.tree_cost(incumbent) - subproblem.tree_cost(exceeding),
             row.total(exceeding) - row.total(incumbent),
         )
         if tie_price <= 0:
@@ -113,12 +117,12 @@ def _by_rising_prices(
             break
         bound = Fraction(reduced.bound, price.denominator) - price * row.bound
         greatest_bound = max(greatest_bound or (bound, price), (bound, price))
-        amount, total = row.total(reduced.tree), subproblem.total(reduced.tree)
-        incumbent_at_price = subproblem.total(incumbent) + price * row.total(incumbent)
+        amount, total = row.total(reduced.tree), subproblem.tree_cost(reduced.tree)
+        incumbent_at_price = subproblem.tree_cost(incumbent) + price * row.total(incumbent)
         is_tie = price == tie_price and total + price * amount >= incumbent_at_price
         if amount > row.bound:
             exceeding = reduced.tree
-        elif total < subproblem.total(incumbent):
+        elif total < subproblem.tree_cost(incumbent):
             incumbent = reduced.tree
             subproblem = _restricted_to_cost(subproblem, incumbent, expired)
         else:
@@ -128,7 +132,7 @@ def _by_rising_prices(
     if greatest_bound is None:
         return WithinLimit(incumbent)
     _, price = greatest_bound
-    max_priced_cost = subproblem.total(incumbent) * price.denominator + price.numerator * row.bound
+    max_priced_cost = subproblem.tree_cost(incumbent) * price.denominator + price.numerator * row.bound
     reduced = _reduced_at(
         subproblem,
         subproblem.costs.with_price(row.weight, price),
@@ -139,24 +143,25 @@ def _by_rising_prices(
     )
     if reduced.tree is None:
         return WithinLimit(incumbent)
-    if row.total(reduced.tree) <= row.bound and subproblem.total(reduced.tree) < subproblem.total(incumbent):
+    is_within_limit = row.total(reduced.tree) <= row.bound
+    if is_within_limit and subproblem.tree_cost(reduced.tree) < subproblem.tree_cost(incumbent):
         incumbent = reduced.tree
     return WithinLimit(incumbent, frozenset(reduced.units))
 
 
 def _restricted_to_cost(subproblem: Subproblem, tree: Units, expired: Callable[[], bool]) -> Subproblem:
-    """Return the subproblem of the trees that cost no more than ``tree``."""
-    remaining = subproblem.actions_within(subproblem.total(tree), expired)
-    return replace(subproblem, remaining={*remaining, *subproblem.actions(tree)})
+    """Return the subproblem over the actions of ``tree`` and of trees that cost no more."""
+    remaining = subproblem.actions_within(subproblem.tree_cost(tree), expired)
+    return replace(subproblem, remaining={*remaining, *subproblem.tree_actions(tree)})
 
 
 def any_within_limit(
     subproblem: Subproblem, row: LinearRow, expired: Callable[[], bool]
 ) -> WithinLimit | None:
-    """Search for any tree that keeps to an upper limit on a sum, by minimizing the sum.
+    """Search for any tree within the limit of ``row``, by minimizing the sum of its amounts.
 
-    Returns ``WithinLimit(None)`` if a bound proves that no tree is within the limit. Returns ``None`` if
-    nothing is known.
+    The search ends at the first tree within the limit. Returns ``WithinLimit(None)`` if a bound proves that
+    there is no such tree. Returns ``None`` if neither is achieved.
     """
     units_cost = ExactCosts(subproblem.problem, (Objective.UNITS,), subproblem.remaining)
     limit = units_cost.strict_upper_bound * (row.bound + 1)
@@ -182,10 +187,7 @@ def _reduced_at(
     below: int = 0,
     max_actions: float = math.inf,
 ) -> Reduced:
-    """Reduce the subproblem by :func:`reduce_at_costs`.
-
-    Raises ``KeyboardInterrupt`` where that is interrupted.
-    """
+    """Return the result of :func:`reduce_at_costs`; raise ``KeyboardInterrupt`` if it is interrupted."""
     reduced = reduce_at_costs(subproblem, objectives, costs, expired, known_tree, below, max_actions)
     if reduced.interrupted:
         raise KeyboardInterrupt

@@ -8,10 +8,10 @@ from foon_asp.hypergraph.lexicographic import Vector
 
 
 class Packing(NamedTuple):
-    """A cost partition over cuts, which proves a lower bound.
+    """A cost partition over cuts, which proves a lower bound on the cost of derivations.
 
-    The bound is the sum of the weights and of the costs of the used actions. For each limit, its weight times
-    the amount that used actions leave is subtracted.
+    The bound is the sum of the weights and of the costs of the used actions. For each limit, a product is
+    subtracted: its weight times the amount of it that the used actions leave.
 
     ``weights``: pairs of a cut and its weight.
     ``limits``: pairs of the index of a limit and its weight.
@@ -36,7 +36,7 @@ class Broken(NamedTuple):
 
 
 class Branch(NamedTuple):
-    """Two proofs: for all derivations without an action, and for all those with it."""
+    """A proof for all derivations without an action, and a proof for all derivations with it."""
 
     action: int
     without: "Proof"
@@ -44,10 +44,10 @@ class Branch(NamedTuple):
 
 
 class CostFixing(NamedTuple):
-    """Reduced-cost fixing: a proof for derivations with one of the ``actions``, and for the others.
+    """Reduced-cost fixing: a proof for derivations with one of the ``actions``, and one for all others.
 
-    ``packing`` shows that these actions are above the cutoff. ``others`` is the proof for derivations without
-    them.
+    ``packing`` proves the lower bound for derivations with one of these actions: its bound plus the reduced
+    cost of the action. ``others`` is the proof for derivations without these actions.
     """
 
     actions: tuple[int, ...]
@@ -61,7 +61,7 @@ Cases = tuple[int, "Cases", "Cases"] | None
 
 
 def cuts_of(proof: Proof) -> Iterator[Cut]:
-    """Yield the cuts of a proof, those of all branches."""
+    """Yield the cuts of a proof, in all of its branches; a cut may be yielded more than once."""
     waiting = [proof]
     while waiting:
         step = waiting.pop()

@@ -20,18 +20,20 @@ def neighbourhood(
     min_reduced_cost: int = 0,
     reachable: Callable[[int, float], bool] | None = None,
 ) -> set[int]:
-    """Return a superset of the allowed actions of irredundant derivations of reduced cost up to ``limit``.
+    """Return a superset of the allowed actions of irredundant trees of reduced cost up to ``limit``.
 
-    In such a derivation, a path leads from each action to a goal: each action makes a precondition of the
-    next. So the reduced costs along the path add up to at most ``limit``. The paths are found by Dijkstra's
-    algorithm from the goals.
+    In such a tree, a path leads from each action to a goal: each action makes a precondition of the next. So
+    the reduced costs along the path add up to at most ``limit``. The paths are found by Dijkstra's algorithm
+    from the goals.
 
     ``limit``: the greatest reduced cost; ``math.inf`` for no limit.
-    ``h_actions``: h-values of actions. An action counts with its h-value, since no action of its derivation
-    is on the path. Without them, it counts with its reduced cost.
-    ``enough``: ends the search when this many actions are found. Then the result is no superset.
-    ``min_reduced_cost``: no reduced cost is below it.
-    ``reachable``: tests whether an object can be made at a reduced cost, if there are no ``h_actions``.
+    ``h_actions``: the h-values of actions. With them, the first action of a path counts with its h-value
+    instead of its reduced cost, since no action of its derivation is on the path. Actions without an h-value
+    are excluded.
+    ``enough``: the number of actions at which the search ends. Then the result is no superset.
+    ``min_reduced_cost``: a number that no reduced cost is below.
+    ``reachable``: a test as that of :func:`lazy_h_max_test`, used instead of ``h_actions``. It excludes an
+    action if a precondition cannot be made at what the path leaves of the limit.
     """
     needs, achievers, start = graph.needs, graph.makers, graph.start
     buckets: dict[int, list[int]] = {0: list(graph.goals)}
@@ -67,7 +69,7 @@ def neighbourhood(
 
 
 def reduced_costs_of(costs: ExactCosts, cuts: Cuts) -> Callable[[int], int]:
-    """Return a function from an action to its reduced cost by a cost partition."""
+    """Return a function that returns the reduced cost of an action by a cost partition."""
     reduced_costs = cuts.reduced_costs
     return lambda action: reduced_costs[action] if action in reduced_costs else costs(action)
 
@@ -79,10 +81,11 @@ def reduced_cost_fixing(
     limit: int,
     expired: Callable[[], bool],
 ) -> set[int]:
-    """Return a superset of the allowed actions that irredundant trees of reduced cost up to ``limit`` have.
+    """Return a superset of the allowed actions of irredundant trees of reduced cost up to ``limit``.
 
-    Alternates h_max from the initial objects with distances to the goals, until no more actions are excluded.
-    Where time is up, the superset is larger.
+    An action is excluded if its h_max plus the reduced costs of a path from it to a goal exceed the limit.
+    Both are computed anew over the remaining actions until no more actions are excluded. If time is up, the
+    superset is larger.
     """
     remaining = neighbourhood(
         graph, allowed, reduced_cost, limit, reachable=lazy_h_max_test(graph, allowed, reduced_cost)

@@ -40,10 +40,10 @@ Stages = Callable[[Task, Gap, HValues], Stage]
 
 
 class Course(NamedTuple):
-    """Stages to run after a first tree.
+    """The stages to run after a first tree was found.
 
-    ``near_goals``: those for a large network, of which only a part near the goals was looked at.
-    ``whole``: those for any other network.
+    ``near_goals``: the stages for a large network, of which only a part near the goals was looked at.
+    ``whole``: the stages for any other network.
     """
 
     near_goals: Stages
@@ -53,18 +53,21 @@ class Course(NamedTuple):
 class Reduced(NamedTuple):
     """A presolved question.
 
-    ``tree``: the units of the incumbent, ``None`` if there is no tree.
-    ``units``: the units of the incumbent and those that a better tree can have, ascending.
+    ``tree``: the units of the incumbent; ``None`` if there is no tree.
+    ``units``: the units of the incumbent and, unless it is ``settled``, those that a better tree can have,
+    ascending.
     ``settled``: whether the incumbent is proved optimal.
-    ``costs``: compares trees exactly; ``None`` if rates are too fine.
+    ``costs``: the exact costs; ``None`` if rates are too fine.
     ``bound``: a lower bound on the cost of every tree; 0 if rates are too fine.
-    ``cuts``: the greedy cost partition of the greatest bound, over the units remaining at the time.
+    ``cuts``: the greedy cost partition with the greatest bound, over the units that remained when it was
+    found; ``None`` if there is none.
     ``interrupted``: whether ctrl-C ended the reduction, or time was up before any reduction. Then ``units``
     must not be used.
-    ``subproblem``: the gap-bounded subproblem, which is valid under any rules on trees.
-    ``partition``: the optimal cost partition, if one was computed.
-    ``cases``: the actions branched on.
-    ``tight``: the tight cuts of the LP solutions by which units were excluded, over the units remaining then.
+    ``subproblem``: the gap-bounded subproblem, which is valid under any rules on trees; ``None`` if no cuts
+    were found.
+    ``partition``: the last optimal cost partition that raised the bound; ``None`` if there is none.
+    ``cases``: the actions branched on, as nested cases; ``None`` without branching.
+    ``tight``: the tight cuts of the LP solutions by which units were excluded, over the units that remained.
     """
 
     tree: frozenset[int] | None
@@ -84,10 +87,10 @@ class Listener:
     """Observer of incumbents and bounds; its methods do nothing unless overridden."""
 
     def tree(self, units: frozenset[int]) -> None:
-        """Receive the units of a tree that is better than the one before."""
+        """Receive the units of a new incumbent."""
 
     def bound(self, costs: ExactCosts, bound: int) -> None:
-        """Receive a lower bound on all trees, in the units of ``costs``."""
+        """Receive a greater lower bound on the cost of all trees, in the units of ``costs``."""
 
 
 class Bounds(Listener):
@@ -97,7 +100,7 @@ class Bounds(Listener):
         self._listener = listener
 
     def bound(self, costs: ExactCosts, bound: int) -> None:
-        """Pass on a lower bound on all trees."""
+        """Pass on a lower bound on the cost of all trees."""
         self._listener.bound(costs, bound)
 
 
@@ -113,11 +116,14 @@ def reduce(
     """Reduce a problem to the units that a search for the best tree still has to look at.
 
     ``objectives``: the list as it is optimized, with ``units`` in it, so that every unit costs something.
-    ``reductions``: if empty, the relevant units that can be executed remain.
+    ``reductions``: the reductions to make. If there are none, all relevant units that can be executed remain.
     ``expired``: returns whether time is up.
     ``listener``: receives trees and bounds.
-    ``guard``: returns a context in which time being up interrupts computations, as ctrl-C does.
-    ``solved``: solved goals of the same question. They speed up this one, and its answer is added to them.
+    ``guard``: returns a context in which computations are interrupted when time is up, as by ctrl-C.
+    ``solved``: answers to questions that differ only in goals and removed units. They speed up this question,
+    and its answer is added to them.
+
+    Raises ``KeyboardInterrupt`` if it is interrupted before there is a tree.
     """
     with without_garbage_collection():
         with guard():
@@ -126,7 +132,7 @@ def reduce(
             presolve.extend_or_run()
         else:
             presolve.run_with_solved_goals(solved)
-        return presolve.reduced()
+        return presolve.result()
 
 
 def reduce_under_rules(
@@ -141,9 +147,11 @@ def reduce_under_rules(
 ) -> Reduced:
     """Reduce a problem whose trees have to keep to user rules, without knowing the rules.
 
-    ``subproblem`` and ``bound`` of the result are valid under any rules. With ``redundant``, trees may have
-    units that lead to no goal. ``course`` is :data:`BOUND` if the caller needs no particular tree, else
-    :data:`ROUNDS` (the default). Other arguments are those of :func:`reduce`.
+    ``subproblem`` and ``bound`` of the result are valid under any rules; its ``tree`` may break them.
+
+    ``redundant``: whether trees may have units that lead to no goal.
+    ``course``: the stages to run; ``None`` for :data:`ROUNDS`. :data:`BOUND` is enough for a caller that
+    needs no particular tree. Other arguments are those of :func:`reduce`.
     """
     presolve_tuning = tuning.PRESOLVE._replace(branching_budget=0, landmark_actions=math.inf)
     with without_garbage_collection():
@@ -151,14 +159,14 @@ def reduce_under_rules(
             task = _task_of(problem, objectives, reductions, expired, presolve_tuning)
             presolve = _Presolve(task, listener, guard, redundant)
         presolve.run(course or ROUNDS)
-        return presolve.reduced(redundant)
+        return presolve.result(redundant)
 
 
 def h_add_tree(problem: Problem, objectives: Sequence[Objective]) -> frozenset[int] | None:
-    """Return the units of a tree that follows h_add, without proof; its cost is near the optimum.
+    """Return the units of a tree that follows h_add, without proof; it is usually near the optimum.
 
-    ``objectives`` are those of :func:`reduce`. ``None`` if there is no tree. Raises ``KeyboardInterrupt`` if
-    it is interrupted.
+    ``objectives`` are those of :func:`reduce`. Returns ``None`` if there is no tree. Raises
+    ``KeyboardInterrupt`` if it is interrupted.
     """
     reduced = reduce_under_rules(problem, objectives, course=Course(_follow_h_add, _follow_h_add))
     if reduced.interrupted:
@@ -175,11 +183,13 @@ def reduce_at_costs(
     below: int = 0,
     max_actions: float = math.inf,
 ) -> Reduced:
-    """Reduce a gap-bounded subproblem under other costs, with ``known_tree`` as a first incumbent, if any.
+    """Reduce a gap-bounded subproblem under other ``costs``.
 
-    With ``below``, two kinds of units remain: those of trees that cost less than ``below``, and those of
-    trees better than the incumbent. Then the reduction also ends early if the first cuts exclude hardly any
-    action and more than ``max_actions`` remain.
+    ``known_tree``: the units of a tree that may become the first incumbent; empty for none.
+    ``below``: a cost; 0 for none. With it, two kinds of units remain: those of trees that cost less than it,
+    and those of trees better than the incumbent.
+    ``max_actions``: with ``below``, a number of actions. If more remain, and the first cuts exclude hardly
+    any action, the reduction ends after these cuts.
     """
     presolve_tuning = tuning.PRESOLVE._replace(branching_budget=0, landmark_actions=math.inf)
     if below:  # clingo gets the remaining actions with an incumbent
@@ -190,7 +200,7 @@ def reduce_at_costs(
         task = replace(task, costs=costs, coarse_costs=costs, below=below, scope=subproblem.remaining)
 
         def fix_before_rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
-            """Fix candidates by the cutoff first, and run all rounds only if few enough remain."""
+            """Exclude candidates above the cutoff first, and run all rounds only if few enough remain."""
             if below and len(gap.candidates) > max_actions:
                 before = len(gap.candidates)
                 gap, cuts = greedy.raise_bound(task, gap, h_values, greedy.h_max_guide(task, gap))
@@ -202,8 +212,8 @@ def reduce_at_costs(
             return (yield from run_rounds(task, gap, h_values))
 
         presolve = _Presolve(task, None, nullcontext)
-        presolve.run(Course(run_near_goals, fix_before_rounds), subproblem.actions(known_tree))
-        return presolve.reduced(subproblem.redundant)
+        presolve.run(Course(run_near_goals, fix_before_rounds), subproblem.tree_actions(known_tree))
+        return presolve.result(subproblem.redundant)
 
 
 def _task_of(
@@ -213,7 +223,10 @@ def _task_of(
     expired: Expired,
     presolve_tuning: PresolveTuning | None = None,
 ) -> Task:
-    """Return the task of reducing a problem: with its graph and rough costs, before exact costs."""
+    """Return the task of reducing a problem, with its graph and rough costs, but without exact costs.
+
+    ``presolve_tuning``: the numbers that steer the stages; ``None`` for the usual ones.
+    """
     presolve_tuning = presolve_tuning or tuning.PRESOLVE
     graph, coarse = graph_of(problem, objectives), CoarseCosts(problem, objectives[0])
     return Task(
@@ -230,7 +243,10 @@ def _task_of(
 
 
 def _with_costs(task: Task, actions: Collection[int]) -> Task:
-    """Return the task with exact costs of the actions; unchanged if it has costs or rates are too fine."""
+    """Return the task with exact costs of these actions.
+
+    If it has exact costs already, or rates are too fine for them, it is returned unchanged.
+    """
     if task.costs is None:
         with suppress(TooFineError):
             return replace(task, costs=ExactCosts(task.problem, task.objectives, actions))
@@ -238,10 +254,11 @@ def _with_costs(task: Task, actions: Collection[int]) -> Task:
 
 
 def run_rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
-    """Repeat landmark cuts, search for trees and pruning, until nothing changes or a tree is optimal.
+    """Repeat rounds of landmark cuts, search for trees and pruning, until a tree is proved optimal.
 
-    Where the cuts exclude few candidates, the linear relaxation and branching follow. Then better trees are
-    looked for thoroughly. Ends early where time is up. Yields each gap that it reaches.
+    If a round excludes few candidates, the linear relaxation and branching follow. If nothing has changed
+    then, better trees are looked for thoroughly in one more round. Ends when that changes nothing either, or
+    when time is up. Without exact costs, a round only prunes. Yields each gap that it reaches.
     """
     costs, limits = task.costs, task.tuning
     if costs is not None and len(gap.candidates) > limits.easy_actions:
@@ -281,12 +298,12 @@ def run_rounds(task: Task, gap: Gap, h_values: HValues) -> Stage:
 
 
 def _has_changed(gap: Gap, before: Gap) -> bool:
-    """Return whether a gap has fewer candidates or another incumbent than the gap ``before``."""
+    """Return whether a gap has fewer candidates than the earlier gap ``before``, or another incumbent."""
     return (len(gap.candidates), gap.incumbent) != (len(before.candidates), before.incumbent)
 
 
 def _tighten_by_relaxation(task: Task, gap: Gap) -> Stage:
-    """Tighten the gap by optimal cost partitions and branch and bound; yield each gap that is reached.
+    """Tighten the gap by optimal cost partitions, then by branch and bound; yield each gap that it reaches.
 
     Does nothing if there are few candidates.
     """
@@ -302,10 +319,10 @@ def _tighten_by_relaxation(task: Task, gap: Gap) -> Stage:
 
 
 def run_near_goals(task: Task, gap: Gap, h_values: HValues) -> Stage:
-    """Run the greedy stages near the goals of a large network, then rounds over the remaining candidates.
+    """Run the greedy stages once over a large network, then rounds over the remaining candidates.
 
-    No guide is used, since h-values of reduced costs take time linear in all actions. Yields each gap that it
-    reaches. Raises ``KeyboardInterrupt`` where time is up before any reduction.
+    The first cuts have no guide, since a guide takes time linear in the number of all actions. Yields each
+    gap that it reaches. Raises ``KeyboardInterrupt`` if time is up before any candidate was excluded.
     """
     if task.costs is not None:
         gap = yield from greedy.tighten(task, gap, h_values, None, thorough=False)
@@ -328,9 +345,9 @@ def run_near_goals(task: Task, gap: Gap, h_values: HValues) -> Stage:
 
 
 def _follow_h_add(task: Task, gap: Gap, h_values: HValues) -> Stage:
-    """Replace the incumbent by the tree that follows h_add, if that is better; yield the gap.
+    """Replace the incumbent as :func:`greedy_stages.follow_h_add` does; yield the gap.
 
-    Does nothing without exact costs.
+    Does nothing without exact costs. The h-values are not used.
     """
     if task.costs is not None:
         gap = greedy.follow_h_add(task, gap)
@@ -364,10 +381,13 @@ ROUNDS, BOUND = Course(run_near_goals, run_rounds), Course(_bound_lazily, _bound
 
 
 def _first_tree_near_goals(task: Task) -> tuple[Gap, HValues] | None:
-    """Find a first tree among the actions nearest to the goals, so that large networks are read lazily.
+    """Find a first tree of a large network among the actions nearest to the goals.
 
     Most of a large network is too far from the goals for a good tree, and is never looked at. Returns the gap
-    over all actions, and the h-value of each object. ``None`` if the network is small or no tree is found.
+    with all actions as candidates, and the h_max of each object that was reached.
+
+    Returns ``None`` if the network is small, few actions lead to the goals, or no tree is found. Also returns
+    ``None`` if the task has neither the reduction ``bounds`` nor ``dear``.
     """
     size, limits = len(task.graph.needs), task.tuning
     if not task.reductions & {Reduction.BOUNDS, Reduction.DEAR} or size <= limits.lazy_actions:
@@ -389,7 +409,7 @@ class _Presolve:
     """A run of the stages of a task.
 
     ``gap``: the last gap; ``None`` before there is a tree.
-    ``ended``: whether nothing interrupted the run.
+    ``ended``: whether the last run ended without an interruption.
     ``redundant``: whether trees may have redundant actions. Then the costs of all actions are needed.
     ``listener``, ``guard``: as for :func:`reduce`.
     """
@@ -401,13 +421,13 @@ class _Presolve:
 
     @property
     def bounds_listener(self) -> Listener:
-        """A listener for another task whose bounds hold here, too, but whose trees do not."""
+        """A listener for the run of another task whose bounds hold for this task, but whose trees do not."""
         return Bounds(self._listener)
 
     def run_guarded(self, step: Callable[[], None]) -> None:
-        """Run a step under the guard, and set ``ended``.
+        """Run a step under the guard, and record in ``ended`` whether it ended by itself.
 
-        ``KeyboardInterrupt`` ends the step. It is raised further only if there is no tree yet.
+        ``KeyboardInterrupt`` ends the step. It is caught if there is a tree, else passed on.
         """
         self.ended = False
         try:
@@ -419,13 +439,16 @@ class _Presolve:
                 raise
 
     def run(self, course: Course, known_tree: Collection[int] = ()) -> None:
-        """Find a first tree, and run the stages of a course from it."""
+        """Find a first tree, and run the stages of a course from it, under the guard.
+
+        ``known_tree`` has the actions of a tree that becomes the first incumbent if it is better.
+        """
         self.run_guarded(lambda: self._run_course(course, known_tree))
 
     def _run_course(self, course: Course, known_tree: Collection[int]) -> None:
-        """Find a first tree, and run the stages of a course from it; the guard is up to the caller.
+        """Do what :meth:`run` does, without the guard.
 
-        Does nothing more if there is no tree. Without reductions, the stages are not run.
+        If there is no tree, ``gap`` stays ``None``. If the task has no reductions, the stages are not run.
         """
         task, stages = self.task, course.near_goals
         opening = _first_tree_near_goals(task)
@@ -441,10 +464,10 @@ class _Presolve:
             self.run_stages(stages, h_values)
 
     def run_with_solved_goals(self, solved: SolvedGoals) -> None:
-        """Run all rounds, if possible from the gap that ``solved`` has, and add the answer to ``solved``."""
+        """Run all rounds under the guard, from a gap of ``solved`` if it has one; record the answer in it."""
 
         def run_from_shared_gap() -> None:
-            """Run the rounds from the gap that ``solved`` has, or from the beginning if it has none."""
+            """Run the rounds from the gap of ``solved``, or from a first tree if there is no such gap."""
             costs = solved.costs
             if costs is not None:
                 self.task = replace(self.task, costs=costs)
@@ -462,7 +485,7 @@ class _Presolve:
         self.run_guarded(run_from_shared_gap)
 
     def extend_or_run(self) -> None:
-        """Run all rounds; if sets of units are required, first try to extend trees for the goals alone."""
+        """Run all rounds; with required sets, first try to extend trees for the goals alone."""
         restriction = self.task.problem.restriction
         if restriction is not None and restriction.required and Reduction.DEAR in self.task.reductions:
             _presolve_by_extension(self)
@@ -470,7 +493,7 @@ class _Presolve:
             self.run(ROUNDS)
 
     def run_stages(self, stages: Stages, h_values: HValues) -> None:
-        """Run stages from the current gap with exact costs; report trees and bounds on the way."""
+        """Set exact costs of the task, then run stages from the current gap; report trees and bounds."""
         assert self.gap is not None
         actions = range(len(self.task.graph.needs)) if self._redundant else self.gap.candidates
         self.task = task = _with_costs(self.task, actions)
@@ -478,7 +501,7 @@ class _Presolve:
             self.report(gap)
 
     def report(self, gap: Gap) -> None:
-        """Make another gap the current one; report its tree and its bound to the listener if they are new."""
+        """Make a gap the current one; report a new incumbent and a greater bound to the listener."""
         before, self.gap = self.gap, gap
         if before is None or gap.incumbent is not before.incumbent:
             self._listener.tree(self._units(gap.incumbent))
@@ -489,8 +512,8 @@ class _Presolve:
         """Return the units among actions."""
         return frozenset(a for a in actions if a < self.task.graph.units)
 
-    def reduced(self, redundant: bool = False) -> Reduced:
-        """Return the result; trees of its subproblem may be ``redundant``."""
+    def result(self, redundant: bool = False) -> Reduced:
+        """Return the result; ``redundant`` tells whether trees of its subproblem may be redundant."""
         task, gap = self.task, self.gap
         if gap is None:
             return Reduced(None, (), False, None, 0, None)
@@ -509,11 +532,12 @@ class _Presolve:
 def _presolve_by_extension(presolve: _Presolve) -> None:
     """Presolve a question with required sets by its relaxation: the same question without these sets.
 
-    Every tree contains a tree for the goals alone. Its other units, the extension, cost the difference. So
-    the candidates are the units of cheap trees for the goals and of cheap extensions. If a tree costs no more
-    than the best tree for the goals alone, it is optimal.
+    Every tree contains a tree for the goals alone. Its other units are the extension, which costs the
+    difference. So the candidates are the actions of cheap trees for the goals and of cheap extensions. If a
+    tree costs no more than the best tree for the goals alone, it is optimal. Otherwise all rounds are run
+    over the candidates.
 
-    ``presolve.gap`` stays ``None`` if the relaxation does not help.
+    The result is in ``presolve.gap``, which stays ``None`` if the relaxation does not help.
     """
     task = presolve.task
     graph, restriction = task.graph, task.problem.restriction
@@ -523,13 +547,16 @@ def _presolve_by_extension(presolve: _Presolve) -> None:
     goals_task = _with_costs(goals_task, range(len(goals_task.graph.needs)))
     goals_presolve = _Presolve(goals_task, presolve.bounds_listener, presolve.guard)
     goals_presolve.run(ROUNDS)
-    reduced, gap, costs = goals_presolve.reduced(), goals_presolve.gap, goals_task.costs
+    reduced, gap, costs = goals_presolve.result(), goals_presolve.gap, goals_task.costs
     if costs is None or gap is None or reduced.subproblem is None:
         return
     subproblem, h_values = reduced.subproblem, dict[int, int]()
 
     def extend() -> None:
-        """Extend the best tree for the goals alone; the candidates are the actions of cheap extensions."""
+        """Extend the best tree for the goals alone, and set the gap of ``presolve``; fill ``h_values``.
+
+        Does nothing if no extension is found.
+        """
         tree = extend_tree(task.thin_graph, gap.incumbent, costs, len(graph.needs) // 4)
         if tree is None:
             return

@@ -8,12 +8,13 @@ from foon_asp.errors import UserError
 class Reduction(StrEnum):
     """A reduction of the search, beyond relevance and reachability.
 
-    ``forced``: excludes units made irrelevant by action landmarks.
-    ``dear``: excludes units above the cutoff, all of whose trees cost more than the incumbent.
+    ``forced``: excludes units that action landmarks make irrelevant.
+    ``dear``: excludes units if all trees with them cost more than the incumbent.
     ``dominated``: excludes units that another unit dominates.
-    ``bounds``: only trees better than the incumbent are searched for, and none where the bounds meet.
+    ``bounds``: looks only for trees better than the incumbent. If a lower bound proves that there are none,
+    no search follows.
 
-    The first two keep every optimal tree, the others at least one.
+    The first two keep every optimal tree, the others keep at least one.
     """
 
     FORCED = "forced"
@@ -28,9 +29,9 @@ NONE: frozenset[Reduction] = frozenset()
 
 
 def parse_reductions(text: str) -> frozenset[Reduction]:
-    """Return the reductions named by ``all``, ``safe``, ``none`` or names separated by commas.
+    """Return the reductions of ``all``, ``safe``, ``none`` or a list of names as in ``forced,dear``.
 
-    Raises :class:`UserError` for other names.
+    Raises :class:`UserError` for an unknown name.
     """
     named = {"all": ALL, "safe": SAFE, "none": NONE}
     if text in named:

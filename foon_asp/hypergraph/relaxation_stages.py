@@ -25,10 +25,11 @@ from foon_asp.hypergraph.task import Task
 
 
 def partition_costs(task: Task, gap: Gap) -> Stage:
-    """Raise the bound by optimal cost partitions, derive trees from LP solutions, and fix candidates.
+    """Raise the bound by optimal cost partitions, follow LP solutions to trees, and exclude candidates.
 
-    Where many candidates were excluded, the relaxation begins anew over the remaining ones. Ends where few
-    are excluded, where time is up, and where branching is faster. Yields each gap that it reaches.
+    If many candidates were excluded, the relaxation begins anew over the remaining ones. Ends when few are
+    excluded, few remain, the gap is proved, time is up, or branching is faster. Yields each gap that it
+    reaches.
     """
     costs, graph, limits = task.costs, task.graph, task.tuning
     assert costs is not None
@@ -58,9 +59,10 @@ def partition_costs(task: Task, gap: Gap) -> Stage:
 
 
 def _starting_cuts(gap: Gap) -> tuple[frozenset[int], ...]:
-    """Return the greedy cuts to begin the relaxation with, each by its objects.
+    """Return the cuts of the greedy cost partition to begin the relaxation with, each by its objects.
 
-    Large landmarks are weak and make the LP slow: of many, only the smallest are returned.
+    Large landmarks are weak and make the LP slow. So cuts with small landmarks are returned first, and the
+    sum of the sizes is limited.
     """
     cuts = gap.evidence.cuts.cuts if gap.evidence.cuts else []
     budget = tuning.RELAXATION.starting_landmarks * len(gap.candidates)
@@ -72,9 +74,9 @@ def _starting_cuts(gap: Gap) -> tuple[frozenset[int], ...]:
 def follow_solution(task: Task, gap: Gap, partition: CostPartition, looks: int) -> Stage:
     """Look for better trees that follow an LP solution, then apply its cost partition.
 
-    Trees are also looked for by branch and bound, if the solution uses few actions, else by perturbation
-    search. ``looks`` is the budget: how often each candidate may be looked at. Yields each gap that it
-    reaches.
+    If the LP solution and the trees use few actions, branch and bound over these looks for better trees.
+    Otherwise, a perturbation search does. ``looks`` is the budget: how often each candidate may be looked at.
+    Yields each gap that it reaches.
     """
     costs, graph = task.costs, task.graph
     assert costs is not None
@@ -102,10 +104,11 @@ def follow_solution(task: Task, gap: Gap, partition: CostPartition, looks: int) 
 
 
 def apply_partition(task: Task, gap: Gap, partition: CostPartition) -> Gap:
-    """Raise the bound by a cost partition, fix candidates by reduced costs, and prune dominated ones.
+    """Raise the bound by a cost partition, exclude candidates by reduced costs, and prune dominated ones.
 
-    The bound is rounded up, since costs are whole numbers. If it meets the incumbent, the gap is marked as
-    proved.
+    The bound is rounded up, since costs are whole numbers. If it equals the cost of the incumbent, nothing
+    was rounded in costs, and only better trees are wanted, the gap is marked as proved. The partition and its
+    tight cuts become evidence. Candidates are excluded only by the reductions of the task.
     """
     costs, total, evidence = task.costs, task.incumbent_cost(gap), gap.evidence
     assert costs is not None
@@ -130,8 +133,8 @@ def search_among(
 ) -> Stage:
     """Look for a better tree among a few actions by branch and bound (sub-MIP heuristic).
 
-    ``cuts`` are cuts to begin with. ``effort`` is the budget, in actions looked at. Yields the gap with each
-    better tree.
+    ``cuts`` are the cuts to begin with, each by its objects. ``effort`` is the budget, in actions looked at.
+    Yields the gap with each better tree. Its bound does not change.
     """
     graph, costs = task.graph, task.costs
     assert costs is not None
@@ -149,19 +152,21 @@ def search_among(
 
 
 def may_branch(task: Task, gap: Gap) -> bool:
-    """Return whether branching may prove a tree optimal; ``False`` if rounding could decide.
+    """Return whether branching may be used to prove a tree optimal.
 
-    Also ``False`` if the budget is used up, if costs have a limit, or if equally good trees are wanted.
+    It may not if costs are rounded or have a limit, equally good trees are wanted, or the budget is used up.
     """
     assert task.costs is not None
     return task.only_better(gap) and not (task.costs.doubt or task.costs.has_limit) and gap.budget > 0
 
 
 def branch(task: Task, gap: Gap) -> Stage:
-    """Branch and bound over the candidates, within the budget, if the lower bound is close enough.
+    """Branch and bound over the candidates, within the budget of the gap.
 
-    Better trees are first looked for in the neighbourhood. If the search closes all nodes, the gap is marked
-    as proved, and the case split becomes evidence. Yields each gap that it reaches.
+    Does nothing unless :func:`may_branch` allows it, there are many candidates, and the lower bound is close
+    to the cost of the incumbent. Better trees are first looked for in the neighbourhood. If the search closes
+    all nodes, the gap is marked as proved, and the case split becomes evidence. If it only finds a better
+    tree, the last cost partition is applied again. Yields each gap that it reaches.
     """
     costs, graph, limits = task.costs, task.graph, task.tuning
     assert costs is not None

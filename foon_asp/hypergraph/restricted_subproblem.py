@@ -9,11 +9,11 @@ from foon_asp.hypergraph.h_values import Derivations, compute_h_values
 def restricted_subproblem(
     graph: GoalGraph, actions: set[int], cost: Callable[[int], int], max_actions: int
 ) -> tuple[Derivations, set[int]] | None:
-    """Add actions until they contain a tree; return the h-values of their objects, and the tree.
+    """Extend a set of actions until it contains a tree; return its derivations by h_max, and the tree.
 
     Each round adds an achiever of each relevant object that is not reached. Achievers with the fewest
-    non-initial preconditions come first. ``None`` if more than ``max_actions`` actions would be needed, or if
-    there is no tree.
+    non-initial preconditions come first. The set ``actions`` itself is not changed. Returns ``None`` if there
+    is no tree, or more than ``max_actions`` actions would be needed.
     """
     needs, achievers, start = graph.needs, graph.makers, graph.start
     chosen = set(actions)

@@ -23,9 +23,9 @@ from foon_asp.hypergraph.task import Task
 class _LpTolerance(NamedTuple):
     """Tolerances of LP values, which are floats; bounds do not rely on them.
 
-    ``used``: an action of a greater LP value counts as used.
-    ``violated``: a landmark with a smaller sum of LP values is violated.
-    ``tight``: a landmark with a smaller sum is tight.
+    ``used``: an action counts as used if its LP value is greater.
+    ``violated``: a landmark is violated if the sum of its LP values is smaller.
+    ``tight``: a landmark is tight if the sum of its LP values is smaller.
     """
 
     used: float = 1e-6
@@ -39,9 +39,10 @@ _LP = _LpTolerance()
 class _Relaxation(NamedTuple):
     """The result of a relaxation: a tree, and the last LP solution.
 
-    ``rows``: the rows of the LP, which are numbers of landmarks.
-    ``x``: the LP value of each action.
-    ``duals``: the dual of each of the rows.
+    ``tree``: the best tree found.
+    ``rows``: for each row of the LP, the number of its landmark.
+    ``x``: the LP value of each action, by its number in the relaxation.
+    ``duals``: the dual of each row of the LP.
     """
 
     tree: frozenset[int]
@@ -53,9 +54,9 @@ class _Relaxation(NamedTuple):
 class SharedLandmarks:
     """Landmarks of all objects that a network can make from a kitchen, for costs without rounding.
 
-    ``actions`` are the actions that can run, and ``objects`` the objects that they make. The linear
-    relaxation for a question begins with known landmarks of its goals. Landmarks that it adds are kept for
-    later questions. A question may exclude actions.
+    ``actions`` are all actions that can run, and ``objects`` the objects that they make. A question has some
+    of these objects as goals, and may exclude actions. Its linear relaxation begins with the known landmarks
+    of its goals. Landmarks that it adds are kept for later questions.
     """
 
     def __init__(self, task: Task, costs: ExactCosts, actions: Iterable[int], objects: Sequence[int]) -> None:
@@ -69,10 +70,13 @@ class SharedLandmarks:
         self._reached_without: list[bytearray] = []  # for each landmark, what is reached without its actions
 
     def tighten(self, task: Task, excluded: frozenset[int], tree: frozenset[int]) -> Gap:
-        """Return the gap of a question: a tree as good as ``tree`` or better, a bound, and the candidates.
+        """Return the gap of a question by its relaxation.
 
-        Cuts are kept as evidence only if the gap stays open, since they are many and large. Where HiGHS
-        fails, the gap has ``tree`` and the bound 0.
+        ``excluded``: the actions that the question excludes.
+        ``tree``: a tree of the question. The incumbent of the gap is this tree or a better one.
+
+        Cuts become evidence only if the gap is not closed by the bound alone, since they are many and large.
+        If HiGHS fails, the gap has the bound 0, and all actions that are not excluded as candidates.
         """
         result = self._relax(task, excluded, tree)
         candidates = self._actions - excluded
@@ -105,10 +109,11 @@ class SharedLandmarks:
         return [self._number[goal] for goal in task.graph.goals]
 
     def _relax(self, task: Task, excluded: frozenset[int], tree: frozenset[int]) -> _Relaxation | None:
-        """Solve the relaxation for a question, until its value reaches the cost of the best tree found.
+        """Solve the relaxation for a question, until its value proves the best tree found optimal.
 
-        Adds known landmarks that the LP solution violates; if there are none, new ones, which are recorded.
-        Also ends when no violated cut is found or time is up. ``None`` where HiGHS fails.
+        Known landmarks that the LP solution violates are added. If there are none, new ones are found, added
+        and recorded. Also ends when no violated cut is found, the value hardly grows, or time is up. Returns
+        ``None`` if HiGHS fails. The arguments are those of :meth:`tighten`.
         """
         np, relaxation, targets = self._np, self._relaxation, self._targets(task)
         landmarks = [
@@ -163,14 +168,14 @@ class SharedLandmarks:
         return _Relaxation(tree, rows, solution.x, covering.duals())
 
     def _value_array(self, value_of_action: dict[int, float]) -> Any:
-        """Return an array of the value of each action, by position; actions without a value have 0."""
+        """Return an array of values by number in the relaxation; actions without a value have 0."""
         values = self._np.zeros(len(self._relaxation.actions))
         for action, value in value_of_action.items():
             values[self._position[action]] = value
         return values
 
     def _row_sums(self, rows: Sequence[int], values: Any) -> list[float]:
-        """Return for each of the rows the sum of the values of its actions."""
+        """Return for each of these landmarks the sum of the ``values`` of its actions."""
         if not rows:
             return []
         arrays = [self._relaxation.rows[row] for row in rows]
@@ -178,16 +183,19 @@ class SharedLandmarks:
         return self._np.add.reduceat(values[self._np.concatenate(arrays)], starts).tolist()  # type: ignore[no-any-return]
 
     def _record_reached(self, rows: Iterable[int]) -> None:
-        """Record for new landmarks which objects can be reached without their actions.
+        """Record for each new landmark, given by number, which objects are reachable without its actions.
 
-        A landmark of one object is a landmark of every object that cannot be reached so.
+        It is a landmark of all other objects.
         """
         for row in rows:
             landmark = frozenset(self._relaxation.rows[row].tolist())
             self._reached_without.append(self._relaxation.graph.reach(landmark))
 
     def _improve_by_lp(self, task: Task, tree: frozenset[int], x: Any) -> frozenset[int]:
-        """Return the best of ``tree`` and trees that combine its actions with those of an LP solution."""
+        """Return the best of ``tree`` and trees that combine its actions with those of an LP solution.
+
+        If the LP solution uses only actions of ``tree``, return ``tree``.
+        """
         actions, costs = self._relaxation.actions, self.costs
         used = self._np.flatnonzero(x > _LP.used).tolist()
         lp_values = dict.fromkeys(tree, 0.0) | {actions[i]: float(x[i]) for i in used}
@@ -197,9 +205,9 @@ class SharedLandmarks:
         return min(tree, *map(frozenset, trees), key=lambda tree: sum(map(costs, tree)))
 
     def _cut_of_row(self, row: int, targets: Iterable[int]) -> frozenset[int]:
-        """Return a cut with one of the targets; its landmark is within the actions of a row.
+        """Return a cut of one of the targets; its landmark is a subset of the landmark number ``row``.
 
-        The result has object numbers of the whole graph.
+        ``targets`` are numbers in the relaxation. The result has object numbers of the whole graph.
         """
         relaxation, reached = self._relaxation, self._reached_without[row]
         graph, landmark = relaxation.graph, frozenset(relaxation.rows[row].tolist())

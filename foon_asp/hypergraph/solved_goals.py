@@ -18,8 +18,8 @@ if TYPE_CHECKING:  # few questions need it
 class SolvedGoals:
     """Trees of solved questions that differ only in goals and removed units, and landmarks that they share.
 
-    Landmarks are shared from the first question on that greedy cuts do not solve. Easier questions are solved
-    faster one by one.
+    Landmarks are shared as soon as a question was solved that greedy cuts alone do not solve. Easier
+    questions are solved faster one by one.
     """
 
     def __init__(self) -> None:
@@ -30,17 +30,17 @@ class SolvedGoals:
 
     @property
     def sharing(self) -> bool:
-        """Whether questions share landmarks now."""
+        """Whether landmarks are shared yet."""
         return self._landmarks is not None
 
     def h_add(self, goal: int) -> int:
-        """Return the h_add value of a goal; 0 if landmarks are not shared yet or there is no tree."""
+        """Return the h_add value of a goal at rough costs; 0 if it has no tree, or nothing is shared yet."""
         return 0 if self._derivations is None else self._derivations.h_objects.get(goal, 0)
 
     def gap(self, task: Task) -> Gap | None:
-        """Return the gap of a question from shared landmarks; ``None`` before they are shared.
+        """Return the gap of a question from shared landmarks.
 
-        Also ``None`` if there is no tree.
+        Return ``None`` if landmarks are not shared yet, or the question has no tree.
         """
         if self._landmarks is None or self._derivations is None:
             return None
@@ -61,13 +61,14 @@ class SolvedGoals:
 
     @property
     def costs(self) -> ExactCosts | None:
-        """The costs of shared gaps, for all actions that can run; ``None`` before landmarks are shared."""
+        """The exact costs of all actions that can run; ``None`` before landmarks are shared."""
         return None if self._landmarks is None else self._landmarks.costs
 
     def _tree_from_solved(self, task: Task) -> frozenset[int]:
-        """Return the best tree that is a union of an achiever of the goal and trees of its preconditions.
+        """Return the best tree found for the only goal of a question.
 
-        These trees are known from solved questions, or follow h_add.
+        Each tree is an achiever of the goal together with trees of its preconditions. The latter are known
+        from solved questions, or follow h_add. Of the cheapest unions, redundant actions are removed.
         """
         graph, costs, derivations, trees = task.graph, task.costs, self._derivations, list[set[int]]()
         assert costs is not None
@@ -87,7 +88,8 @@ class SolvedGoals:
     def _tree_without(self, task: Task, removed: frozenset[int]) -> frozenset[int] | None:
         """Return a tree without the removed actions; ``None`` if there is none.
 
-        It is the better of two: one by h_add, and one from it and the solved tree of the same goals.
+        It is the better of two irredundant trees. One follows h_add. The other is a subset of the union of
+        the first and the solved tree of the same goals, if there is one.
         """
         graph, costs, derivations = task.graph, task.costs, self._derivations
         assert costs is not None
@@ -101,10 +103,11 @@ class SolvedGoals:
         return frozenset(min(trees, key=lambda tree: sum(map(costs, tree))))
 
     def record(self, task: Task, gap: Gap | None) -> None:
-        """Store the tree of a proved gap; other gaps are ignored.
+        """Store the tree of a proved gap; other gaps, and ``None``, are ignored.
 
-        If greedy cuts did not prove it, landmarks are shared from then on. Nothing is shared where costs are
-        rounded, or where the question is not reduced by both ``bounds`` and ``dear``.
+        If the linear relaxation was needed to prove it, landmarks are shared from now on. They are never
+        shared if costs are rounded, or if this first such question is not reduced by both ``bounds`` and
+        ``dear``.
         """
         if gap is None or not gap.proved:
             return
@@ -127,9 +130,10 @@ class SolvedGoals:
 
 
 def can_use_solved_goals(task: Task) -> bool:
-    """Return whether solved goals can help with a question: it has goals, and no required sets.
+    """Return whether solved goals can help with a question.
 
-    Its network must not be so large that only a part of it is looked at.
+    The question needs goals and must not have required sets. Its network must not be so large that only a
+    part of it is looked at.
     """
     restriction = task.problem.restriction
     return (

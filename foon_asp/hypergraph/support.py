@@ -8,14 +8,15 @@ from foon_asp.hypergraph.h_values import compute_h_values
 
 
 class Support:
-    """A tree with the h_add values and best achievers of its objects, updated incrementally.
+    """A tree with the h_add values and best achievers of its objects, updated when actions are removed.
 
-    ``actions``: the actions of the tree that are found by following best achievers from the goals. Others are
-    removed at once.
-    ``h_objects``: the h_add value of each object in use, by object.
+    ``actions``: the actions that are still in the tree. At first, they are those found by following best
+    achievers from the goals.
+    ``h_objects``: the h_add value of each object. Values of objects that are not in use may be outdated.
 
-    When an action is removed, only objects derived by it are derived anew. They are derived from the other
-    objects, so that actions of a cycle do not support each other.
+    An object is *in use* if it is a goal or a precondition of an action in the tree. When an action is
+    removed, only objects derived by it are derived anew. They are derived from the other objects, so that
+    actions of a cycle do not support each other.
     """
 
     def __init__(self, graph: GoalGraph, tree: Collection[int], cost: Callable[[int], int]) -> None:
@@ -38,22 +39,22 @@ class Support:
             self._supported[self._best_achiever[o]] += 1
 
     def _is_in_use(self, o: int) -> bool:
-        """Return whether an object is a goal or a precondition of an action."""
+        """Return whether an object is a goal or a precondition of an action in the tree."""
         return bool(o in self._goals or self._consumers.get(o))
 
     def is_replaceable(self, action: int) -> bool:
-        """Return whether every add effect in use of an action has another achiever.
+        """Return whether each object in use that an action makes has another achiever in the tree.
 
-        If a tree has redundant actions, at least one is replaceable: of the actions that can be removed
-        together, the last in an executable order.
+        A tree with redundant actions has a replaceable action: of the actions that can be removed together,
+        the last in an executable order.
         """
         return all(len(self._achievers[o]) > 1 for o in self._graph.gives[action] if self._is_in_use(o))
 
     def remove(self, action: int) -> set[int] | None:
         """Remove an action, and the actions that are of no use without it.
 
-        Returns the remaining achievers of objects that are no longer in use. If the other actions do not
-        reach the goals, nothing changes, and ``None`` is returned.
+        Returns the remaining actions that achieve an object that is no longer in use. They may be redundant
+        now. If the other actions do not reach the goals, nothing changes, and the result is ``None``.
         """
         missing = {action: 0}  # number of lost preconditions of each action derived by it
         lost: set[int] = set()
@@ -79,10 +80,11 @@ class Support:
     def _rederive(
         self, lost: Collection[int], missing: dict[int, int]
     ) -> tuple[dict[int, tuple[int, int]], dict[int, int]]:
-        """Derive lost objects anew; return the new h_add values.
+        """Derive lost objects anew, and return the new h_add values of objects and of actions.
 
-        Returns a pair of h_add value and best achiever for each object that is reached, and the h_add values
-        of actions. ``missing`` counts the lost preconditions of each action. It is changed in place.
+        ``missing`` has the number of lost preconditions of each action that has some; it is changed in place.
+        The first result maps each object that is reached to its h_add value and best achiever. The second
+        maps actions to their h_add values.
         """
         rederived: dict[int, tuple[int, int]] = {}
         h_actions: dict[int, int] = {}
@@ -107,9 +109,9 @@ class Support:
         return rederived, h_actions
 
     def _remove_idle(self, idle: list[int]) -> set[int]:
-        """Remove idle actions, and actions that only they use.
+        """Remove ``idle`` actions, which are no best achievers, and actions that only these need.
 
-        Returns the remaining achievers of objects that are no longer in use.
+        Returns the remaining actions that achieve an object that is no longer in use.
         """
         graph, actions = self._graph, self.actions
         freed: set[int] = set()

@@ -17,12 +17,13 @@ class Task:
     """A question as a graph with costs, and the settings of its reduction.
 
     ``expired``: returns whether time is up.
-    ``thin_graph``: the graph with few achievers of each required set.
+    ``thin_graph``: the graph with few achievers of each required set, for estimates.
     ``coarse_costs``: rough costs, for estimates.
     ``scope``: the actions that trees may have.
-    ``costs``: exact costs; ``None`` if rates are too fine, and before the first tree.
-    ``below``: trees that cost less are wanted, even if they are no better than the incumbent. 0 for none.
-    ``random_source``: the random numbers of perturbation search, always from the same seed.
+    ``costs``: exact costs; ``None`` before the first tree, and if rates are too fine for them.
+    ``below``: a cost; 0 for none. Trees that cost less are wanted, even if they are no better than the
+    incumbent.
+    ``random_source``: the source of random numbers of perturbation search, always with the same seed.
     """
 
     problem: Problem
@@ -49,11 +50,11 @@ class Task:
         return sum(map(self.costs, tree)) < self.incumbent_cost(gap)
 
     def only_better(self, gap: Gap) -> bool:
-        """Return whether only trees better than the incumbent are wanted, and not equally good ones."""
+        """Return whether only trees better than the incumbent are wanted."""
         return Reduction.BOUNDS in self.reductions and self.incumbent_cost(gap) >= self.below
 
     def cutoff(self, gap: Gap) -> int:
-        """Return the greatest cost of trees that are still wanted."""
+        """Return the greatest cost of trees that are still wanted, plus the doubt of costs."""
         assert self.costs is not None
         return (
             max(self.incumbent_cost(gap), self.below)

@@ -11,20 +11,27 @@ from typing import NamedTuple
 class PresolveTuning(NamedTuple):
     """When a stage of :mod:`foon_asp.hypergraph.reduction` begins, and when it ends.
 
-    ``lazy_actions``: actions of a network. In a larger one, only those near the goals are looked at first.
-    ``first_actions``: actions nearest to the goals among which the first tree is looked for.
-    ``required_achievers``: achievers of a required set that are looked at while trees are looked for.
-    ``neighbourhood_actions``: actions of the neighbourhood in which better trees are looked for.
-    ``easy_actions``: candidates. With fewer, clingo is faster than a thorough search for better trees.
-    ``relaxed_actions``: candidates. With fewer, clingo is faster than the linear relaxation.
-    ``branching_budget``: actions that branch and bound may look at; some 20 s of processor time.
-    ``branching_bound``: share of the incumbent's cost that the bound has to reach before branching begins.
-    ``sufficient_bound``: share of the incumbent's cost. From this bound on, branching is faster than cuts.
-    ``search_looks``: looks at each action in a search for a better tree that follows an LP solution.
-    ``sparse_share``: share of the candidates. Up to it, trees are searched by branching, else by
-    perturbation.
-    ``landmark_actions``: sum of the sizes of landmarks, per action, after which greedy cuts end.
-    ``worthwhile_share``: share of the candidates. Another turn follows only if fewer remain.
+    ``lazy_actions``: a number of actions. If a network has more, only those near the goals are looked at
+    first.
+    ``first_actions``: among how many actions, the nearest to the goals, the first tree is looked for.
+    ``required_achievers``: how many units of each required set are looked at while trees are looked for.
+    ``neighbourhood_actions``: how many actions a neighbourhood has in which better trees are looked for.
+    ``easy_actions``: a number of candidates. If there are fewer, clingo is faster than a thorough search for
+    better trees.
+    ``relaxed_actions``: a number of candidates. If there are fewer, clingo is faster than the linear
+    relaxation.
+    ``branching_budget``: how many actions branch and bound may look at; this takes about 20 s of processor
+    time.
+    ``branching_bound``: the share of the incumbent's cost that the bound has to reach before branching
+    begins.
+    ``sufficient_bound``: a share of the incumbent's cost. Once the bound reaches it, branching is faster than
+    more cuts.
+    ``search_looks``: how often each action is looked at in a search for a better tree that follows an LP
+    solution.
+    ``sparse_share``: a share of the candidates. If an LP solution uses no more, better trees are looked for
+    by branching, else by perturbation.
+    ``landmark_actions``: a number per action. If the sizes of landmarks add up to it, greedy cuts end.
+    ``worthwhile_share``: a share of the candidates. Another round follows only if fewer remain.
     """
 
     lazy_actions: int = 40_000
@@ -45,13 +52,13 @@ class PresolveTuning(NamedTuple):
 class CutTuning(NamedTuple):
     """How landmark cuts and h-values are looked for.
 
-    ``guided_cuts``: cuts after which the h-values that guide cuts are computed anew. With more targets than
-    this, it is one cut for each target.
+    ``guided_cuts``: the number of cuts after which the h-values that guide cuts are computed anew. If there
+    are more targets, h-values are computed after as many cuts as there are targets.
     ``guides``: how often h-values are computed, at most, while as many cuts are found as there are objects.
-    Each time looks at all objects, so without a maximum cuts would take quadratic time
+    Each computation looks at all objects, so without a maximum, cuts would take quadratic time
     (``benchmarks/shapes.py``, grid by kitchen).
-    ``lazy_depth``: depth of the recursion of lazy h_max.
-    ``lazy_looks``: actions that lazy h_max looks at in all.
+    ``lazy_depth``: the greatest depth of the recursion of lazy h_max.
+    ``lazy_looks``: how many actions one lazy h_max test looks at in all.
     """
 
     guided_cuts: int = 64
@@ -63,15 +70,15 @@ class CutTuning(NamedTuple):
 class RelaxationTuning(NamedTuple):
     """How the linear relaxation is solved and searched.
 
-    ``cuts``: violated cuts with disjoint landmarks that are separated for one LP solution, at most.
-    ``stalled_solutions``: solutions after which a bound that hardly grows counts as optimal.
-    ``stalled_growth``: share of the gap that these solutions have to gain.
-    ``node_rounds``: rounds of separation at each node but the root.
-    ``guess_interval``: nodes from one guess of derivations to the next.
-    ``landmark_bits``: bits of the landmark sets by which first achievers are computed; in larger graphs, only
-    landmarks among fewer objects are computed.
-    ``starting_landmarks``: sum of the sizes of the landmarks with which it begins, per action.
-    ``run_seconds``: seconds of an interior-point run, which cannot be continued.
+    ``cuts``: how many violated cuts with disjoint landmarks are added for one LP solution, at most.
+    ``stalled_solutions``: the number of solutions after which a bound that hardly grows counts as optimal.
+    ``stalled_growth``: the share of the gap that these solutions have to close.
+    ``node_rounds``: how many rounds of cuts there are at each node except the root.
+    ``guess_interval``: the number of nodes from one call of the primal heuristic to the next.
+    ``landmark_bits``: the number of bits of all landmark sets by which first achievers are computed. In
+    larger graphs, only landmarks among some of the objects are computed.
+    ``starting_landmarks``: the greatest sum of the sizes of landmarks to begin with, per action.
+    ``run_seconds``: the time limit of an interior-point run, which cannot be continued.
     """
 
     cuts: int = 40
@@ -87,12 +94,13 @@ class RelaxationTuning(NamedTuple):
 class ProofTuning(NamedTuple):
     """How certificates are looked for, by :class:`foon_asp.hypergraph.optimality_proof.Prover`.
 
-    ``rounded_actions``: actions. With more, rounded weights are tried before exact ones.
-    ``greedy_cuts``: known cuts that get weights greedily. Others get weights only from the LP.
-    ``fixed_share``: share of the actions. If more are above the cutoff, these are fixed before anything else.
-    ``search_budget``: actions that branch and bound may look at; about a minute of processor time.
-    ``proof_length``: objects and landmark actions that a proof by branching may list.
-    ``pivots``: steps of the exact simplex algorithm from the basis of floats; few are needed.
+    ``rounded_actions``: a number of actions. If there are more, rounded weights are tried before exact ones.
+    ``greedy_cuts``: how many known cuts get weights greedily. The others get weights only from the LP.
+    ``fixed_share``: a share of the actions. If more are above the cutoff, these are fixed at once.
+    ``search_budget``: how many actions branch and bound may look at; this takes about a minute of processor
+    time.
+    ``proof_length``: how many objects and landmark actions a proof by branching may list.
+    ``pivots``: how many steps the exact simplex algorithm may take from the basis of floats; few are needed.
     """
 
     rounded_actions: int = 1000
@@ -106,10 +114,10 @@ class ProofTuning(NamedTuple):
 class PriceTuning(NamedTuple):
     """How a limit on a sum over units is priced, by :mod:`foon_asp.hypergraph.priced_limit`.
 
-    ``prices``: prices that are tried.
-    ``easy_units``: units. With fewer, clingo is faster than another price.
-    ``rising_units``: units. With more, rising prices are tried.
-    ``rising_prices``: rising prices that are tried, at most.
+    ``prices``: how many prices are tried, at most.
+    ``easy_units``: a number of units. If no more remain, clingo is faster than another price.
+    ``rising_units``: a number of units. If more remain, rising prices are tried.
+    ``rising_prices``: how many rising prices are tried, at most.
     """
 
     prices: int = 2
@@ -119,10 +127,10 @@ class PriceTuning(NamedTuple):
 
 
 class SharedTuning(NamedTuple):
-    """What the goals of a network share, in :mod:`foon_asp.hypergraph.shared_landmarks`.
+    """How the goals of a network share landmarks and trees.
 
-    ``violated_landmarks``: known landmarks that are added for one LP solution, at most.
-    ``unions``: unions of trees that are made irredundant to find a first tree.
+    ``violated_landmarks``: how many known landmarks are added for one LP solution, at most.
+    ``unions``: how many unions of trees, the cheapest, are made irredundant to find a first tree.
     """
 
     violated_landmarks: int = 40

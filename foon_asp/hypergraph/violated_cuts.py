@@ -17,15 +17,15 @@ def disjoint_violated_cuts(
 ) -> Iterator[Cut]:
     """Yield cuts that an LP solution violates, with disjoint landmarks and no action of ``used``.
 
-    ``lp_values``: an array of the LP value of each action, changed in place: after a cut is yielded, the
-    values of its landmark are 1.
+    ``lp_values``: an array of the LP value of each action. It is changed in place: when a cut is yielded, the
+    values of its landmark become 1.
     ``costs``: an array of the cost of each action.
-    ``random_number``: returns numbers from 0 to 1. Landmarks avoid actions of great LP value first. Among
-    equal values they avoid actions of low cost, after each cost is multiplied by a random factor from 0.5 to
-    1.5.
-    ``tolerance``: a landmark is satisfied if its values add up to at least 1 minus this.
+    ``random_number``: returns numbers from 0 to 1.
+    ``tolerance``: a number. A cut is violated if the values of its landmark add up to less than 1 minus this.
 
-    Ends when the next cut is satisfied, or when there is no other cut.
+    Landmarks avoid actions of great LP value. Among actions of equal value, they avoid those of low cost,
+    after each cost is multiplied by a random factor from 0.5 to 1.5. Ends when the next cut is not violated,
+    or there is no other cut.
     """
     import numpy as np  # noqa: PLC0415 (a part of HiGHS is there already)
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from msgspec import UNSET
 
 from foon_asp.asp import Settings, Status
-from foon_asp.engines import Asked, Check, DisagreementError, Engine
+from foon_asp.engines import Check, ClaimedAnswer, DisagreementError, Engine
 from foon_asp.engines import cross_check as ask_engines
 from foon_asp.errors import BugError
 from foon_asp.questions.answer import Answer, EngineCheck
@@ -29,7 +29,7 @@ def cross_check_answer(
         BugError: where an engine disagrees; a command writes what is needed to reproduce it to a new file.
     """
     penalty = answer.penalty if isinstance(answer.penalty, int) else None
-    request = Asked(answer.outcome, settings, weights, penalty)
+    request = ClaimedAnswer(answer.outcome, settings, weights, penalty)
     try:
         checks = ask_engines(request, engines=tuple(engines))
     except DisagreementError as disagreement:

@@ -8,7 +8,7 @@ from pathlib import Path
 from foon_asp.asp import Outcome
 from foon_asp.asp.bare_program import bare_program
 from foon_asp.encoding.encoding import read_encoding
-from foon_asp.engines import Asked, DisagreementError
+from foon_asp.engines import ClaimedAnswer, DisagreementError
 from foon_asp.engines.bare_clingo import ENGINE_OPTIONS
 from foon_asp.errors import UserError
 from foon_asp.problem import Problem
@@ -24,7 +24,7 @@ from foon_asp.whole_file import write_whole
 _DISTRIBUTIONS = ("foon-asp", "clingo", "highspy")
 
 
-def write_disagreement(request: Asked, disagreement: DisagreementError) -> str:
+def write_disagreement(request: ClaimedAnswer, disagreement: DisagreementError) -> str:
     """Write a report on a disagreement into a file of its own; return the message for the user.
 
     The message also says if the file could not be written.
@@ -47,7 +47,7 @@ def disagreement_name(outcome: Outcome) -> str:
     )
 
 
-def disagreement_json(request: Asked, disagreement: DisagreementError) -> Json:
+def disagreement_json(request: ClaimedAnswer, disagreement: DisagreementError) -> Json:
     """Return a disagreement as a JSON object: question, data and rules as text, and both answers.
 
     Included files are part of the text of rules. The key ``bare_clingo`` has the program that clingo was

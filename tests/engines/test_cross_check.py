@@ -10,17 +10,17 @@ import pytest
 from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.engines import (
     ENGINES,
-    Asked,
     Check,
+    ClaimedAnswer,
     DisagreementError,
     Engine,
     EngineAnswer,
     NotCheckedError,
-    agree,
+    agreed_objectives,
     cross_check,
     fast_downward,
 )
-from foon_asp.engines.fast_downward import installed, solve_with_fast_downward
+from foon_asp.engines.fast_downward import is_installed, solve_with_fast_downward
 from foon_asp.engines.highs import solve_with_highs
 from foon_asp.network import FunctionalUnit
 from foon_asp.problem import ContainerRule, Costs, Objective, Problem, levels
@@ -38,7 +38,7 @@ RULES = list(ContainerRule)
 Solve = Callable[[Problem, tuple[Objective, ...], frozenset[int], float], EngineAnswer]
 
 needs_fast_downward = pytest.mark.skipif(
-    not installed(), reason="Fast Downward is not installed: pip install 'foon-asp[cross-check]'"
+    not is_installed(), reason="Fast Downward is not installed: pip install 'foon-asp[cross-check]'"
 )
 SOLVERS = [
     pytest.param(solve_with_highs, id="HiGHS"),
@@ -87,7 +87,7 @@ def test_lists_are_checked_level_by_level() -> None:
         objectives = random_objectives(random.Random(seed), 3)
         outcome = solve(problem, objectives)
         wanted = levels(objectives) if outcome.units is not None else ()
-        clingo, highs = cross_check(Asked(outcome), 60.0, ENGINES[:1])
+        clingo, highs = cross_check(ClaimedAnswer(outcome), 60.0, ENGINES[:1])
         assert (clingo.objectives, clingo.reason) == (wanted, None)
         if highs.objectives != wanted:  # floats may be unable to tell
             assert not wanted[len(highs.objectives)].row.whole
@@ -98,7 +98,7 @@ def test_forbidden_units_are_left_out() -> None:
     settings = Settings((Path("forbid_motion"),), constants=("forbidden_motion=scrub",))
     forbidden = frozenset(u for u, motion in enumerate(problem.network.motions) if motion == "scrub")
     outcome = solve(problem, (Objective.SUCCESS,), settings)
-    for check in cross_check(Asked(outcome, settings), 60.0):
+    for check in cross_check(ClaimedAnswer(outcome, settings), 60.0):
         assert check.reason is None or "not installed" in check.reason
     answer = solve_with_highs(problem, levels((Objective.SUCCESS,)), forbidden, 60.0)
     assert answer.units
@@ -109,7 +109,7 @@ def test_an_engine_that_finds_nothing_in_time_says_so() -> None:
     answer = solve_with_highs(hard_problem(), (Objective.UNITS,), frozenset(), 0.05)
     assert not answer.finished
     with pytest.raises(NotCheckedError, match="no answer in time"):
-        agree(solve(gap_problem(0, 3)), answer)
+        agreed_objectives(solve(gap_problem(0, 3)), answer)
 
 
 # --- disagreements
@@ -126,20 +126,20 @@ def answer(outcome: Outcome, units: tuple[int, ...] | None) -> EngineAnswer:
 def test_disagreements_are_found() -> None:
     outcome = optimum()
     assert outcome.units is not None
-    assert agree(outcome, answer(outcome, outcome.units)) == (Objective.UNITS,)
+    assert agreed_objectives(outcome, answer(outcome, outcome.units)) == (Objective.UNITS,)
     with pytest.raises(DisagreementError, match="we say a tree exists, Oracle says no tree exists"):
-        agree(outcome, answer(outcome, None))
+        agreed_objectives(outcome, answer(outcome, None))
     none = outcome._replace(status=Status.INFEASIBLE, units=None, costs=None)
     with pytest.raises(DisagreementError, match="we say no tree exists, Oracle says a tree exists"):
-        agree(none, answer(outcome, outcome.units))
+        agreed_objectives(none, answer(outcome, outcome.units))
     with pytest.raises(DisagreementError, match="does not execute"):
-        agree(outcome, answer(outcome, outcome.units[1:]))
+        agreed_objectives(outcome, answer(outcome, outcome.units[1:]))
     everything = tuple(range(len(outcome.problem.network)))
     with pytest.raises(DisagreementError, match="Oracle calls a worse one the best"):
-        agree(outcome, answer(outcome, everything))
+        agreed_objectives(outcome, answer(outcome, everything))
     costs = outcome.problem.costs(everything)
     with pytest.raises(DisagreementError, match="ours is not the best"):
-        agree(outcome._replace(units=everything, costs=costs), answer(outcome, outcome.units))
+        agreed_objectives(outcome._replace(units=everything, costs=costs), answer(outcome, outcome.units))
 
 
 @pytest.mark.parametrize(("objective", "power"), [(Objective.SUCCESS, 1), (Objective.ATTEMPTS, -1)])
@@ -148,7 +148,7 @@ def test_fractions_are_compared_as_far_as_engines_can_tell(objective: Objective,
     assert outcome.units is not None
     assert outcome.costs is not None
     theirs, measures = answer(outcome, outcome.units), outcome.costs.measures
-    assert agree(outcome, theirs) == (objective, Objective.UNITS)
+    assert agreed_objectives(outcome, theirs) == (objective, Objective.UNITS)
     error: type[Exception]
     for factor, error, words in (
         ("1.00001", NotCheckedError, "floats"),
@@ -157,7 +157,7 @@ def test_fractions_are_compared_as_far_as_engines_can_tell(objective: Objective,
     ):
         better = outcome.costs.measure(objective) * Fraction(factor) ** power
         with pytest.raises(error, match=words):
-            agree(outcome._replace(costs=Costs({**measures, objective: better})), theirs)
+            agreed_objectives(outcome._replace(costs=Costs({**measures, objective: better})), theirs)
 
 
 @pytest.mark.slow
@@ -166,7 +166,7 @@ def test_the_command_line_says_who_agrees(cli: Cli) -> None:
     assert ran.code == 0
     assert "cross-check: HiGHS agrees by success, units (" in ran.out
     assert "cross-check: clingo agrees by success, units (" in ran.out
-    if installed():
+    if is_installed():
         assert "cross-check: Fast Downward agrees by success (" in ran.out
     none = cli("solve", "--goal", "apple pie", "--cross-check", "--format", "json")
     assert none.code == 1
@@ -182,7 +182,7 @@ def test_the_command_line_says_who_agrees(cli: Cli) -> None:
 
 
 def test_an_engine_that_is_not_installed_is_named(cli: Cli, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("foon_asp.engines.fast_downward.driver", lambda: None)
+    monkeypatch.setattr("foon_asp.engines.fast_downward.driver_script", lambda: None)
     ran = cli("solve", "--goal", "ice", "--cross-check")
     assert ran.code == 0
     assert ran.out.endswith(
@@ -194,7 +194,7 @@ def test_an_engine_that_is_not_installed_is_named(cli: Cli, monkeypatch: pytest.
 def test_a_disagreement_is_our_bug_with_all_that_is_needed(
     cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def with_liar(asked: Asked, engines: tuple[Engine, ...]) -> list[Check]:
+    def with_liar(asked: ClaimedAnswer, engines: tuple[Engine, ...]) -> list[Check]:
         none = EngineAnswer("Liar", asked.outcome.objectives, None, True)
         return cross_check(asked, 60.0, (Engine("Liar", lambda: True, lambda *_: none),))
 
@@ -221,7 +221,7 @@ def test_what_no_whole_number_of_an_engine_or_float_holds_is_not_asked_of_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     seldom, asked = Fraction(1, 10**9), ((Objective.ATTEMPTS,), frozenset[int](), 60.0)
-    monkeypatch.setattr(fast_downward, "driver", lambda: Path("never-run"))
+    monkeypatch.setattr(fast_downward, "driver_script", lambda: Path("never-run"))
     with pytest.raises(NotCheckedError, match="more than its whole numbers hold"):
         solve_with_fast_downward(two_ways([str(seldom), "0.5"], ["0.2"]), *asked)
     assert solve_with_highs(two_ways([str(seldom), "0.5"], ["0.2"]), *asked).units == (2,)

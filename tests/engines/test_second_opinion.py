@@ -18,8 +18,8 @@ from foon_asp.asp.soft import SoftOutcome, solve_soft
 from foon_asp.deadline import Deadline
 from foon_asp.encoding.rate_scale import rate_scale
 from foon_asp.engines import (
-    Asked,
     Check,
+    ClaimedAnswer,
     DisagreementError,
     Engine,
     NotCheckedError,
@@ -39,7 +39,7 @@ PATIENCE = 60.0
 
 
 def agrees(outcome: Outcome, settings: Settings | None = None) -> None:
-    check_with_bare_clingo(Asked(outcome, settings or Settings()), PATIENCE)
+    check_with_bare_clingo(ClaimedAnswer(outcome, settings or Settings()), PATIENCE)
 
 
 def with_tree(outcome: Outcome, units: tuple[int, ...]) -> Outcome:
@@ -180,7 +180,7 @@ def test_wrong_answers_under_soft_rules_are_found(tmp_path: Path) -> None:
     problem = gap_problem(2, 4)
     weights: dict[Constraint, int] = {mine: 3}
     found = solve_soft(problem, (Objective.UNITS,), Settings(), weights)
-    check_with_bare_clingo(Asked(found.outcome, Settings(), weights, found.penalty), PATIENCE)
+    check_with_bare_clingo(ClaimedAnswer(found.outcome, Settings(), weights, found.penalty), PATIENCE)
     assert found.penalty
     everything = with_tree(found.outcome, tuple(range(len(problem.network))))
     ways = sum(motion in {"draw", "clear"} for motion in problem.network.motions)
@@ -191,7 +191,7 @@ def test_wrong_answers_under_soft_rules_are_found(tmp_path: Path) -> None:
         (without_tree(found.outcome), None, "we say no tree exists"),
     ):
         with pytest.raises(DisagreementError, match=message):
-            check_with_bare_clingo(Asked(outcome, Settings(), weights, penalty), PATIENCE)
+            check_with_bare_clingo(ClaimedAnswer(outcome, Settings(), weights, penalty), PATIENCE)
 
 
 def test_wrong_costs_and_trees_that_do_not_execute_are_found() -> None:
@@ -225,7 +225,7 @@ def test_too_many_trees_within_the_bound_are_not_checked(monkeypatch: pytest.Mon
     outcome = solve(gap_problem(2, 4), (Objective.SUCCESS,))
     agrees(outcome)
     monkeypatch.setattr(bare_clingo, "MAX_KINDS", 0)
-    (check, *_) = cross_check(Asked(outcome), PATIENCE, ())
+    (check, *_) = cross_check(ClaimedAnswer(outcome), PATIENCE, ())
     assert check == Check("clingo", (), check.reason, check.seconds)
     assert check.reason
     assert "more than 0 kinds of trees are too close" in check.reason
@@ -246,7 +246,7 @@ def test_endless_grounding_is_ended(tmp_path: Path) -> None:
     mine.write_text(ENDLESS)
     outcome = solve(gap_problem(2, 4), (Objective.UNITS,))
     began = time.monotonic()
-    (check,) = cross_check(Asked(outcome, Settings((mine,))), 0.5, ())
+    (check,) = cross_check(ClaimedAnswer(outcome, Settings((mine,))), 0.5, ())
     assert time.monotonic() - began < 10
     assert check.reason == "clingo did not finish within 0.5 s"
     assert not [file for file in Path("/proc").glob("[0-9]*/cmdline") if str(mine).encode() in said_by(file)]
@@ -261,7 +261,7 @@ def test_memory_that_runs_out_is_not_checked(tmp_path: Path) -> None:
     # less memory than these tests have by then, which is no matter
     settings = Settings((mine,), deadline=Deadline(memory=2**27))
     outcome = solve(gap_problem(2, 4), (Objective.UNITS,))
-    (check,) = cross_check(Asked(outcome, settings), PATIENCE, ())
+    (check,) = cross_check(ClaimedAnswer(outcome, settings), PATIENCE, ())
     assert check.reason is not None
     assert "memory" in check.reason
 
@@ -269,24 +269,24 @@ def test_memory_that_runs_out_is_not_checked(tmp_path: Path) -> None:
 def test_rules_that_clingo_refuses_are_not_checked(tmp_path: Path) -> None:
     mine = tmp_path / "mine.lp"
     mine.write_text(":- use(U), X < 3.\n")
-    (check,) = cross_check(Asked(solve(gap_problem(2, 4)), Settings((mine,))), PATIENCE, ())
+    (check,) = cross_check(ClaimedAnswer(solve(gap_problem(2, 4)), Settings((mine,))), PATIENCE, ())
     assert check.reason is not None
     assert f"{mine}:1:1-18: error: unsafe variables in" in check.reason
 
 
 def test_what_is_not_proved_is_not_checked() -> None:
     outcome = solve(gap_problem(2, 4))._replace(status=Status.FEASIBLE)
-    assert {check.reason for check in cross_check(Asked(outcome), PATIENCE)} == {
+    assert {check.reason for check in cross_check(ClaimedAnswer(outcome), PATIENCE)} == {
         "nothing is proved, so there is nothing to check"
     }
 
 
 def test_from_an_interruption_on_nothing_is_checked(monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupted(asked: Asked, seconds: float) -> None:
+    def interrupted(asked: ClaimedAnswer, seconds: float) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(bare_clingo, "check_with_bare_clingo", interrupted)
-    checks = cross_check(Asked(solve(gap_problem(2, 4))), PATIENCE)
+    checks = cross_check(ClaimedAnswer(solve(gap_problem(2, 4))), PATIENCE)
     assert {check.reason for check in checks} == {"interrupted"}
 
 
@@ -362,7 +362,7 @@ def test_a_tree_that_is_denied_is_our_bug(cli: Cli, tmp_path: Path, monkeypatch:
 def test_what_is_found_is_said_where_no_file_can_be_written(
     cli: Cli, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def wrong(asked: Asked, engines: tuple[Engine, ...]) -> list[Check]:
+    def wrong(asked: ClaimedAnswer, engines: tuple[Engine, ...]) -> list[Check]:
         check_with_bare_clingo(asked._replace(outcome=without_tree(asked.outcome)), PATIENCE)
         return []
 
@@ -404,4 +404,4 @@ def test_a_helper_that_is_free_to_break_more_is_no_penalty(tmp_path: Path) -> No
     mine.write_text("{ extra(1..5) }.\n:- extra(X).\n:- use(U), not extra(1).\n")
     found = solve_soft(gap_problem(2, 4), (Objective.UNITS,), Settings(), {mine: 2})
     assert found.penalty == 2
-    check_with_bare_clingo(Asked(found.outcome, Settings(), {mine: 2}, found.penalty), PATIENCE)
+    check_with_bare_clingo(ClaimedAnswer(found.outcome, Settings(), {mine: 2}, found.penalty), PATIENCE)

@@ -24,7 +24,7 @@ def subproblem_of(problem: Problem, *objectives: Objective, spare: bool = False)
 
 def within(subproblem: Subproblem, units: Collection[int]) -> set[int]:
     """Return what trees can have that cost no more than these units."""
-    return {*subproblem.units_within(subproblem.total(units), lambda: False)}
+    return {*subproblem.units_within(subproblem.tree_cost(units), lambda: False)}
 
 
 # 0 makes the goal, 1 to 3 and 4 lead to no goal, 5 and 7 wait for what nobody has, and so nothing needs 6
@@ -93,13 +93,13 @@ def test_items_count_in_what_a_tree_costs_where_they_are_counted() -> None:
     (start,) = (o for o, node in enumerate(MADE.network.objects) if node.label == "start")
     subproblem = subproblem_of(MADE, KITCHEN)
     row = {1, 2, 4, 5, 6}
-    assert subproblem.total(row) == sum(map(subproblem.costs, row)) + subproblem.costs(size + start)
-    assert subproblem_of(MADE).total(row) == 5
+    assert subproblem.tree_cost(row) == sum(map(subproblem.costs, row)) + subproblem.costs(size + start)
+    assert subproblem_of(MADE).tree_cost(row) == 5
     # they are no units
     subproblem = subproblem_of(small("mix: a, b > end", "cut: a > end"), KITCHEN)
     assert {*subproblem.actions_within(99, lambda: False)} > {2, 3}
     assert within(subproblem, {0}) == subproblem.all_units() == subproblem.nearest_units(9) == {0, 1}
-    assert (subproblem.total({0}), subproblem.total({1})) == (
+    assert (subproblem.tree_cost({0}), subproblem.tree_cost({1})) == (
         2 * subproblem.costs(2) + 1,
         subproblem.costs(2) + 1,
     )
@@ -120,7 +120,7 @@ def test_units_that_lead_to_no_goal_are_dear_by_all_of_a_way_and_others_by_what_
 
 def test_what_rounding_makes_dearer_is_within_what_is_as_good() -> None:
     subproblem = subproblem_of(two_rows(-57), Objective.SUCCESS)  # the first 5 are worse
-    assert subproblem.total(range(5)) < subproblem.total(range(5, 10))
+    assert subproblem.tree_cost(range(5)) < subproblem.tree_cost(range(5, 10))
     assert within(subproblem, range(5)) == {*range(10)}
 
 

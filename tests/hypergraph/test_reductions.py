@@ -193,7 +193,7 @@ def test_what_a_reduction_leaves_has_the_optimum_without_the_tree_in_hand(
             task = reduction._task_of(problem, objectives, reductions, lambda: False)
             presolve = reduction._Presolve(task, None, nullcontext)
             presolve.extend_or_run()
-            reduced, gap = presolve.reduced(), presolve.gap
+            reduced, gap = presolve.result(), presolve.gap
             if not found:
                 assert reduced.tree is None
                 continue
@@ -232,8 +232,8 @@ def test_all_that_trees_up_to_a_limit_have_is_within_it(seeds: range, redundant:
         everything = wide.all_units()
         assert all(tree.units <= everything for tree in found)
         assert all(tree.units & each for tree in found for each in wide.landmarks())
-        keys = {wide.total(tree.units): tree.key(by) for tree in found}
-        assert all(keys[wide.total(tree.units)] == tree.key(by) for tree in found)
+        keys = {wide.tree_cost(tree.units): tree.key(by) for tree in found}
+        assert all(keys[wide.tree_cost(tree.units)] == tree.key(by) for tree in found)
         assert [keys[total] for total in sorted(keys)] == sorted(keys.values())
         for total in keys:
             for limit in {total - 1, total, total + 1, total * 11 // 10}:
@@ -241,7 +241,7 @@ def test_all_that_trees_up_to_a_limit_have_is_within_it(seeds: range, redundant:
                 asked, left_out = asked + 1, left_out + (within < everything)
                 assert within <= everything
                 for tree in found:
-                    assert wide.total(tree.units) > limit or tree.units <= within, (seed, names)
+                    assert wide.tree_cost(tree.units) > limit or tree.units <= within, (seed, names)
     assert asked > len(seeds)
     assert left_out > asked / 8
 

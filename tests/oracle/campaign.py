@@ -22,7 +22,7 @@ from clingo.symbol import Symbol
 
 from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.asp.soft import solve_soft
-from foon_asp.engines import Asked, DisagreementError, cross_check
+from foon_asp.engines import ClaimedAnswer, DisagreementError, cross_check
 from foon_asp.errors import UserError
 from foon_asp.hypergraph import parse_reductions
 from foon_asp.network import FunctionalUnit, NetworkBuilder, Source
@@ -319,9 +319,9 @@ def ask(asked: Question, tally: Tally) -> str | None:
                 asked.rules[place].file: weight for place, weight in asked.soft.items()
             }
             found = solve_soft(asked.problem, asked.objectives, asked.settings, soft)
-            return _judged(asked, Asked(found.outcome, asked.settings, soft, found.penalty), tally)
+            return _judged(asked, ClaimedAnswer(found.outcome, asked.settings, soft, found.penalty), tally)
         outcome = solve(asked.problem, asked.objectives, asked.settings)
-        return _judged(asked, Asked(outcome, asked.settings), tally)
+        return _judged(asked, ClaimedAnswer(outcome, asked.settings), tally)
     except UserError as error:
         if any(rule.may_be_refused for rule in asked.rules):
             tally["refused"] += 1
@@ -333,7 +333,7 @@ def ask(asked: Question, tally: Tally) -> str | None:
         return f"{type(error).__name__}: {error}"
 
 
-def _judged(asked: Question, answered: Asked, tally: Tally) -> str | None:
+def _judged(asked: Question, answered: ClaimedAnswer, tally: Tally) -> str | None:
     outcome = answered.outcome
     if outcome.status not in {Status.OPTIMAL, Status.INFEASIBLE}:
         tally["stopped"] += 1

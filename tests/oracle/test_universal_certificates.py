@@ -9,7 +9,7 @@ from foon_asp.asp import Proof, Settings, Status, solve
 from foon_asp.certificate import certify_outcome
 from foon_asp.certificate.certificate import subject_of
 from foon_asp.comparison.many import makeable
-from foon_asp.engines import Asked, cross_check
+from foon_asp.engines import ClaimedAnswer, cross_check
 from foon_asp.problem import ContainerRule, Objective, Problem, levels
 from foon_asp.proof.certificate_file import read_certificate
 from foon_asp.proof.verifier import verify
@@ -77,7 +77,7 @@ def test_all_engines_agree_on_the_goals(data: Data, rule: ContainerRule) -> None
     for entry in data.goals:
         goal = find_goal(entry.pattern.label, data.network, data.goals)
         for objective in OBJECTIVES:
-            checks = cross_check(Asked(solve(ask(data, goal, rule), (objective,))), 60.0)
+            checks = cross_check(ClaimedAnswer(solve(ask(data, goal, rule), (objective,))), 60.0)
             assert {check.engine for check in checks if check.reason is None} >= {"clingo", "HiGHS"}
             assert all("not installed" in check.reason for check in checks if check.reason is not None)
 

@@ -524,7 +524,7 @@ def planned(problem: Problem, objective: str, folder: Path, run: Callable[[Path]
 
 
 def with_fast_downward(folder: Path) -> str:
-    program = fast_downward.driver()
+    program = fast_downward.driver_script()
     assert program is not None
     files = (str(folder / name) for name in ("domain.pddl", "problem.pddl"))
     command = [sys.executable, str(program), "--plan-file", str(folder / "sas_plan"), *files]
@@ -547,7 +547,7 @@ def with_pyperplan(folder: Path) -> str:
 
 
 needs_fast_downward = pytest.mark.skipif(
-    not fast_downward.installed(), reason="Fast Downward is not installed (foon-asp[cross-check])"
+    not fast_downward.is_installed(), reason="Fast Downward is not installed (foon-asp[cross-check])"
 )
 needs_pyperplan = pytest.mark.skipif(
     importlib.util.find_spec("pyperplan") is None, reason="pyperplan is not installed (pip install pyperplan)"

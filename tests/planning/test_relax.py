@@ -730,7 +730,7 @@ def test_units_may_need_nothing(seed: int, how: dict[str, Any], tmp_path: Path) 
         assert foon_asp.check(problem, answer.tree).executes
         checks = foon_asp.solve(problem, cross_check=True).cross_check
         assert isinstance(checks, tuple)
-        assert all(check.reason is None for check in checks) or (not fast_downward.installed())
+        assert all(check.reason is None for check in checks) or (not fast_downward.is_installed())
 
 
 @needs_translator

@@ -11,7 +11,7 @@ from foon_asp.asp import Settings, Status, solve
 from foon_asp.asp.ranking import Ranked
 from foon_asp.encoding.cost_scales import Scales
 from foon_asp.encoding.fact_writer import write_facts, write_objectives
-from foon_asp.engines import Asked, DisagreementError, cross_check
+from foon_asp.engines import ClaimedAnswer, DisagreementError, cross_check
 from foon_asp.errors import BugError
 from foon_asp.hypergraph import ALL, NONE, Reduction
 from foon_asp.network import UnitPrices
@@ -102,11 +102,11 @@ def test_a_row_is_all_that_a_new_objective_takes(
 def test_other_engines_are_asked_about_a_new_objective(new: str, monkeypatch: pytest.MonkeyPatch) -> None:
     known(NEW[new], monkeypatch)
     outcome = solve(ways(["1/3", "1"], ["0.7"], ["1/2"]), (NEW[new],))
-    clingo, *_ = cross_check(Asked(outcome))
+    clingo, *_ = cross_check(ClaimedAnswer(outcome))
     assert (clingo.reason, clingo.objectives) == (None, levels((NEW[new],)))
     worse = (0, 1)
     with pytest.raises(DisagreementError):
-        list(cross_check(Asked(outcome._replace(units=worse, costs=outcome.problem.costs(worse)))))
+        list(cross_check(ClaimedAnswer(outcome._replace(units=worse, costs=outcome.problem.costs(worse)))))
 
 
 @pytest.mark.parametrize("other", [(), (Objective.KITCHEN,)])

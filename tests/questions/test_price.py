@@ -13,7 +13,7 @@ import foon_asp
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.certificate import certify
 from foon_asp.certificate.certificate import subject_of
-from foon_asp.engines import Asked, cross_check
+from foon_asp.engines import ClaimedAnswer, cross_check
 from foon_asp.errors import UserError
 from foon_asp.hypergraph import ALL, NONE, Reduction
 from foon_asp.network import FunctionalUnit, Network, UnitPrices
@@ -112,7 +112,7 @@ def test_the_best_are_those_of_brute_force_in_every_room(
         proved = verifier.verify(read_certificate(certificate.text()), subject_of(problem))
         assert (proved.claim, proved.costs) == ("optimal", task_trees.best(trees, problem, ["price"]))
         if seed % 4 == 0:
-            clingo, *_ = cross_check(Asked(found))
+            clingo, *_ = cross_check(ClaimedAnswer(found))
             assert (clingo.engine, clingo.reason) == ("clingo", None)
         if seed % 4 == 1:
             assert_front_agrees(pareto(problem, "units,price"), trees)

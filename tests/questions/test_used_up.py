@@ -15,7 +15,7 @@ import foon_asp
 from foon_asp import ObjectNode, UserError, parse_node
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.deadline import Deadline
-from foon_asp.engines import Asked, DisagreementError
+from foon_asp.engines import ClaimedAnswer, DisagreementError
 from foon_asp.engines.bare_plans import check_plan_with_bare_clingo
 from foon_asp.network import UnitPrices
 from foon_asp.problem import Fate, Objective, Problem, levels, parse_objectives
@@ -564,7 +564,7 @@ def test_bare_clingo_disagrees_with_a_plan_that_is_not_the_best() -> None:
         (found.ids, worse.costs, r"our plan costs \[10\], clingo says \(9,\)"),
         (found.ids[1:], found.costs, r"our plan costs \[9\], clingo says None"),
     ):
-        asked = Asked(found.outcome._replace(units=units, costs=costs))
+        asked = ClaimedAnswer(found.outcome._replace(units=units, costs=costs))
         with pytest.raises(DisagreementError, match=message):
             check_plan_with_bare_clingo(asked, 20)
 

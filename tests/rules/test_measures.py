@@ -18,7 +18,7 @@ import pytest
 import foon_asp
 from foon_asp.asp import Settings, Status, solve
 from foon_asp.certificate import certify
-from foon_asp.engines import Asked, cross_check
+from foon_asp.engines import ClaimedAnswer, cross_check
 from foon_asp.errors import UserError
 from foon_asp.hypergraph import ALL, NONE
 from foon_asp.network import FunctionalUnit
@@ -192,7 +192,7 @@ def test_help_is_priced_beside_a_measure() -> None:
 def test_engines_agree(said: str) -> None:
     for seed in (1, 4):
         problem = measured(random_problem(seed, RULES[seed % 2]), SAID[said][0])
-        cross_check(Asked(solve(problem, (MINE_OBJECTIVE,)), Settings()), None)
+        cross_check(ClaimedAnswer(solve(problem, (MINE_OBJECTIVE,)), Settings()), None)
 
 
 @pytest.mark.parametrize(
