@@ -8,7 +8,7 @@ from msgspec.structs import asdict, replace
 
 from foon_asp.asp import Outcome, Settings, solve
 from foon_asp.asp.assembly import need_whole_network
-from foon_asp.batch.batch_question import Asker, BatchQuestion
+from foon_asp.batch.batch_question import BatchQuestion, OpenData
 from foon_asp.comparison.rows_file import RowForm
 from foon_asp.dataset.nearby_optimum import near_goals, solve_nearby
 from foon_asp.deadline import Deadline, LimitError
@@ -55,19 +55,19 @@ ANSWERS = RowForm("batch-row", plain, lambda row: read_plain(AnswerRow, row), la
 
 
 def answer_row(
-    asker: Asker, question: BatchQuestion, memory_limit: int | None = None, settings: Settings | None = None
+    data: OpenData, question: BatchQuestion, memory_limit: int | None = None, settings: Settings | None = None
 ) -> AnswerRow:
     """Return the row with the answer of a question; a user error or a bug becomes the status ``failed``.
 
-    ``settings`` have the user rules. ``memory_limit`` is in bytes. If a limit leaves no tree, the field
-    ``error`` names it.
+    ``settings`` have the user rules; their deadline is replaced by one with the time limit of the question.
+    ``memory_limit`` is in bytes. If a limit leaves no tree, the field ``error`` names the limit.
     """
     began = time.perf_counter()
     try:
         deadline = Deadline(question.time_limit, memory_limit)
         settings = (settings or Settings())._replace(deadline=deadline)
         with deadline.watched("reading", late=True):
-            problem = asker.problem(question)
+            problem = data.problem(question)
         objectives = parse_objectives([question.objective], problem.measures)
         if problem.stand_ins is not None:
             objectives = with_dissimilarity(objectives)
@@ -100,7 +100,10 @@ def _row(question: BatchQuestion, **answer: Any) -> AnswerRow:
 
 
 def _row_of_outcome(question: BatchQuestion, outcome: Outcome) -> AnswerRow:
-    """Return the row of a question from the outcome of the solver."""
+    """Return the row of a question with the outcome of the solver.
+
+    For a tree, it is also found whether the tree runs where items are used up.
+    """
     problem, units = outcome.problem, outcome.units
     row = _row(
         question,

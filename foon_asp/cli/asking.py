@@ -90,7 +90,8 @@ def _warn_of_measures(command: "_Command", values: Mapping[str, Any]) -> None:
 def _subjects(question: Question, command: "_Command", values: Mapping[str, Any]) -> list[tuple[object, ...]]:
     """Return the first arguments of each call of a question, such as ``(problem,)``.
 
-    There is one call, or one for each of several assumed goals. Assumed goals and kitchen items are printed.
+    There is one call, or one for each of several assumed goals. A file with a tree names the goals, and
+    perhaps the data, of a command that names none. Assumed goals and kitchen items are printed to stderr.
     """
     problem_options = values_with_role(question, values, Role.PROBLEM)
     tree = values.get("tree")
@@ -126,7 +127,10 @@ def _subjects(question: Question, command: "_Command", values: Mapping[str, Any]
 
 
 def _refuse_one_file(question: Question, values: Mapping[str, Any]) -> None:
-    """Raise :class:`UserError` where the results for several goals would be written into one file."""
+    """Raise :class:`UserError` if the results for several goals would be written into one file.
+
+    That is so for a question whose result may be a file, and for a command with ``--certificate``.
+    """
     files = [values.get("output"), values.get("certificate")]
     if question.suffixes or any(files):
         raise UserError(
@@ -137,17 +141,18 @@ def _refuse_one_file(question: Question, values: Mapping[str, Any]) -> None:
 class _Command:
     """The current command of click, as :class:`foon_asp.questions.posing.Command` describes commands.
 
-    ``data`` are the values of the options of :func:`foon_asp.cli.shared_options.read_dataset` by name.
+    ``data_options`` are the values of the options of :func:`foon_asp.cli.shared_options.read_dataset` by
+    name.
     """
 
-    def __init__(self, data: dict[str, Any]) -> None:
-        self._data = data
+    def __init__(self, data_options: dict[str, Any]) -> None:
+        self._data_options = data_options
         self._context = click.get_current_context()
 
     @cached_property
     def dataset(self) -> Dataset:
         """The data that the options name, read at the first access."""
-        return shared_options.read_dataset(**self._data)
+        return shared_options.read_dataset(**self._data_options)
 
     @property
     def read_seconds(self) -> float | None:
@@ -165,18 +170,18 @@ class _Command:
     @property
     def names_data(self) -> bool:
         """Whether the command names a network, or a folder of data."""
-        return any(self._data.get(option) for option in ("sources", "folder", "network"))
+        return any(self._data_options.get(option) for option in ("sources", "folder", "network"))
 
     @property
     def level(self) -> int:
         """The level at which object nodes are compared."""
-        level: int = self._data["level"]
+        level: int = self._data_options["level"]
         return level
 
     @property
     def names_measures(self) -> bool:
         """Whether the command names files of measures."""
-        return bool(self._data.get("measures"))
+        return bool(self._data_options.get("measures"))
 
     def given(self, option: str) -> bool:
         """Return whether the value of an option is from the command line, and no default."""
@@ -185,7 +190,7 @@ class _Command:
     def add_sources(self, sources: Sequence[Path]) -> None:
         """Add networks to those that the command names; ``dataset`` then reads the data again."""
         if sources:
-            self._data["sources"] = (*self._data.get("sources", ()), *sources)
+            self._data_options["sources"] = (*self._data_options.get("sources", ()), *sources)
             self.__dict__.pop("dataset", None)
 
     def reading(self) -> AbstractContextManager[object]:

@@ -109,8 +109,8 @@ def command(
     interrupted = False
     began = time.monotonic()
     with RowsFile(rows_file, ANSWERS, common) as results:
-        for text in results.duplicate_warnings:
-            warn(text)
+        for warning in results.duplicate_warnings:
+            warn(warning)
         answered_before = [
             results.done[question] for question in distinct_questions if question in results.done
         ]

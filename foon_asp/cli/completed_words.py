@@ -39,7 +39,10 @@ def _read_dataset(context: click.Context) -> Dataset:
 
 
 def _complete_goal(context: click.Context, prefix: str) -> Iterable[str]:
-    """Return the entries of the goals file that begin with ``prefix``, then other nodes that do."""
+    """Return the names in the goals file that begin with ``prefix``, then nodes in one-line notation.
+
+    The label or the notation of these nodes begins with ``prefix``.
+    """
     dataset = _read_dataset(context)
     names = dataset.names
     listed = _words_with_prefix(entry_names(dataset.listed, names), prefix)
@@ -47,7 +50,10 @@ def _complete_goal(context: click.Context, prefix: str) -> Iterable[str]:
 
 
 def _complete_objectives(context: click.Context, prefix: str) -> Iterable[str]:
-    """Return completions of the last name in a list of objectives: of ``units,s``, ``units,success``."""
+    """Return completions of the last name in a list of objectives: of ``units,s``, ``units,success``.
+
+    Objectives that the list has already are left out.
+    """
     done, comma, last = prefix.rpartition(",")
     others = [name for name in (*Objective, *_read_dataset(context).measures) if name not in done.split(",")]
     return (f"{done}{comma}{objective}" for objective in _words_with_prefix(others, last))
@@ -63,7 +69,7 @@ def _complete_constraint(context: click.Context, prefix: str) -> Iterable[str]:
 
 
 def _complete_constant(context: click.Context, prefix: str) -> Iterable[str]:
-    """Return completions of the constants that the constraints named on the command line have."""
+    """Return completions of ``CONSTANT=VALUE`` for the constraints that the command line names."""
     constraints = context.params.get("constraints") or ()
     names = [constraint.name.partition(":")[0] for constraint in constraints]
     return chain.from_iterable(_constants_of(name, context, prefix) for name in names)

@@ -48,9 +48,9 @@ def command(
 
 
 def _explain(constraints: tuple[Constraint, ...], constants: tuple[str, ...], format_: str) -> ExitCode:
-    """Print what each rule does, and return ``ExitCode.DONE``.
+    """Print what each rule does; return ``ExitCode.DONE``.
 
-    Raises :class:`UserError` where the built-in encodings were changed.
+    Raises :class:`UserError` if the built-in encodings were changed, so that nothing is known of rules.
     """
     from foon_asp.questions.explained_rules import explain_rules  # takes clingo along
 

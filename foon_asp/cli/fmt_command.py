@@ -72,7 +72,10 @@ def command(paths: tuple[Path, ...], check: bool, output: Path | None, lenient: 
 
 
 def _report(files: int, changed: int, refused: int, check: bool) -> None:
-    """Print the numbers of files that changed or were refused; nothing for a single file."""
+    """Print the numbers of files that changed, were in canonical form, or were not understood, to stderr.
+
+    Nothing is printed for a single file. With ``check``, the files have not been changed.
+    """
     if files < 2:
         return
     verb = "would change" if check else "changed"

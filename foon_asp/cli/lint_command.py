@@ -208,7 +208,7 @@ def command(
 def _write_vocabulary(files: Sequence[Path], output: Path | None) -> ExitCode:
     """Write the names in files as a vocabulary, which ``--vocabulary`` reads.
 
-    Raises :class:`UserError` for files with errors.
+    ``output``: ``None`` for stdout. Raises :class:`UserError` for files with errors.
     """
     linted = LintedFiles(files)
     linted.reader.raise_errors()
@@ -223,7 +223,8 @@ _Repaired = Mapping[Path, tuple[bytes, bytes]]  # the content of a file before a
 def _repair(found: Findings, contents: Mapping[Path, bytes], unsafe: bool) -> _Repaired:
     """Return the content before and after the repair, for each file with a finding that can be repaired.
 
-    ``contents`` are the contents of files that are not read from disk. Nothing is written.
+    ``contents`` are the contents of files that are not read from disk. ``unsafe`` adds fixes that change the
+    meaning. Nothing is written. Raises :class:`UserError` for a path that is no file.
     """
     fixes: dict[str, list[Diagnostic]] = {}
     for finding in found.findings:
@@ -239,7 +240,7 @@ def _repair(found: Findings, contents: Mapping[Path, bytes], unsafe: bool) -> _R
 
 
 def _write_repairs(repaired: _Repaired, contents: Mapping[Path, bytes]) -> dict[Path, bytes]:
-    """Write the repaired files, except those in ``contents``; return ``contents``, repaired."""
+    """Write the repaired files that changed, except those in ``contents``; return ``contents``, repaired."""
     for file, (before, after) in repaired.items():
         if before != after and file not in contents:
             write_whole(file, after)
@@ -248,7 +249,7 @@ def _write_repairs(repaired: _Repaired, contents: Mapping[Path, bytes]) -> dict[
 
 
 def _show_repairs(repaired: _Repaired, count: int) -> ExitCode:
-    """Print the diff of the repairs, and the number of findings repaired; return the exit code."""
+    """Print the diff of the repairs, and their ``count``; return ``NEGATIVE`` if a file would change."""
     for file, (before, after) in repaired.items():
         show_diff(str(file), plain_text(before, file), plain_text(after, file))
     changed = sum(before != after for before, after in repaired.values())
@@ -257,10 +258,10 @@ def _show_repairs(repaired: _Repaired, count: int) -> ExitCode:
 
 
 def _report(linted: Linted, statistics: bool, format_: str, err: bool) -> None:
-    """Print the findings, or with ``statistics`` their counts by code.
+    """Print the findings in a format, or with ``statistics`` a text with their counts by code.
 
-    With ``err``, text is printed to standard error. The format ``github`` is printed without escapes, since a
-    program reads it.
+    ``err`` prints to standard error, except for ``github`` and ``json``. The format ``github`` is printed
+    without escapes, since a program reads it.
     """
     if format_ == "github":
         write_data(linted.github())
@@ -272,7 +273,7 @@ def _report(linted: Linted, statistics: bool, format_: str, err: bool) -> None:
 
 
 def _report_baseline(linted: Linted) -> None:
-    """Print how many findings the baseline left out, and how many of its findings no longer occur."""
+    """Print to stderr how many findings the baseline left out, and how many in it no longer occur."""
     text = f"{counted(linted.known, 'known finding')} left out"
     if linted.gone:
         text += f"; {linted.gone} in the baseline {'is' if linted.gone == 1 else 'are'} gone: "

@@ -68,7 +68,7 @@ class _Verbs(click.Group):
         write_verbs(formatter, "Verbs that most people need", FIRST_VERBS)
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> "list[CompletionItem[str]]":
-        """Return completions: verbs, except those for programs, and the options of ``foon-asp`` itself."""
+        """Return completions: verbs that are not for programs, and the options of ``foon-asp`` itself."""
         from click.shell_completion import CompletionItem
 
         verbs = [verb for verb, entry in VERBS.items() if entry.group != FOR_PROGRAMS]
@@ -131,8 +131,8 @@ def _run(words: list[str], began: float | None) -> ExitCode:
                 from foon_asp.cli.completion_command import answer_shell
 
                 return answer_shell(cli, os.environ[SHELL_REQUEST])
-            ended = cli.main(args=words, prog_name="foon-asp", standalone_mode=False, obj=began)
-            return ExitCode(ended or 0)
+            code = cli.main(args=words, prog_name="foon-asp", standalone_mode=False, obj=began)
+            return ExitCode(code or 0)
         finally:
             if began is not None:
                 end_at_ctrl_c()
@@ -145,7 +145,8 @@ def _run(words: list[str], began: float | None) -> ExitCode:
 def _report_error(error: BaseException, debug: bool) -> ExitCode:
     """Report an error on stderr, also under ``--quiet``, and return its exit code.
 
-    ``debug`` prints its traceback, too. A closed pipe is no error: the code is ``DONE``.
+    With ``debug``, its traceback is printed, too, unless the error is wrong usage or ctrl-C. A closed pipe is
+    no error: the remaining output is discarded, and the code is ``DONE``.
     """
     keep(error)  # with the frames of its traceback, whose memory would take long to free
     show_remarks(True)

@@ -35,7 +35,11 @@ _ESCAPED_FORMATS = frozenset(
 
 
 def question_command(verb: str) -> click.Command:
-    """Import the module of a verb, and return the command that asks the question of the verb."""
+    """Import the module of a verb, and return the command that asks the question of the verb.
+
+    Its parameters are the options of the question, and those for limits, formats and data that it needs. The
+    command of ``view`` can also serve a page.
+    """
     question = find_question(verb)
     command: Callable[..., ExitCode] = _answer_function(question)
     if verb == "view":
@@ -92,7 +96,10 @@ def _answer_function(question: Question) -> Callable[..., ExitCode]:
         deadline: Deadline | None = None,
         **values: Any,
     ) -> ExitCode:
-        """Check the output files, call the question, and show or write the result and its charts."""
+        """Check the output files, call the question, and show or write the result and its charts.
+
+        If there is no tree to go on with, print the message of the :class:`NoTreeError`.
+        """
         charts = [file for files in values_with_role(question, values, Role.CHART).values() for file in files]
         if charts:
             from foon_asp.pictures.chart import check_suffix
@@ -126,7 +133,7 @@ def _answer_function(question: Question) -> Callable[..., ExitCode]:
 def _format_options(question: Question) -> list[Callable[[Command], Command]]:
     """Return decorators that add ``--format``, and ``--output`` for a result that can be a file.
 
-    For a question with a single format, there are none.
+    For a question with a single format, the list is empty.
     """
     if len(question.formats) == 1:
         return []
@@ -164,7 +171,10 @@ def _chosen_format(question: Question, named: str | None, output: Path | None) -
 
 
 def _show_result(result: Result, format_: str) -> None:
-    """Write a result to standard output in a format, and to stderr a remark that the format cannot hold."""
+    """Write a result to standard output in a format, and to stderr a remark that the format cannot hold.
+
+    If there is nothing to draw, only the remark is written.
+    """
     if format_ == "text":
         write_parts(result.show())
     elif format_ in _ESCAPED_FORMATS:

@@ -93,15 +93,15 @@ def _files_to_rename_in(paths: Sequence[Path]) -> list[Path]:
 
 
 def _byte_order_mark(file: Path) -> bytes:
-    """Return the byte order mark of UTF-8 if a file begins with it, else no bytes; a renaming keeps it."""
+    """Return the byte order mark of UTF-8 if a file begins with it, else no bytes."""
     return BOM_UTF8 if read_content(file).startswith(BOM_UTF8) else b""
 
 
 def _kind_of_name(old: str, kind: str | None, texts: Mapping[Path, str]) -> str:
-    """Return what an old name is in the texts, such as ``object``; ``kind`` is the kind that the user chose.
+    """Return the kind of an old name in the texts, such as ``object``.
 
-    Raises :class:`UserError` if the name is nowhere, is not of the chosen kind, or is of several kinds and
-    none is chosen.
+    ``kind`` is the kind that the user chose; ``None`` if none was chosen. Raises :class:`UserError` if the
+    name is nowhere, is not of the chosen kind, or is of several kinds and none is chosen.
     """
     counts: Counter[tuple[str, str]] = Counter()
     for file, text in texts.items():
@@ -131,7 +131,7 @@ def _with_article(kind: str) -> str:
 
 
 def _summary(renaming: Renaming, files: int, written: bool) -> str:
-    """Return a summary of a renaming in words: the mentions, the files, and what to do next."""
+    """Return a summary of a renaming in words: the mentions, the files, and whether they are written."""
     kind, old, new = renaming.rename
     mentions = f"{counted(renaming.mentions, 'mention')} in {counted(files, 'file')}"
     text = f"the {kind} {old!r} becomes {new!r}: {mentions}"

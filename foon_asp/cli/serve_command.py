@@ -21,15 +21,18 @@ _FILE_OPTIONS = {"output": "-o", "format_": "--format"}
 
 
 def with_serve_option(command: Callable[..., ExitCode], question: Question) -> Callable[..., ExitCode]:
-    """Add the option ``--serve`` to the command of ``view``.
+    """Return the command of ``view`` with the option ``--serve``, which serves a page in place of an answer.
 
-    The options of the ``question`` are for the page; all others are for the data.
+    The options of the ``question`` are for the page; all other options are for the data.
     """
     option_names = {option.name for option in question.options}
 
     @functools.wraps(command)
     def answer_or_serve(serve: bool, **values: Any) -> ExitCode:
-        """Serve the page if ``serve``, else call the command; no file can be written with the page."""
+        """Serve the page if ``serve``, else call the command.
+
+        Raises :class:`UserError` for an output file or a format beside ``--serve``.
+        """
         if not serve:
             return command(**values)
         for name, flag in _FILE_OPTIONS.items():
@@ -44,9 +47,9 @@ def with_serve_option(command: Callable[..., ExitCode], question: Question) -> C
 
 
 def _serve(question: dict[str, Any], data: dict[str, Any], deadline: Deadline) -> ExitCode:
-    """Serve the page until ctrl-C.
+    """Serve the page until ctrl-C, and print its address.
 
-    ``question`` and ``data`` are the values of options by name. The ``deadline`` says the limits of each
+    ``question`` and ``data`` are the values of options by name. The limits of the ``deadline`` are for each
     answer. Raises :class:`UserError` if a package is missing, or for wrong rules.
     """
     try:

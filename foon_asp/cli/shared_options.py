@@ -189,8 +189,8 @@ def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
 def start_deadline(time_limit: float | None, memory_limit: int | None) -> Deadline:
     """Return the deadline of the current command, and store it for :func:`reading`.
 
-    The limits are in seconds and in bytes; ``None`` is unlimited. Time counts from the start of the process,
-    if the process runs only this command.
+    The limits are in seconds and in bytes; ``None`` for no limit. Time counts from the start of the process
+    if the process runs only this command, else from now.
     """
     context = click.get_current_context()
     began = context.obj if isinstance(context.obj, float) else None
@@ -212,7 +212,8 @@ def folder_and_networks(
     """Return the data folder and the networks that a command names.
 
     ``sources`` are its arguments; ``folder`` and ``network`` are the values of ``--data`` and ``--network``.
-    An argument is a network. Only a folder that is named alone is the data folder.
+    If a folder is the only argument and neither option is given, it is the data folder. Otherwise, each
+    argument is a network.
 
     Raises :class:`UserError` for a source that does not exist.
     """

@@ -13,7 +13,7 @@ from foon_asp.whole_file import utf_8
 def show_diff(file: str, before: str, after: str) -> None:
     """Print the diff between two texts of a file.
 
-    At a terminal, its characters are escaped; a program gets them unchanged.
+    The name of the file is escaped. At a terminal, the texts are escaped, too; a program gets them unchanged.
     """
     text = line_diff(escaped(file), before, after)
     if sys.stdout.isatty():

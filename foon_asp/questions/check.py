@@ -119,12 +119,12 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
         return self.proof_ending if sound else Ending.NEGATIVE
 
     def show(self) -> Iterator[Block]:
-        """Yield whether the tree executes, in which order, what stops it, and which rules it breaks."""
+        """Yield whether and in which order the tree executes, what stops it, broken rules, and the notes."""
         yield from verdict_lines(self.tree, self.simulation)
         yield from (*self._rule_lines(), *self.notes)
 
     def _rule_lines(self) -> Iterator[str]:
-        """Yield lines on whether the tree keeps to the rules, and on those that it breaks."""
+        """Yield lines on whether the tree keeps to the rules, and on broken rules; none without rules."""
         if self.breaks is UNSET:
             return
         if self.breaks is None:
@@ -151,7 +151,7 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
         return str(self.in_order or self.tree)
 
     def remark(self, format_: str) -> str:
-        """Return the notes on the certificate, which no format but text has."""
+        """Return the notes on the certificate, the same for each format: only text has them."""
         return "\n".join(self.notes)
 
     def drawing(self) -> Drawing | None:
@@ -164,7 +164,7 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
 
 
 def _simulate(tree: Tree) -> Simulation:
-    """Simulate a tree, or replay a plan, for which only the listed order counts."""
+    """Simulate a tree in any order; replay a plan, in which items are used up, in the listed order alone."""
     if tree.problem.items is None:
         return simulate_for(tree.problem, tree)
     shortage = replay_for(tree.problem, tree).shortage
@@ -177,7 +177,7 @@ def _simulate(tree: Tree) -> Simulation:
 def _pose_tree(command: Command, tree: Path, **named: Any) -> tuple[Problem, Tree]:
     """Read a tree from a file, and return its problem and the tree.
 
-    With ``--repair``, the units of a tree without goals are added to the network.
+    With ``--repair``, a file that names no goals is added to the networks of the command.
     """
     if command.given("repair") and not read_answer(tree).goals:
         command.add_sources([tree])
@@ -195,9 +195,9 @@ def check_or_repair(
         return check(problem, tree, certificate=certificate, **options)
     if options.pop("objectives"):
         raise UserError("a repair has objectives of its own: leave --objective out")
-    from foon_asp.questions.repair import repair as repaired  # noqa: PLC0415 (the solver)
+    from foon_asp.questions.repair import repair as repair_tree  # noqa: PLC0415 (the solver)
 
-    return repaired(problem, tree, certificate=certificate, **options)
+    return repair_tree(problem, tree, certificate=certificate, **options)
 
 
 @question(
@@ -267,6 +267,7 @@ def check(
             such as a :class:`TaskTree`. Where items are used up, it is a plan, in which a unit may be listed
             several times.
         certificate: Also prove the tree the best, and write the proof. The argument is the path of the file.
+            It is not written for a tree that does not execute or breaks a rule.
 
     Returns:
         Whether the tree ``executes``, the tree ``in_order``, what stops it, the rules that it ``breaks``, and
@@ -313,7 +314,7 @@ def check(
 
 
 def _user_rule_check(rules: "Settings", used_up: bool) -> "UserRuleCheck":
-    """Return a check of which user rules trees break, or with ``used_up`` plans; it takes clingo along."""
+    """Return the check that finds the user rules which a tree breaks, or with ``used_up`` a plan."""
     from foon_asp.asp.user_rule_check import UserRuleCheck  # noqa: PLC0415 (takes clingo along)
 
     return UserRuleCheck(rules, used_up)

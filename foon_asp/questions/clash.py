@@ -81,7 +81,7 @@ class Clash(Value, frozen=True, kw_only=True):
         return self.answer.ending
 
     def lines(self, rule: str) -> Iterator[str]:
-        """Yield lines that say which constraints clash and which to drop.
+        """Yield lines on constraints that clash, those cheapest to drop, and the best tree without these.
 
         ``rule`` names the conditions under which claims hold, such as ``strict containers``.
         """
@@ -96,25 +96,27 @@ class Clash(Value, frozen=True, kw_only=True):
                 yield "without these there is a task tree; a cheaper set may do, or nothing has to be dropped"
                 yield from _constraint_lines(dropped)
             return
-        number = counted(len(self.constraints), "constraint")
+        all_constraints = counted(len(self.constraints), "constraint")
         if not self.constraints:
             yield f"there is a task tree ({rule}); foon-asp solve finds the best"
             return
         if not dropped:
-            yield f"no clash: the {number} can hold{' together' * (len(self.constraints) > 1)} ({rule})"
+            together = " together" * (len(self.constraints) > 1)
+            yield f"no clash: the {all_constraints} can hold{together} ({rule})"
             if answer is not None:
                 yield from answer.headlines()
             return
         size = len(self.smallest_clash)
         if not self.smallest_proved:
             unknown = "the smallest clash was not found within the limit"
-            yield f"the {number} cannot hold together ({rule}); {unknown}"
+            yield f"the {all_constraints} cannot hold together ({rule}); {unknown}"
         elif len(self.constraints) == 1:
             yield f"1 constraint leaves no task tree: proved ({rule})"
         elif size == 1:
-            yield f"1 of the {number} leaves no task tree by itself: proved ({rule})"
+            yield f"1 of the {all_constraints} leaves no task tree by itself: proved ({rule})"
         else:
-            yield f"{size} of the {number} cannot hold together, and no smaller set: proved ({rule})"
+            text = f"{size} of the {all_constraints} cannot hold together"
+            yield f"{text}, and no smaller set: proved ({rule})"
         yield from _constraint_lines(self.smallest_clash)
         weight = sum(constraint.weight for constraint in dropped)
         at = "" if {constraint.weight for constraint in self.constraints} == {1} else f", weight {weight}"
@@ -129,11 +131,14 @@ class Clash(Value, frozen=True, kw_only=True):
 def find_clash(problem: Problem, settings: Settings, own_weights: Mapping[Constraint, int]) -> Clash:
     """Find a smallest clash of the constraints in ``settings``, and the cheapest constraints to drop.
 
-    ``own_weights`` are the costs of dropping a rule of a constraint, 1 by default. The smallest clash is a
-    smallest minimal unsatisfiable subset (MUS). It is found by implicit hitting sets (Ignatiev, Previti,
-    Liffiton and Marques-Silva, Smallest MUS Extraction with Minimal Hitting Set Dualization, CP 2015). A
-    correction set is a set of constraints without which a tree exists. Each round takes a smallest set that
-    hits all known correction sets. If no tree keeps to it, it is the clash; else a correction set is added.
+    The best tree by units without the dropped constraints is found, too. ``own_weights`` are the costs of
+    dropping a rule of a constraint, 1 by default. At a limit, the result has what was found by then.
+
+    The smallest clash is a smallest minimal unsatisfiable subset (MUS). It is found by implicit hitting sets
+    (Ignatiev, Previti, Liffiton and Marques-Silva, Smallest MUS Extraction with Minimal Hitting Set
+    Dualization, CP 2015). A correction set is a set of constraints without which a tree exists. Each round
+    takes a smallest set that hits all known correction sets. If no tree keeps to this set, it is the clash;
+    else a correction set is added.
     """
     deadline = settings.begun
     settings = settings._replace(deadline=deadline)

@@ -13,7 +13,10 @@ _ENTRY = re.compile(r"^    (\w+): (.*(?:\n        .*)*)", re.MULTILINE)
 
 
 def docstring_entries(ask: Callable[..., object]) -> dict[str, str]:
-    """Return the descriptions in the ``Parameters`` section of a docstring by name, each in one line."""
+    """Return the descriptions in the ``Parameters`` section of a function's docstring, each in one line.
+
+    The keys are the names of the parameters. Without a docstring, there are none.
+    """
     if ask.__doc__ is None:  # python -OO
         return {}
     section = inspect.cleandoc(ask.__doc__).partition("Parameters:\n")[2].partition("\n\n")[0]
@@ -23,11 +26,11 @@ def docstring_entries(ask: Callable[..., object]) -> dict[str, str]:
 def complete_docstring(
     ask: Callable[..., object], signature: inspect.Signature, texts: Mapping[str, str]
 ) -> str | None:
-    """Return the docstring of a function with a description of each parameter, in the order of its signature.
+    """Return the docstring of a function with descriptions of its parameters, in the order of the signature.
 
-    ``texts`` has descriptions by name. A description in the section ``Parameters`` of the docstring itself
-    replaces that of ``texts``. If the docstring has no such section, it is inserted before ``Returns``. A
-    function without docstring gives ``None``.
+    ``texts`` has descriptions by name; :func:`docstring_entries` take precedence. A parameter without a
+    description is left out. If the docstring has no section ``Parameters``, it is inserted before
+    ``Returns``. Return ``None`` for a function without docstring.
     """
     if ask.__doc__ is None:  # python -OO
         return None

@@ -13,9 +13,9 @@ Durations = str | PathLike[str] | Mapping[str, Number | Duration]
 
 
 def stated_durations(stated: Durations | None) -> dict[str, Duration]:
-    """Return durations by motion, in seconds, from a table or a mapping; ``None`` states none.
+    """Return durations by motion, read from a table or converted from a mapping.
 
-    Raises :class:`UserError` for a duration that is not above 0.
+    For ``None``, the result is empty. Raises :class:`UserError` for a duration that is not above 0.
     """
     if isinstance(stated, str | PathLike):
         return dict(DURATIONS.read(Path(stated)))
@@ -23,9 +23,9 @@ def stated_durations(stated: Durations | None) -> dict[str, Duration]:
 
 
 def duration_of(stated: Number | Duration, motion: str) -> Duration:
-    """Return the duration of a motion from seconds or a :class:`Duration`.
+    """Return the duration of a motion with exact seconds; a mere number of seconds is no passive duration.
 
-    Raises :class:`UserError` if it is not above 0.
+    Raises :class:`UserError` if the duration is not above 0.
     """
     number, passive = stated if isinstance(stated, Duration) else (stated, False)
     seconds = exact_number(number, f"the duration of {motion!r}")

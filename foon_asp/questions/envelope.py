@@ -49,7 +49,7 @@ class Envelope:
     def __init__(self, problem: Problem, tree: tuple[int, ...], settings: Settings) -> None:
         """Find the motions that trees may have, and by searches those whose rates may rise without effect."""
         self._problem, self._tree, self._settings = problem, tree, settings
-        self._holds = Postconditions(problem, levels(_SUCCESS), settings)
+        self._postconditions = Postconditions(problem, levels(_SUCCESS), settings)
         reached = reach(problem)
         # A unit that the goals cannot need makes no tree better, but user rules may require it.
         is_plain = not settings.constraints and settings.replaced is None
@@ -63,11 +63,14 @@ class Envelope:
             self._free_to_rise = set()
 
     def units(self, motion: str) -> int:
-        """Return how many units of the best tree have a motion, and no success rate of their own."""
+        """Return the number of units of the best tree with a motion and without a rate of their own."""
         return self._count_by_motion(self._tree)[motion]
 
     def end(self, motion: str, above: bool) -> IntervalEnd:
-        """Find the end of the interval above or below a motion's rate; at a limit, it is not proved."""
+        """Return the end of the interval above a motion's rate if ``above``, else the end below the rate.
+
+        At a limit or ctrl-C, the end is not proved, and the deadline is interrupted.
+        """
         rate, units = (self._problem.rates or {})[motion], self.units(motion)
         if above and (rate == 1 or self._unit_counts[motion] == units or motion in self._free_to_rise):
             return IntervalEnd(None, None)
@@ -146,11 +149,14 @@ class Envelope:
         return motions
 
     def _solve_varied(self, varied: Problem) -> tuple[Outcome, bool]:
-        """Return the optimum at other rates, and whether it is better than the envelope's tree there."""
+        """Return the optimum at other rates, and whether it is better than the best tree of the envelope.
+
+        Raises :class:`BugError` if a proved optimum is worse than this tree.
+        """
         outcome = solve(varied, _SUCCESS, self._settings, Reporter())
         tree_success = _success(varied.costs(self._tree))
         rival_success = Fraction(0) if outcome.costs is None else _success(outcome.costs)
-        self._holds.require(
+        self._postconditions.require(
             rival_success >= tree_success or outcome.status not in {Status.OPTIMAL, Status.INFEASIBLE},
             lambda: f"at other success rates {outcome.status} is said, but the tree {self._tree} is better",
         )
@@ -170,7 +176,7 @@ class Envelope:
 
 
 def _at_rate(problem: Problem, motion: str, degree: int, raised_rate: Fraction) -> Problem:
-    """Return a problem with all rates to the power of ``degree``; that of the motion is ``raised_rate``."""
+    """Return a problem with all rates to the power of ``degree``, and ``raised_rate`` for the motion."""
     raised = {name: rate**degree for name, rate in (problem.rates or {}).items()}
     own_rates = {unit: rate**degree for unit, rate in problem.own_rates.items()}
     return replace(problem, rates=raised | {motion: raised_rate}, own_rates=own_rates, as_seen=problem)

@@ -77,9 +77,10 @@ class ExplainedRule(Value, frozen=True):
         return cls(explained.text, file, line, named, rule.kind, rule.one_of, reason, rule.local, beyond)
 
     def lines(self, similar: int) -> Iterator[str]:
-        """Yield lines on the place, text, effect and locality of a rule.
+        """Yield lines with the place, text and effect of a rule, and whether it looks beyond the tree.
 
-        ``similar`` is the number of further facts like this one, which are only counted.
+        The last is left out for a helper rule and for a rule without effect. ``similar`` is the number of
+        further facts like this one, which are only counted.
         """
         yield str(Source(self.file, self.line))
         if self.constraint:
@@ -106,7 +107,7 @@ class ExplainedRule(Value, frozen=True):
 
     @property
     def likeness(self) -> tuple[bool, str]:
-        """A key for grouping facts: whether the rule is one, and its file and predicate.
+        """The key by which facts are grouped: whether the rule is a fact, and its file and predicate.
 
         All rules that are no facts have the key ``(False, "")``.
         """
@@ -130,10 +131,13 @@ class ExplainedRules(Document, frozen=True, kw_only=True, tag=schema_name("rules
     meaning: str
 
     def show(self) -> Iterator[Block]:
-        """Yield the effect of each rule, and of all rules together; of similar facts, only the first."""
-        for (alike, _), group in groupby(self.rules, lambda rule: rule.likeness):
-            together = list(group)
-            shown = [(together[0], len(together) - 1)] if alike else [(rule, 0) for rule in together]
+        """Yield the effect of each rule, and of all rules together.
+
+        Of similar facts that follow each other, the first is shown and the others are counted.
+        """
+        for (is_fact, _), group in groupby(self.rules, lambda rule: rule.likeness):
+            alike = list(group)
+            shown = [(alike[0], len(alike) - 1)] if is_fact else [(rule, 0) for rule in alike]
             for rule, similar in shown:
                 yield from (*rule.lines(similar), "")
         yield f"together: {self.meaning}"
@@ -161,5 +165,5 @@ def explain_rules(
 
 
 def _remark(text: str, source: Source | None) -> Remark | None:
-    """Return a remark on a place; ``None`` without one."""
+    """Return a remark with the place that it is about; ``None`` without a place."""
     return None if source is None else Remark(text, source.file, source.line)

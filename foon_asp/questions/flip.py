@@ -22,7 +22,10 @@ class Flip(NamedTuple):
 
     @property
     def inwards(self) -> Fraction:
-        """The value ``at``, rounded towards ``rate`` to four digits; to more if it would pass ``rate``."""
+        """The value ``at``, rounded towards ``rate`` to four significant digits.
+
+        It has more digits if it would pass ``rate`` with four.
+        """
         digits = 4
         if self.at.rational == self.rate:
             return self.rate
@@ -77,7 +80,10 @@ class Flip(NamedTuple):
 
 
 def decimal_text(value: Fraction) -> str:
-    """Return a number as a decimal if it has finitely many digits, else as a fraction: ``0.25``, ``1/3``."""
+    """Return a number as a decimal if it has finitely many digits, else as a fraction: ``0.25``, ``1/3``.
+
+    A decimal below 10^-9 has an exponent.
+    """
     context = Context(prec=value.numerator.bit_length() + value.denominator.bit_length())
     decimal = context.divide(Decimal(value.numerator), Decimal(value.denominator)).normalize(context)
     if Fraction(decimal) != value:

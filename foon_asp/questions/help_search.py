@@ -62,7 +62,10 @@ class PricedHelp:
         return self._optimum_at(Fraction(1))
 
     def helped_units(self, max_helped: int, units: Iterable[int]) -> list[int]:
-        """Return the units of a tree, at most ``max_helped``, where help raises the success rate most."""
+        """Return those of the ``units`` where help raises the rate most, at most ``max_helped``.
+
+        Units that the person does not do better are left out.
+        """
         motions = self._problem.network.motions
         by_gain = sorted((self._break_even[motions[u]], u) for u in units if motions[u] in self._break_even)
         return [unit for _, unit in by_gain[:max_helped]]
@@ -84,7 +87,10 @@ class PricedHelp:
         return _as_optimal(best)
 
     def _best_before_limit(self, max_helped: int) -> Outcome:
-        """Return the best of the trees found at all prices so far, with the least bound that they prove."""
+        """Return the best of the trees found at all prices so far, with the least bound that is proved.
+
+        Without a tree, return the first outcome with that bound.
+        """
         outcomes = self._outcomes.values()
         trees = [
             self._with_help(max_helped, outcome.units) for outcome in outcomes if outcome.units is not None
@@ -98,14 +104,14 @@ class PricedHelp:
         return best._replace(bounds={Objective.SUCCESS: min(bounds)} if bounds else {})
 
     def _with_help(self, max_helped: int, units: tuple[int, ...]) -> Outcome:
-        """Return a tree, not proved best, whose ``max_helped`` units with the greatest gain are helped."""
+        """Return the tree of these units as a feasible outcome, with help for :meth:`helped_units`."""
         motions = self._problem.network.motions
         own_rates = {unit: self._better[motions[unit]] for unit in self.helped_units(max_helped, units)}
         problem = replace(self._problem, own_rates=own_rates)
         return Outcome(problem, _SUCCESS, Status.FEASIBLE, units, problem.costs(units), {}, {})
 
     def _optimum_at(self, price: Fraction) -> Outcome:
-        """Return the optimum where help for a unit costs this factor of success, solved once."""
+        """Return the optimum at a price, the factor of success that help for a unit costs; it is cached."""
         if price not in self._outcomes:
             reporter = (
                 Reporter() if self._outcomes else self._reporter
@@ -181,9 +187,9 @@ def helped_trees(
 ) -> HelpedTrees:
     """Find the best trees with help for 0, 1, 2, ... units.
 
-    ``person`` has the person's rates by motion; ``None`` is a person who never fails. The rows end with
+    ``person`` has the person's rates by motion; ``None`` for a person who never fails. The rows end with
     ``max_helped`` units, with the first tree whose success is at least ``wanted``, or where more help changes
-    nothing. At a limit, they end early.
+    nothing. ``None`` for either lifts its condition. At a limit, the rows end early.
 
     Raises :class:`UserError` for wrong rules, and for rules that look beyond the tree and at who does a unit.
     """
@@ -203,10 +209,10 @@ def helped_trees(
     try:
         while not complete:
             row = search.best(len(rows))
-            before = rows[-1] if rows else row
-            if row.status not in _PROVED and before.units is not None:  # help never makes a tree worse
-                row = min(row, before._replace(status=Status.FEASIBLE, bounds=row.bounds), key=_order_key)
-            _require_sound(len(rows), row, before, settings)
+            previous = rows[-1] if rows else row
+            if row.status not in _PROVED and previous.units is not None:  # help never makes a tree worse
+                row = min(row, previous._replace(status=Status.FEASIBLE, bounds=row.bounds), key=_order_key)
+            _require_sound(len(rows), row, previous, settings)
             rows.append(row)
             if row.status not in _PROVED:
                 break
@@ -238,20 +244,21 @@ def _as_optimal(tree: Outcome) -> Outcome:
     )
 
 
-def _require_sound(max_helped: int, row: Outcome, before: Outcome, settings: Settings) -> None:
-    """Raise an error if more than ``max_helped`` units are helped, costs are wrong, or more help is worse.
+def _require_sound(max_helped: int, row: Outcome, previous: Outcome, settings: Settings) -> None:
+    """Raise :class:`BugError` if ``row`` has wrong claims, too much help, or is worse than with less help.
 
-    ``row`` is the outcome to check, and ``before`` the one with less help.
+    ``max_helped`` is the greatest number of helped units, and ``previous`` the outcome with less help. An
+    outcome without a tree is not checked.
     """
     if row.units is None:
         return
-    holds = Postconditions(row.problem, _BEST, settings)
+    postconditions = Postconditions(row.problem, _BEST, settings)
     helped = row.problem.own_rates.keys()
-    holds.require(
+    postconditions.require(
         len(helped) <= max_helped and helped <= set(row.units),
         lambda: (
             f"the tree {row.units} with help for {max_helped} units at most has help for {sorted(helped)}"
         ),
     )
-    holds.require_true_claims(row)
-    holds.require_no_better(before, row, f"with help for {max_helped} units")
+    postconditions.require_true_claims(row)
+    postconditions.require_no_better(previous, row, f"with help for {max_helped} units")
