@@ -28,7 +28,8 @@ class AnswerRow(BatchQuestion, frozen=True, kw_only=True):
     Attributes:
         error: The error or the limit that left no tree; null if there was none.
         proof: The kind of proof; null if nothing is proved.
-        costs: The costs of the tree by every objective, null if unknown, and its ingredients.
+        costs: The costs of the tree by objective, and its number of ingredients; a cost that is not known is
+            null.
         lower_bound: By objective, the best value that a tree can still have.
         runs_used_up: Whether the tree runs where items are used up; null without a tree, and if that is not
             known.
@@ -95,7 +96,7 @@ def failed_row(question: BatchQuestion, error: str) -> AnswerRow:
 
 
 def _row(question: BatchQuestion, **answer: Any) -> AnswerRow:
-    """Return the row of a question with some fields of its answer."""
+    """Return the row of a question with those fields of its answer that are named."""
     return AnswerRow(**asdict(question), **answer)
 
 

@@ -49,9 +49,9 @@ def ask(
 ) -> Result:
     """Read the data that a command names, call its question, and return the result.
 
-    ``values`` are the values of all options by name. ``form`` is the chosen format of the result; ``None`` is
-    the default. If no goal is named and several are assumed, the question is called for each of them. The
-    result is then an :class:`EachGoal`.
+    ``values`` are the values of all options by name. ``form`` is the chosen format of the result, or ``None``
+    for the default format. If no goal is named and there are several, the question is called for each of them.
+    The result is then an :class:`EachGoal`. Progress is shown at a terminal.
     """
     option_names = {option.name for option in question.options}
     command = _Command({name: value for name, value in values.items() if name not in option_names})
@@ -90,8 +90,8 @@ def _warn_of_measures(command: "_Command", values: Mapping[str, Any]) -> None:
 def _subjects(question: Question, command: "_Command", values: Mapping[str, Any]) -> list[tuple[object, ...]]:
     """Return the first arguments of each call of a question, such as ``(problem,)``.
 
-    There is one call, or one for each of several assumed goals. A file with a tree names the goals, and
-    perhaps the data, of a command that names none. Assumed goals and kitchen items are printed to stderr.
+    There is one call, or one for each of several goals if the command names none. If a command names no goals
+    or no data, a file with a tree may name them. Assumed goals and kitchen items are printed to stderr.
     """
     problem_options = values_with_role(question, values, Role.PROBLEM)
     tree = values.get("tree")

@@ -108,7 +108,10 @@ class SafeStream:
 
 @contextlib.contextmanager
 def safe_streams() -> Iterator[None]:
-    """In a ``with`` block, let standard output and standard error be objects of :class:`SafeStream`."""
+    """In a ``with`` block, let standard output and standard error be objects of :class:`SafeStream`.
+
+    A failed write to standard error is ignored.
+    """
     out, err = sys.stdout, sys.stderr
     sys.stdout = cast(TextIO, SafeStream(out))
     sys.stderr = cast(TextIO, SafeStream(err, remarks=True))

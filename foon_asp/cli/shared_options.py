@@ -166,12 +166,13 @@ def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
     """Add the options for limits to a command.
 
     The command is called with the ``deadline`` that they set, in place of their values. If a limit stops it,
-    a message says what to do.
+    a message says what to do. Without an answer, this is the message of a :class:`LimitError`, which is
+    raised.
     """
 
     @functools.wraps(command)
     def limited(time_limit: float | None, memory_limit: int | None, **values: object) -> ExitCode:
-        """Call the command with its deadline; print advice if a limit stopped it."""
+        """Call the command with its deadline; print advice, or raise it, if a limit stopped the command."""
         deadline = start_deadline(time_limit, memory_limit)
         try:
             code = command(deadline=deadline, **values)

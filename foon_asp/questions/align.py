@@ -39,11 +39,11 @@ class AlignedNode(Value, frozen=True):
     """A node of a recipe, and the nearest one of a network.
 
     Attributes:
-        match: known: the network has it; one edit: it has one that differs in one edit of the table of
-            stand-ins; new: it has neither.
+        match: known: the network has the node; one edit: the network has a node that differs in one edit of
+            the table of stand-ins; new: neither is so.
         node: The node of the recipe.
-        nearest: The node of the network that is one edit away; null for others.
-        edit: What the two differ in; null for others.
+        nearest: The node of the network that is one edit away; null for a known or a new node.
+        edit: The edit in which the two nodes differ; null for a known or a new node.
     """
 
     match: Match
@@ -57,8 +57,8 @@ class Aligned(Result, frozen=True, kw_only=True, tag=schema_name("align")):
 
     Attributes:
         in_network: How many nodes of the recipe the network has.
-        one_edit: How many are one edit away from a node that it has.
-        new: How many are neither.
+        one_edit: How many nodes of the recipe are one edit away from a node of the network.
+        new: How many nodes of the recipe are neither in the network nor one edit away.
         labels_known: How many labels of the recipe the network has.
         labels: How many different labels the recipe has.
         units_known: How many units of the recipe the network has.

@@ -477,7 +477,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
 
 
 class WithAnswer(Result, AboutGoals, frozen=True, kw_only=True):
-    """A result that comes with the best tree, which its picture shows.
+    """A result that has the best tree, and draws it.
 
     Attributes:
         answer: The best tree; null without one.

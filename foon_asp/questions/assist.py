@@ -63,7 +63,7 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
         greatest_success: The best success with any help; null if there is no tree or a limit was reached.
         more_help_changes_nothing: Whether the last row has the greatest success.
         reach: The success to reach, if one was given.
-        smallest: The fewest helped units that reach it; null where no row does.
+        smallest: The fewest helped units with which that success is reached; null if no row reaches it.
         rows: The best tree for each number of units.
 
     Example:

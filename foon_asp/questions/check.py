@@ -45,7 +45,7 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
         verdict: Whether the tree executes; a plan executes as listed or not at all.
         as_listed: What stops the listed order, if anything.
         in_any_order: What stops every order of a tree, if anything.
-        order: Positions of units, from 1, in an order that executes, as far as one does.
+        order: The positions of units, from 1, in an order that executes. Units that cannot run are left out.
         used_up: Whether the tree, each step done once, runs where items are used up; null for a plan.
         costs: What the tree costs by every objective; null where the network does not have all of its units.
         not_in_network: The positions, from 1, of the units that are not in the network.
@@ -155,7 +155,7 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
         return "\n".join(self.notes)
 
     def drawing(self) -> Drawing | None:
-        """Return the drawing of the tree, if it can be drawn."""
+        """Return the drawing of the tree in the listed order."""
         return self.tree.drawing()
 
     def __repr__(self) -> str:

@@ -69,7 +69,9 @@ class Clash(Value, frozen=True, kw_only=True):
     def ending(self) -> Ending:
         """``DONE`` if a tree keeps to all constraints and the best one is proved.
 
-        It is ``NEGATIVE`` if it is proved that no tree does, and what is cheapest to drop; else ``LIMIT``.
+        It is ``NEGATIVE`` if no tree exists without the constraints either. It is also ``NEGATIVE`` if the
+        smallest clash and the best tree without the dropped constraints are proved. Otherwise it is
+        ``LIMIT``.
         """
         if not self.tree_exists_without_constraints:
             return Ending.NEGATIVE

@@ -52,7 +52,7 @@ class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("c
     """The searches and the optimum, compared for each goal of a problem.
 
     Attributes:
-        comparisons: One for each goal.
+        comparisons: The searches and the optimum for each goal.
         published: Published figures to show beside the measured ones, where they are asked for.
 
     Example:
@@ -119,7 +119,7 @@ class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("c
         return self.retrieved[0].foon()
 
     def write_chart(self, file: File) -> None:
-        """Write a chart with a box for each search: the units of its trees divided by the optimum, by goal.
+        """Write a box plot: for each search, the units of its trees divided by the optimum, over all goals.
 
         Parameters:
             file: The path of the file, which ends in ``.svg`` or ``.png``.

@@ -24,8 +24,7 @@ class EachGoal(Result, frozen=True, kw_only=True, tag=schema_name("each")):
     """A question asked of several goals, each by itself.
 
     Attributes:
-        answers: The documents of the question, one for each goal in order; their own schema says what they
-            are.
+        answers: The documents of the question, one for each goal in order; each names its own schema.
     """
 
     answers: Annotated[tuple[Annotated[Any, _ANY_DOCUMENT], ...], Meta(min_length=2)]

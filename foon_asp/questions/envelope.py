@@ -27,10 +27,10 @@ class _Tree(NamedTuple):
 class IntervalEnd(NamedTuple):
     """One end of the interval of a rate in which the tree stays optimal, and the best tree beyond.
 
-    ``at``: the rate at which another tree is as good; ``None`` if no rate on this side makes another one
+    ``at``: the rate at which another tree is as good; ``None`` if no rate on this side makes another tree
     better.
-    ``beyond``: the ids of the units of the other tree, in an order that executes; ``None`` with ``at``.
-    ``proved``: false if a limit came first; the end may then be nearer to the rate.
+    ``beyond``: the ids of the units of the other tree, in an order that executes; ``None`` if ``at`` is.
+    ``proved``: false if a limit came first; the true end may then be nearer to the rate.
     """
 
     at: Root | None
@@ -47,7 +47,10 @@ class Envelope:
     """
 
     def __init__(self, problem: Problem, tree: tuple[int, ...], settings: Settings) -> None:
-        """Find the motions that trees may have, and by searches those whose rates may rise without effect."""
+        """Find the motions that trees may have; search for those whose rates may rise to 1 without effect.
+
+        At a limit or ctrl-C, this search is given up, and the deadline is interrupted.
+        """
         self._problem, self._tree, self._settings = problem, tree, settings
         self._postconditions = Postconditions(problem, levels(_SUCCESS), settings)
         reached = reach(problem)

@@ -52,9 +52,9 @@ class ExplainedRule(Value, frozen=True):
         constraint: For a ready-made constraint with constants of its own, how it was named; null for others.
         kind: What it does to trees.
         one_of_a_set: Whether all that it requires is a unit of a set, or a unit of each of several sets.
-        reason: Why nothing more is known of it, or why it has no effect.
+        reason: Why nothing more is known of it, or why it has no effect; null for other rules.
         local: Whether it looks at nothing beyond the tree.
-        looks_beyond: What it looks at beyond the tree, if it is not local.
+        looks_beyond: What it looks at beyond the tree; null if it is local.
     """
 
     text: str

@@ -12,8 +12,8 @@ _SHORT = Fraction(1, 10**9)  # smallest number that is written without an expone
 class Flip(NamedTuple):
     """The value ``at`` of a rate beyond which another tree is the best.
 
-    ``rate`` is its present value. The other tree is the best at rates above ``at`` if ``above``, else at
-    rates below. Flips are ordered by the relative change from ``rate`` to ``at``.
+    ``rate`` is the present value of this rate. The other tree is the best at rates above ``at`` if ``above``,
+    else at rates below ``at``. Flips are ordered by the relative change from ``rate`` to ``at``.
     """
 
     rate: Fraction

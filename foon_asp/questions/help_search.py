@@ -19,11 +19,11 @@ _BEST = (Objective.SUCCESS, Objective.UNITS)
 class PricedHelp:
     """Lagrangian relaxation of the number of helped units: help for a unit costs a factor of success.
 
-    Let S be the optimal success at a price q. A tree with help for M units has at most the success S / q^M,
-    or it would beat the optimum at that price. If the optimal tree at the price reaches this bound with help
-    for M units, it is optimal for M, also by fewest units, which break ties at the price. If no price closes
-    the gap, trees are enumerated in order of success at the price with the least bound, until the best tree
-    seen is as good as any later one can be.
+    At a price q, a helped unit counts with q times the person's rate. Let S be the optimal success at this
+    price. A tree with help for M units has at most the success S / q^M, or it would beat the optimum. If the
+    optimal tree at the price reaches this bound with help for M units, it is optimal for M, also by fewest
+    units, which break ties at the price. If no price closes the gap, trees are enumerated in order of success
+    at the price with the least bound, until the best tree seen is as good as any later one can be.
 
     The prices tried are the breakpoints at which help for another motion pays. The logarithm of the bound is
     convex in the logarithm of the price, so the least bound is found where the bound first rises.
@@ -41,7 +41,10 @@ class PricedHelp:
         self._outcomes: dict[Fraction, Outcome] = {}
 
     def best(self, max_helped: int) -> Outcome:
-        """Return the best tree with help for at most ``max_helped`` units; at a limit, the best one found."""
+        """Return the best tree with help for at most ``max_helped`` units.
+
+        At a limit, return the best tree found, which is not proved best.
+        """
         bounds: dict[Fraction, Fraction] = {}
         for price in self._prices:
             outcome = self._optimum_at(price)
@@ -144,7 +147,7 @@ class CountedHelp:
         self._twins = replace(problem, network=network.with_copies(units), own_rates=own_rates)
 
     def best(self, max_helped: int) -> Outcome:
-        """Return the best tree with help for at most ``max_helped`` units."""
+        """Return the best tree with help for at most ``max_helped`` units, without copies of units."""
         number = self._twins.network.unit_number
         twins = {number(twin): number(unit) for twin, unit in self._originals.items()}
         settings = self._settings._replace(bounded=assistance_bounds(twins, max_helped))

@@ -105,7 +105,7 @@ class Merged(Result, frozen=True, kw_only=True, tag=schema_name("merge")):
 
         Parameters:
             file: The path of the file.
-            format_: ``foon``, or nothing.
+            format_: ``foon`` or ``None``.
 
         Raises:
             UserError: for another format, and for a network that is in a store.

@@ -83,10 +83,10 @@ def _read_pair(
 
 
 def _data_for_trees(level: int, files: Mapping[Path, ListedTree]) -> Dataset:
-    """Return the data that trees in files are about, where Python names no data.
+    """Return the data that trees in files are about, for a call from Python, which names no data.
 
-    They are read from the files that :func:`own_networks` finds; if it finds none, the bundled kitchen is
-    used.
+    They are read from the files that :func:`own_networks` finds. Without such files, they are the bundled
+    kitchen.
     """
     kitchen = load(level=level)
     network_files = own_networks(kitchen.network, files)
