@@ -71,14 +71,14 @@ def write_table(file: Path, rows: Iterable[AnswerRow], objectives: Iterable[Obje
 
     Goals and amounts are lists, also for a single goal.
     """
-    flat = [
+    flat_rows = [
         flat_row(plain(row)) | {"goal": list(row.goals), "amount": list(row.amounts) or None} for row in rows
     ]
     types = dict(answer_columns(objectives))
     if file.suffix == ".csv":
-        write_whole(file, csv_text(flat, list(types)).encode("utf-8", "surrogatepass"))
+        write_whole(file, csv_text(flat_rows, list(types)).encode("utf-8", "surrogatepass"))
     else:
-        write_whole(file, _parquet_bytes(flat, types))
+        write_whole(file, _parquet_bytes(flat_rows, types))
 
 
 def _parquet_bytes(rows: list[Json], types: dict[str, Any]) -> bytes:

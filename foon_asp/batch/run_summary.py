@@ -81,6 +81,6 @@ class RunSummary(Document, frozen=True, kw_only=True, tag=schema_name("batch")):
             yield f"... and {failed - 3} more failed: see their rows"
 
 
-def _counts_text(counts: dict[str, int], by: str) -> str:
-    """Return counts in words: ``3 by clingo, 1 by search``; ``by`` is the text before each name."""
-    return ", ".join(f"{count:,} {by}{name}" for name, count in counts.items())
+def _counts_text(counts: dict[str, int], prefix: str) -> str:
+    """Return counts in words: ``3 by clingo, 1 by search``; ``prefix`` is the text before each name."""
+    return ", ".join(f"{count:,} {prefix}{name}" for name, count in counts.items())

@@ -50,8 +50,8 @@ def ask(
     """Read the data that a command names, call its question, and return the result.
 
     ``values`` are the values of all options by name. ``form`` is the chosen format of the result, or ``None``
-    for the default format. If no goal is named and there are several, the question is called for each of them.
-    The result is then an :class:`EachGoal`. Progress is shown at a terminal.
+    for the default format. If no goal is named and there are several, the question is called for each one,
+    and the result is an :class:`EachGoal`. Progress is shown at a terminal.
     """
     option_names = {option.name for option in question.options}
     command = _Command({name: value for name, value in values.items() if name not in option_names})
@@ -81,10 +81,9 @@ def _warn_of_measures(command: "_Command", values: Mapping[str, Any]) -> None:
         measures_of.setdefault(measure.place, []).append(measure.name)
     for file, names in measures_of.items():
         if chosen_names.isdisjoint(names):
-            listed = " or ".join(f"--objective {name}" for name in names)
-            click.echo(
-                f"{file}: warning: no objective is its measure, so it has no effect; add {listed}", err=True
-            )
+            objective_options = " or ".join(f"--objective {name}" for name in names)
+            warning = "no objective is its measure, so it has no effect; add"
+            click.echo(f"{file}: warning: {warning} {objective_options}", err=True)
 
 
 def _subjects(question: Question, command: "_Command", values: Mapping[str, Any]) -> list[tuple[object, ...]]:
@@ -96,10 +95,10 @@ def _subjects(question: Question, command: "_Command", values: Mapping[str, Any]
     problem_options = values_with_role(question, values, Role.PROBLEM)
     tree = values.get("tree")
     if question.pose is not pose_plan and tree is not None and tree.is_file():  # a pipe is read once
-        listed = read_answer(tree)
-        data_for_trees(command, {tree: listed})
+        answer = read_answer(tree)
+        data_for_trees(command, {tree: answer})
         if problem_options.get("goals_named") == ():
-            problem_options["goals_named"] = tuple(map(str, listed.goals))
+            problem_options["goals_named"] = tuple(map(str, answer.goals))
     # the question itself reports them, or has none
     reports_goals = question.pose is pose_without_data or GOAL_OF_PLAN in question.options
     unnamed = not reports_goals and problem_options.get("goals_named") == ()

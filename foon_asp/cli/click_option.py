@@ -85,7 +85,7 @@ def click_option(option: Option) -> Callable[[Command], Command]:
     option with the role ``EXTRA_VALUES`` is not passed to the command.
     """
     choices = option.choices() if callable(option.choices) else option.choices
-    kinds: dict[Kind, Any] = {
+    type_of_kind: dict[Kind, Any] = {
         Kind.TEXT: click.Choice(choices) if choices else None,
         Kind.WHOLE: int if option.least is None else click.IntRange(min=option.least),
         Kind.FILE: click.Path(path_type=NamedPath),
@@ -99,19 +99,19 @@ def click_option(option: Option) -> Callable[[Command], Command]:
     if option.positional:
         return click.argument(
             option.name,
-            type=kinds[option.kind],
+            type=type_of_kind[option.kind],
             nargs=-1 if option.many else 1,
             metavar=option.metavar,
             required=not (option.optional or option.many),
             callback=_split_sources if option.kind is Kind.OPTIONS else None,
         )
-    words = option.flags or ("--" + option.name.replace("_", "-"),)
+    flags = option.flags or ("--" + option.name.replace("_", "-"),)
     if option.kind is Kind.FLAG:
-        return click.option(*words, option.name, is_flag=True, help=option.help)
+        return click.option(*flags, option.name, is_flag=True, help=option.help)
     return click.option(
-        *words,
+        *flags,
         option.name,
-        type=kinds[option.kind],
+        type=type_of_kind[option.kind],
         multiple=option.many,
         default=option.default,
         show_default=option.default is not None,

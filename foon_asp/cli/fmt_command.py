@@ -48,7 +48,7 @@ def command(paths: tuple[Path, ...], check: bool, output: Path | None, lenient: 
     if output is not None and (check or len(files) > 1):
         raise UserError("-o is for a single file" + (" without --check" if check else ""))
     errors: list[Diagnostic] = []
-    changed = 0
+    changed_count = 0
     for file in files:
         try:
             text = read_plain_text(file)
@@ -59,16 +59,16 @@ def command(paths: tuple[Path, ...], check: bool, output: Path | None, lenient: 
             continue
         if output is not None:
             write_output(output, formatted)
-        elif formatted != (before := file.read_bytes()):
-            changed += 1
+        elif formatted != (old_content := file.read_bytes()):
+            changed_count += 1
             if check:
-                click.echo(line_diff(escaped(str(file)), before.decode(), formatted.decode()), nl=False)
+                click.echo(line_diff(escaped(str(file)), old_content.decode(), formatted.decode()), nl=False)
             else:
                 write_output(file, formatted)
-    _report(len(files), changed, len({error.source.file for error in errors}), check)
+    _report(len(files), changed_count, len({error.source.file for error in errors}), check)
     if errors:
         raise InputError(errors)
-    return ExitCode.NEGATIVE if check and changed else ExitCode.DONE
+    return ExitCode.NEGATIVE if check and changed_count else ExitCode.DONE
 
 
 def _report(files: int, changed: int, refused: int, check: bool) -> None:

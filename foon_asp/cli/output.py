@@ -173,13 +173,13 @@ def terminal_width_and_colour() -> tuple[int | None, bool]:
     return shutil.get_terminal_size().columns, "NO_COLOR" not in os.environ
 
 
-def write_parts(parts: Iterable[Block]) -> None:
+def write_parts(blocks: Iterable[Block]) -> None:
     """Write lines and tables to standard output, in the width and the colours of the terminal.
 
     Signs that the output cannot encode are replaced as in :func:`with_plain_signs`.
     """
     width, coloured = terminal_width_and_colour()
-    text = with_plain_signs(blocks_text(parts, width, coloured))
+    text = with_plain_signs(blocks_text(blocks, width, coloured))
     stream = sys.stdout
     if coloured and isinstance(stream, SafeStream):
         stream = cast(TextIO, SafeStream(stream.stream, styled=True))

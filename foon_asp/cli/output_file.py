@@ -17,16 +17,16 @@ _DATA_OPTIONS = ("kitchen", "rates", "utensils", "goals", "unit_prices", "unit_a
 _STDIN = Path("/dev/stdin")  # may be a file: foon-asp lint - < recipe.txt
 
 
-def check_outputs(read: Iterable[Path] = (), written: Iterable[Path] | None = None) -> None:
+def check_outputs(further_inputs: Iterable[Path] = (), written: Iterable[Path] | None = None) -> None:
     """Raise :class:`UserError` if the current command would write a file that it reads, or one file twice.
 
-    ``read`` are further inputs, which its parameters do not name. ``written`` are its outputs; by default,
-    the outputs that its parameters name. The check runs before a search, which may take an hour.
+    ``further_inputs`` are inputs that its parameters do not name. ``written`` are its outputs, by default
+    those that its parameters name. The check runs before a search, which may take an hour.
     """
     outputs = [*(_output_files() if written is None else written)]
     if not outputs:
         return
-    inputs = [*read_files(), *read]
+    inputs = [*read_files(), *further_inputs]
     for number, file in enumerate(outputs):
         refuse_inputs(file, inputs)
         if any(_same_output(file, other) for other in outputs[:number]):
@@ -47,11 +47,11 @@ def read_files() -> Iterator[Path]:
     """
     context = click.get_current_context()
     written = {parameter.name for parameter in _output_parameters(context)}
-    named: list[Path] = []
+    paths: list[Path] = []
     for name, value in context.params.items():
         if name not in written:
-            named += _paths_in(value)
-    for path in named:
+            paths += _paths_in(value)
+    for path in paths:
         yield from _files_read_for(path)
     if "network" in context.params:
         sources = context.params.get("sources", ())

@@ -145,19 +145,19 @@ def bytes_bar(word: str, files: Iterable[Path]) -> Iterator[None]:
     if not sys.stderr.isatty() or click.get_current_context(silent=True) is None:
         yield
         return
-    total = size_of(files)
-    began, done = time.monotonic(), 0
+    total_bytes = size_of(files)
+    began, bytes_read = time.monotonic(), 0
     advance: Callable[[int], None] | None = None
     with contextlib.ExitStack() as bars:
 
-        def report(read: int) -> None:
+        def report(new_bytes: int) -> None:
             """Add the number of bytes read since the last call; after a second, show the bar."""
-            nonlocal advance, done
-            done += read
+            nonlocal advance, bytes_read
+            bytes_read += new_bytes
             if advance is not None:
-                advance(read)
+                advance(new_bytes)
             elif time.monotonic() - began >= _DELAY_SECONDS:
-                advance = bars.enter_context(_bar(word, total, done))
+                advance = bars.enter_context(_bar(word, total_bytes, bytes_read))
 
         with reporting_to(report):
             yield

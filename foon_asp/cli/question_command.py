@@ -139,13 +139,13 @@ def _format_options(question: Question) -> list[Callable[[Command], Command]]:
         return []
     if not question.suffixes:
         return [shared_options.format_option(*question.formats)]
-    first = question.formats[0].upper()
+    default = question.formats[0].upper()
     return [
         click.option(
             "--format",
             "format_",
             type=click.Choice(question.formats),
-            help=f"The format, in place of the ending of the file; without a file, {first} to stdout.",
+            help=f"The format, in place of the ending of the file; without a file, {default} to stdout.",
         ),
         click.option(
             "-o",
@@ -157,12 +157,12 @@ def _format_options(question: Question) -> list[Callable[[Command], Command]]:
     ]
 
 
-def _chosen_format(question: Question, named: str | None, output: Path | None) -> str:
-    """Return the format of a result: ``named``, else that of the ending of ``output``, else the default.
+def _chosen_format(question: Question, format_: str | None, output: Path | None) -> str:
+    """Return the format of a result: ``format_``, else that of the ending of ``output``, else the default.
 
     Raises :class:`UserError` for a picture or a page without an output at a terminal.
     """
-    form = named or (question.formats[0] if output is None else question.format_of(output))
+    form = format_ or (question.formats[0] if output is None else question.format_of(output))
     if form in _NOT_FOR_TERMINALS and output is None and sys.stdout.isatty():
         raise UserError(
             f"a terminal cannot show {_NOT_FOR_TERMINALS[form]}: write it into a file with -o FILE"

@@ -135,43 +135,43 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
 
         For trees that differ most, they also say where the trees part.
         """
-        rule, tree_count = self.conditions, len(self.trees)
+        conditions, tree_count = self.conditions, len(self.trees)
         if not self.trees and self.complete:
-            yield f"infeasible: proved that no task tree exists ({rule})"
+            yield f"infeasible: proved that no task tree exists ({conditions})"
         elif not self.trees:
-            yield f"unknown: stopped at a limit before any task tree was found ({rule})"
+            yield f"unknown: stopped at a limit before any task tree was found ({conditions})"
         elif self.wanted is None:
             yield from self._optimal_claim_lines()
         elif tree_count < self.wanted and self.complete:
             be = "is" if tree_count == 1 else "are"
-            yield f"there {be} {counted(tree_count, 'tree')} and no more ({rule})"
+            yield f"there {be} {counted(tree_count, 'tree')} and no more ({conditions})"
         elif not self.complete:
-            yield f"{counted(tree_count, 'tree')} of those found before a limit ({rule})"
+            yield f"{counted(tree_count, 'tree')} of those found before a limit ({conditions})"
             if self.unproved:
                 yield f"other trees may come before the last {self.unproved} of them"
         else:
-            yield f"{counted(tree_count, 'tree')} ({rule})"
+            yield f"{counted(tree_count, 'tree')} ({conditions})"
         if self.different and self.trees:
             yield from self._parting_lines()
 
     def _optimal_claim_lines(self) -> Iterator[str]:
         """Yield lines on optimal trees: their number, whether it is proved, and the steps in all of them."""
-        rule, by, tree_count = self.conditions, ", then ".join(self.objectives), len(self.trees)
+        conditions, by, tree_count = self.conditions, ", then ".join(self.objectives), len(self.trees)
         costs = costs_text(self.trees[0].costs, self.objectives)
         if tree_count == self.unproved:
-            yield f"feasible, not proved best by {by} ({rule}; stopped at a limit): {costs}"
+            yield f"feasible, not proved best by {by} ({conditions}; stopped at a limit): {costs}"
         elif not self.complete:
             optimal_trees = counted(tree_count, "optimal tree")
-            yield f"at least {optimal_trees} by {by} ({rule}; stopped at a limit): {costs}"
+            yield f"at least {optimal_trees} by {by} ({conditions}; stopped at a limit): {costs}"
         elif tree_count == 1:
-            yield f"the optimal tree by {by} is the only one: proved ({rule}): {costs}"
+            yield f"the optimal tree by {by} is the only one: proved ({conditions}): {costs}"
         else:
-            yield f"{tree_count} optimal trees by {by}, and no others: proved ({rule}): {costs}"
+            yield f"{tree_count} optimal trees by {by}, and no others: proved ({conditions}): {costs}"
         if tree_count > 1 and self.optimal:
-            every = set(self.in_every_optimal)
-            yield f"in every one{' found' * (not self.complete)}: {counted(len(every), 'unit')}"
-            shown = {step.id: step for step in self.trees[0].units if step.id in every}
-            yield from step_lines(shown[unit] for unit in self.in_every_optimal)
+            common_units = set(self.in_every_optimal)
+            yield f"in every one{' found' * (not self.complete)}: {counted(len(common_units), 'unit')}"
+            step_of = {step.id: step for step in self.trees[0].units if step.id in common_units}
+            yield from step_lines(step_of[unit] for unit in self.in_every_optimal)
 
     def _parting_lines(self) -> Iterator[str]:
         """Yield lines on each object node that trees make in different ways, with the trees of each way."""
@@ -326,7 +326,7 @@ def alternatives(
 
 def _alternatives_of(problem: Problem, objectives: tuple[Objective, ...], pool: _Pool) -> Alternatives:
     """Return the trees of a pool as a result, with units of all and of some optimal trees, and partings."""
-    order, number = levels(objectives), problem.network.unit_number
+    order, unit_number = levels(objectives), problem.network.unit_number
     proved = pool.trees if len(pool.trees) > pool.unproved else ()
     optimal = [
         frozenset(tree.units) for tree in proved if tree.costs.key(order) == proved[0].costs.key(order)
@@ -336,8 +336,8 @@ def _alternatives_of(problem: Problem, objectives: tuple[Objective, ...], pool: 
         complete=pool.complete,
         unproved=pool.unproved,
         optimal=len(optimal),
-        in_every_optimal=tuple(sorted(map(number, frozenset.intersection(*optimal) if optimal else ()))),
-        in_some_optimal=tuple(sorted(map(number, frozenset().union(*optimal)))),
+        in_every_optimal=tuple(sorted(map(unit_number, frozenset.intersection(*optimal) if optimal else ()))),
+        in_some_optimal=tuple(sorted(map(unit_number, frozenset().union(*optimal)))),
         partings=tuple(_partings(problem, [frozenset(tree.units) for tree in pool.trees])),
         trees=tuple(costed_tree(problem, tree.units, tree.costs) for tree in pool.trees),
     )
@@ -394,20 +394,20 @@ def _most_different(pool: _Pool, count: int, settings: Settings) -> _Pool:
     """
     if len(pool.trees) <= count:
         return pool
-    ended = run(
+    clingo_run = run(
         (question_encoding("most_different.lp"),),
         write_distances(list(map(_executions, pool.trees)), count),
         CLINGO_OPTIONS,
         settings.begun,
         predicates=[("_chosen", 1)],
     )
-    if ended.exhausted and not ended.atoms:
+    if clingo_run.exhausted and not clingo_run.atoms:
         raise BugError("no trees could be chosen")
-    chosen = sorted(ended.atoms["_chosen"]) if ended.atoms else _choose_far_apart(pool.trees, count)
+    chosen = sorted(clingo_run.atoms["_chosen"]) if clingo_run.atoms else _choose_far_apart(pool.trees, count)
     return pool._replace(
-        trees=tuple(pool.trees[number] for number in chosen),
-        complete=pool.complete and ended.exhausted,
-        unproved=sum(number >= len(pool.trees) - pool.unproved for number in chosen),
+        trees=tuple(pool.trees[index] for index in chosen),
+        complete=pool.complete and clingo_run.exhausted,
+        unproved=sum(index >= len(pool.trees) - pool.unproved for index in chosen),
     )
 
 

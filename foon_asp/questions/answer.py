@@ -107,8 +107,8 @@ class SkippedGoal(Value, frozen=True):
     def __str__(self) -> str:
         if self.cause is Cause.CYCLE:
             return f"{self.goal}: {self.object} can only be made from itself ({self.cycle_size} in the cycle)"
-        what = "it" if self.object == self.goal else self.object
-        return f"{self.goal}: {what} is not in the kitchen, and no unit makes it"
+        missing = "it" if self.object == self.goal else self.object
+        return f"{self.goal}: {missing} is not in the kitchen, and no unit makes it"
 
 
 class EngineCheck(Value, frozen=True):
@@ -318,14 +318,17 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
     def claim(self) -> str:
         """A line with the status, objectives and costs of the tree; without a tree, why there is none."""
         noun = "task tree" if self.items == "lasting" else "plan"
-        rule = self.conditions if self.encodings is None else f"{self.conditions}, as {self.encodings} has it"
+        conditions = self.conditions
+        if self.encodings is not None:
+            conditions += f", as {self.encodings} has it"
         if self.status is Status.INFEASIBLE:
-            return f"infeasible: proved that no {noun} exists ({rule})"
+            return f"infeasible: proved that no {noun} exists ({conditions})"
         if self.costs is None:
-            return f"unknown: stopped at {self.stopped or 'a limit'}, before any {noun} was found ({rule})"
+            limit = self.stopped or "a limit"
+            return f"unknown: stopped at {limit}, before any {noun} was found ({conditions})"
         claim = "optimal" if self.status is Status.OPTIMAL else "feasible, not proved best"
         best = ", then ".join(self.objectives)
-        return f"{claim} by {best} ({rule}): {costs_text(self.costs, self.objectives)}"
+        return f"{claim} by {best} ({conditions}): {costs_text(self.costs, self.objectives)}"
 
     def headlines(self) -> list[str]:
         """Return the claim, and for some trees a second line: the note of :func:`used_up_note`."""
@@ -402,8 +405,10 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         elif total is None:
             return
         else:
-            alone, together = (figure_text(by, measure) for measure in (total, self.costs.measure(by)))
-            yield f"{by} one by one {alone}, together {together}; {shared_text}"
+            alone_text, together_text = (
+                figure_text(by, measure) for measure in (total, self.costs.measure(by))
+            )
+            yield f"{by} one by one {alone_text}, together {together_text}; {shared_text}"
         for step in self.units:
             if step.id in shared:
                 labels = ", ".join(goal.label for goal in shared[step.id])

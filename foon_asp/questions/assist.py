@@ -119,9 +119,9 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
         tree exists, one line says so in place of the table.
         """
         yield from self.goal_lines()
-        rule, last = self.problem.conditions, self.rows[-1]
+        conditions, last = self.problem.conditions, self.rows[-1]
         if self.complete and self.greatest_success is None:
-            yield f"infeasible: proved that no task tree exists, with help or without ({rule})"
+            yield f"infeasible: proved that no task tree exists, with help or without ({conditions})"
             return
         person = "who never fails" if self.person is None else "at rates of the person's own"
         claim = (
@@ -129,7 +129,7 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
             if self.complete
             else "stopped at a limit: some rows are missing or not proved"
         )
-        yield f"best success with a person's help, {person} ({rule}); {claim}"
+        yield f"best success with a person's help, {person} ({conditions}); {claim}"
         yield ""
         yield Table(("helped", "success", "units", "the person takes"), [*self._cells()], frozenset({3}))
         yield ""

@@ -53,10 +53,10 @@ def _limit_text(units: list[int], bound: int, alike: bool) -> str:
 
     ``alike`` says that all weights are 1. More than 20 units are only counted.
     """
-    named = f"the units {', '.join(map(str, units))}" if len(units) <= 20 else f"{len(units)} units"
+    units_text = f"the units {', '.join(map(str, units))}" if len(units) <= 20 else f"{len(units)} units"
     if not alike:
-        return f"what {named} count comes to {bound} at most"
-    return f"no tree has {'all' if bound == len(units) - 1 else f'more than {bound}'} of {named}"
+        return f"what {units_text} count comes to {bound} at most"
+    return f"no tree has {'all' if bound == len(units) - 1 else f'more than {bound}'} of {units_text}"
 
 
 def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", file: str) -> Sequence[str]:

@@ -73,12 +73,12 @@ def _certificate_subject(problem: Problem) -> Subject | None:
 
     Return ``None`` for a problem over the whole network, and for a problem whose units have own rates.
     """
-    data = problem.origin
-    if not problem.network.object_numbers or not isinstance(data, Dataset) or problem.own_rates:
+    dataset = problem.origin
+    if not problem.network.object_numbers or not isinstance(dataset, Dataset) or problem.own_rates:
         return None
     network = problem.network
     goals = [network.object_number(goal) for goal in problem.goals]
-    return data.with_kitchen_of(problem).subject(False, goals)
+    return dataset.with_kitchen_of(problem).subject(False, goals)
 
 
 def certify_tree(

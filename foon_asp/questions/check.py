@@ -297,19 +297,19 @@ def check(
     if certificate is not None or (rule_check is not None and not rule_check.local):
         problem = over_whole_network(problem)
     chosen = () if certificate is None else chosen_objectives(problem, objectives or "units")
-    listed = as_tree(problem, tree)
-    checked = Checked.of(listed, chosen)
+    task_tree = as_tree(problem, tree)
+    checked = Checked.of(task_tree, chosen)
     if rule_check is not None:
         broken = None
         if checked.executes and not checked.not_in_network:
-            broken = tuple(rule.listed for rule in rule_check.broken_rules(listed.problem, listed.ids))
+            broken = tuple(rule.listed for rule in rule_check.broken_rules(task_tree.problem, task_tree.ids))
         checked = structs.replace(checked, breaks=broken).knowing(**checked.__dict__)
     in_order = checked.in_order
     if certificate is not None and in_order is not None and checked.ending is Ending.DONE:
         from foon_asp.questions.certifying import certify_tree  # noqa: PLC0415
 
-        proof, ended, note = certify_tree(in_order, chosen, rules, certificate)
-        checked.knowing(certificate=proof, proof_ending=ended, notes=(note,))
+        proof, proof_ending, note = certify_tree(in_order, chosen, rules, certificate)
+        checked.knowing(certificate=proof, proof_ending=proof_ending, notes=(note,))
     return checked
 
 

@@ -82,47 +82,50 @@ class Clash(Value, frozen=True, kw_only=True):
             return Ending.NEGATIVE if proved else Ending.LIMIT
         return self.answer.ending
 
-    def lines(self, rule: str) -> Iterator[str]:
+    def lines(self, conditions: str) -> Iterator[str]:
         """Yield lines on constraints that clash, those cheapest to drop, and the best tree without these.
 
-        ``rule`` names the conditions under which claims hold, such as ``strict containers``.
+        ``conditions`` names the conditions under which claims hold, such as ``strict containers``.
         """
         dropped, answer = self.cheapest_to_drop, self.answer
         if not self.tree_exists_without_constraints:
-            yield f"no task tree is left whatever is dropped: proved ({rule})"
+            yield f"no task tree is left whatever is dropped: proved ({conditions})"
             yield "other rules of the files rule it out"
             return
         if not self.complete:
-            yield f"unknown: stopped at a limit before it was known whether the constraints clash ({rule})"
+            unknown = "unknown: stopped at a limit before it was known whether the constraints clash"
+            yield f"{unknown} ({conditions})"
             if dropped:
                 yield "without these there is a task tree; a cheaper set may do, or nothing has to be dropped"
                 yield from _constraint_lines(dropped)
             return
         all_constraints = counted(len(self.constraints), "constraint")
         if not self.constraints:
-            yield f"there is a task tree ({rule}); foon-asp solve finds the best"
+            yield f"there is a task tree ({conditions}); foon-asp solve finds the best"
             return
         if not dropped:
             together = " together" * (len(self.constraints) > 1)
-            yield f"no clash: the {all_constraints} can hold{together} ({rule})"
+            yield f"no clash: the {all_constraints} can hold{together} ({conditions})"
             if answer is not None:
                 yield from answer.headlines()
             return
-        size = len(self.smallest_clash)
+        clash_size = len(self.smallest_clash)
         if not self.smallest_proved:
             unknown = "the smallest clash was not found within the limit"
-            yield f"the {all_constraints} cannot hold together ({rule}); {unknown}"
+            yield f"the {all_constraints} cannot hold together ({conditions}); {unknown}"
         elif len(self.constraints) == 1:
-            yield f"1 constraint leaves no task tree: proved ({rule})"
-        elif size == 1:
-            yield f"1 of the {all_constraints} leaves no task tree by itself: proved ({rule})"
+            yield f"1 constraint leaves no task tree: proved ({conditions})"
+        elif clash_size == 1:
+            yield f"1 of the {all_constraints} leaves no task tree by itself: proved ({conditions})"
         else:
-            text = f"{size} of the {all_constraints} cannot hold together"
-            yield f"{text}, and no smaller set: proved ({rule})"
+            text = f"{clash_size} of the {all_constraints} cannot hold together"
+            yield f"{text}, and no smaller set: proved ({conditions})"
         yield from _constraint_lines(self.smallest_clash)
         weight = sum(constraint.weight for constraint in dropped)
-        at = "" if {constraint.weight for constraint in self.constraints} == {1} else f", weight {weight}"
-        yield f"cheapest to drop: {counted(len(dropped), 'constraint')}{at}"
+        weight_text = (
+            "" if {constraint.weight for constraint in self.constraints} == {1} else f", weight {weight}"
+        )
+        yield f"cheapest to drop: {counted(len(dropped), 'constraint')}{weight_text}"
         yield from _constraint_lines(dropped)
         if answer is not None and answer.status is not Status.UNKNOWN:
             claim, *note = answer.headlines()

@@ -102,8 +102,8 @@ def _rule_texts(constraints: Iterable[Constraint]) -> dict[Constraint, str]:
     """Return the text of the rules of each constraint, with those of included files."""
     texts: dict[Constraint, str] = {}
     for constraint in constraints:
-        named = find_constraint(constraint)
-        file = named.file if isinstance(named, LibraryUse) else named
+        definition = find_constraint(constraint)
+        file = definition.file if isinstance(definition, LibraryUse) else definition
         texts[constraint] = file.text if isinstance(file, RuleText) else read_encoding(file).text
     return texts
 

@@ -141,14 +141,18 @@ class Envelope:
         network, own_rates = self._problem.network, self._problem.own_rates
         motions = set(self.motions)
         while motions:
-            others = {unit for unit in self._units if network.motions[unit] in motions}.difference(self._tree)
-            raised_rates = dict.fromkeys(others, Fraction(1)) | dict(own_rates)
+            varied_units = {unit for unit in self._units if network.motions[unit] in motions}.difference(
+                self._tree
+            )
+            raised_rates = dict.fromkeys(varied_units, Fraction(1)) | dict(own_rates)
             outcome, better = self._solve_varied(
                 replace(self._problem, own_rates=raised_rates, as_seen=self._problem)
             )
             if not better or outcome.units is None:
                 return motions if outcome.status is Status.OPTIMAL else set()
-            motions.difference_update(network.motions[unit] for unit in others.intersection(outcome.units))
+            motions.difference_update(
+                network.motions[unit] for unit in varied_units.intersection(outcome.units)
+            )
         return motions
 
     def _solve_varied(self, varied: Problem) -> tuple[Outcome, bool]:

@@ -73,8 +73,10 @@ class ExplainedRule(Value, frozen=True):
         rule, (file, line, *_) = explained.rule, explained.source
         reason = _remark(rule.reason, explained.reason_source)
         beyond = _remark(rule.nonlocality, explained.nonlocality_source)
-        named = explained.use or None
-        return cls(explained.text, file, line, named, rule.kind, rule.one_of, reason, rule.local, beyond)
+        constraint_name = explained.use or None
+        return cls(
+            explained.text, file, line, constraint_name, rule.kind, rule.one_of, reason, rule.local, beyond
+        )
 
     def lines(self, similar: int) -> Iterator[str]:
         """Yield lines with the place, text and effect of a rule, and whether it looks beyond the tree.

@@ -44,9 +44,9 @@ class Flip(NamedTuple):
             if low == high == 0:
                 return "0 %"
             if low > 0:
-                shown = {Root(1, 100 * end).round_down(3) for end in (low, high)}
-                if len(shown) == 1:
-                    return f"{'+' if self.above else '-'}{decimal_text(shown.pop())} %"
+                rounded_percents = {Root(1, 100 * end).round_down(3) for end in (low, high)}
+                if len(rounded_percents) == 1:
+                    return f"{'+' if self.above else '-'}{decimal_text(rounded_percents.pop())} %"
             digits *= 2
 
     def change(self, digits: int) -> tuple[Fraction, Fraction]:

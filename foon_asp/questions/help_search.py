@@ -148,8 +148,8 @@ class CountedHelp:
 
     def best(self, max_helped: int) -> Outcome:
         """Return the best tree with help for at most ``max_helped`` units, without copies of units."""
-        number = self._twins.network.unit_number
-        twins = {number(twin): number(unit) for twin, unit in self._originals.items()}
+        unit_number = self._twins.network.unit_number
+        twins = {unit_number(twin): unit_number(unit) for twin, unit in self._originals.items()}
         settings = self._settings._replace(bounded=assistance_bounds(twins, max_helped))
         outcome = solve(self._twins, _SUCCESS, settings, self._reporter)
         self._reporter = Reporter()  # later searches have other objectives or bounds
@@ -225,8 +225,12 @@ def helped_trees(
             reached = wanted is not None and -_order_key(row)[0] >= wanted
             # a requested number is always solved, since more help may need fewer units
             compared_length = 1 if max_helped is None else 2
-            done = _order_key(row)[:compared_length] == _order_key(with_any_help)[:compared_length]
-            complete = reached or done or with_any_help.units is None or len(rows) - 1 == max_helped
+            more_help_is_vain = (
+                _order_key(row)[:compared_length] == _order_key(with_any_help)[:compared_length]
+            )
+            complete = (
+                reached or more_help_is_vain or with_any_help.units is None or len(rows) - 1 == max_helped
+            )
     except KeyboardInterrupt:
         if not rows:
             raise

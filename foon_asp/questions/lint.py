@@ -93,11 +93,11 @@ class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):
 
         The text or fix of a line of more than 1000 characters is null.
         """
-        short = [
+        shortened = [
             structs.replace(finding, text=_unless_long(finding.text), fix=_unless_long(finding.fix))
             for finding in self.findings
         ]
-        values: Json = plain(structs.replace(self, findings=tuple(short)))
+        values: Json = plain(structs.replace(self, findings=tuple(shortened)))
         return values
 
     def table_rows(self) -> Iterator[Json]:
@@ -228,6 +228,6 @@ def linted_files(paths: Iterable[Path], contents: Iterable[Path] = ()) -> Sequen
 
     ``contents`` are the paths of files whose content is not read from disk.
     """
-    named = list(paths)
-    on_disk = with_tables(named, (file for file, _ in foon_files(named)))
+    path_list = list(paths)
+    on_disk = with_tables(path_list, (file for file, _ in foon_files(path_list)))
     return list(dict.fromkeys([*on_disk, *contents]))

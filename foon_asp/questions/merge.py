@@ -61,8 +61,8 @@ class Merged(Result, frozen=True, kw_only=True, tag=schema_name("merge")):
 
     def show(self) -> Iterator[Block]:
         """Yield one line with the counts; zero prices and zero lines left out are not named."""
-        read = str(self.store or counted(len(self.files), "file", ","))
-        parts = [f"{read}: {counted(self.units, 'unit', ',')} of {self.copies:,} read"]
+        source_text = str(self.store or counted(len(self.files), "file", ","))
+        parts = [f"{source_text}: {counted(self.units, 'unit', ',')} of {self.copies:,} read"]
         parts.append(counted(self.objects, "object node", ","))
         if self.prices:
             parts.append(f"{counted(self.prices, 'price', ',')} of units not in the result")

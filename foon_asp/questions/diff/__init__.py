@@ -67,18 +67,18 @@ def _read_pair(
     reads the data that the trees are about. Without ``goals``, the trees are for the goals that the files
     name. ``containers``: ``None`` for the container rule that a file names, or else the default rule.
     """
-    read: dict[Path, ListedTree | Tree | Foon] = {
+    content_of: dict[Path, ListedTree | Tree | Foon] = {
         file: _read_units_or_data(file) for file in dict.fromkeys(files)
     }
-    listed = {file: content for file, content in read.items() if isinstance(content, ListedTree)}
-    if goals or any(tree.is_tree for tree in listed.values()):
-        dataset = read_data(listed)
-        goals = goals or [goal for tree in listed.values() for goal in tree.goals]
-        for file, tree in listed.items():
-            read[file] = listed_tree(
+    trees = {file: content for file, content in content_of.items() if isinstance(content, ListedTree)}
+    if goals or any(tree.is_tree for tree in trees.values()):
+        dataset = read_data(trees)
+        goals = goals or [goal for tree in trees.values() for goal in tree.goals]
+        for file, tree in trees.items():
+            content_of[file] = listed_tree(
                 dataset, file, tree, goals, containers or tree.containers or DEFAULT_RULE.value
             )
-    a, b = (_named_network(str(file), read[file]) for file in files)
+    a, b = (_named_network(str(file), content_of[file]) for file in files)
     return a, b
 
 

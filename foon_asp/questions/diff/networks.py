@@ -147,8 +147,8 @@ def _amount_differences(
 ) -> Iterator[AmountDifference]:
     """Yield the amounts in which units of both networks differ, in the order of the first network."""
     (a, b), (amounts_a, amounts_b) = networks, amounts
-    for number in range(len(a)) if amounts_a or amounts_b else ():
-        unit = a.unit(number)
+    for unit_id in range(len(a)) if amounts_a or amounts_b else ():
+        unit = a.unit(unit_id)
         if b.unit_id(unit) is None:
             continue
         of_a, of_b = (of_data.get(unit, ALL_ONE) for of_data in amounts)
@@ -156,4 +156,4 @@ def _amount_differences(
             for node in nodes:
                 pair = in_a.get(node, 1), in_b.get(node, 1)
                 if pair[0] != pair[1]:
-                    yield AmountDifference(unit_of(a, number), named_node(a, node), side, *pair)
+                    yield AmountDifference(unit_of(a, unit_id), named_node(a, node), side, *pair)

@@ -175,14 +175,14 @@ def _origins(tree: Tree, goals: Sequence[ObjectNode]) -> dict[ObjectNode, _Origi
     """
     problem = tree.problem
     container_rule = problem.containers, problem.utensils, problem.network
-    needs: dict[object, tuple[ObjectNode, ...]] = {
+    needed_inputs_of: dict[object, tuple[ObjectNode, ...]] = {
         unit: needed_inputs(unit, *container_rule) for unit in tree
     }
     makers = {
         node: unit
         for unit in reversed(tree.units)
         for node in given_outputs(unit, *container_rule)
-        if node not in needs[unit]
+        if node not in needed_inputs_of[unit]
     }
     origins: dict[ObjectNode, _Origin] = {}
     queue = deque(goals)
@@ -190,7 +190,7 @@ def _origins(tree: Tree, goals: Sequence[ObjectNode]) -> dict[ObjectNode, _Origi
         node = queue.popleft()
         if node not in origins:
             origins[node] = problem.at_hand(node) or makers.get(node, False)
-            queue += needs.get(origins[node], ())
+            queue += needed_inputs_of.get(origins[node], ())
     return origins
 
 
