@@ -56,7 +56,10 @@ def read_questions(
 
 
 def files_of_questions(questions: Iterable[BatchQuestion]) -> set[Path]:
-    """Return the paths of the kitchens, stocks and lists of what stays that questions name."""
+    """Return the paths of the kitchens, stocks and lists of what stays that questions name.
+
+    The kitchen ``@starting`` is no file, and left out.
+    """
     names = {getattr(question, key) for question in questions for key in _FILE_KEYS}
     return {Path(name) for name in names - {None, str(STARTING)}}
 

@@ -11,7 +11,7 @@ import click
 from click.core import ParameterSource
 
 from foon_asp.cli import shared_options
-from foon_asp.cli.output import say
+from foon_asp.cli.output import write_remark
 from foon_asp.cli.progress_line import Progress
 from foon_asp.dataset import Dataset
 from foon_asp.deadline import Deadline
@@ -121,7 +121,7 @@ def _subjects(question: Question, command: "_Command", values: Mapping[str, Any]
         if not command.dataset.has_kitchen:
             lines += kitchen_lines(command.dataset, problems, shared_options.is_verbose())
         if lines:
-            say("\n".join(lines))
+            write_remark("\n".join(lines))
     return subjects
 
 

@@ -12,9 +12,9 @@ import click
 from foon_asp import __version__
 from foon_asp.cli.ctrl_c import end_at_ctrl_c, raise_at_ctrl_c
 from foon_asp.cli.exit_code import ExitCode, code_and_message
-from foon_asp.cli.output import drop_output, safe_streams, show_remarks
+from foon_asp.cli.output import flush_or_drop_output, safe_streams, show_remarks
 from foon_asp.cli.verbs import FIRST_VERBS, FOR_PROGRAMS, SHELL_REQUEST, VERBS, verb_command, write_verbs
-from foon_asp.cli.whole_process import BEGAN, keep, leave
+from foon_asp.cli.whole_process import BEGAN, exit_process, keep_until_exit
 from foon_asp.deadline import resend_lost_interrupts
 from foon_asp.errors import FoonWarning, UserError
 
@@ -108,9 +108,9 @@ def main(arguments: list[str] | None = None) -> None:
         except (OSError, UserError) as error:
             code = _report_error(error, debug=False)
         if code is not ExitCode.DONE:
-            drop_output()
+            flush_or_drop_output()
     if arguments is None:
-        leave(int(code))
+        exit_process(int(code))
     sys.exit(int(code))
 
 
@@ -148,12 +148,12 @@ def _report_error(error: BaseException, debug: bool) -> ExitCode:
     With ``debug``, its traceback is printed, too, unless the error is wrong usage or ctrl-C. A closed pipe is
     no error: the remaining output is discarded, and the code is ``DONE``.
     """
-    keep(error)  # with the frames of its traceback, whose memory would take long to free
+    keep_until_exit(error)  # with the frames of its traceback, whose memory would take long to free
     show_remarks(True)
     if debug and not isinstance(error, click.ClickException | click.Abort | KeyboardInterrupt):
         traceback.print_exception(error)
     if isinstance(error, BrokenPipeError):  # the reader of our output has ended, as `head` does
-        drop_output()
+        flush_or_drop_output()
         return ExitCode.DONE
     ignored_output_errors = contextlib.suppress(OSError, UserError)
     if isinstance(error, click.ClickException):

@@ -186,13 +186,13 @@ def write_parts(blocks: Iterable[Block]) -> None:
     stream.write(text)
 
 
-def say(text: str) -> None:
+def write_remark(text: str) -> None:
     """Write a remark to standard error, wrapped to the width of a terminal."""
     width = shutil.get_terminal_size().columns if sys.stderr.isatty() else None
     click.echo(blocks_text(text.split("\n"), width), err=True, nl=False)
 
 
-def say_once(text: str) -> None:
+def write_remark_once(text: str) -> None:
     """Write a remark to standard error, unless the command wrote the same one before."""
     context = click.get_current_context(silent=True)
     written_remarks: set[str] = (
@@ -200,7 +200,7 @@ def say_once(text: str) -> None:
     )
     if text not in written_remarks:
         written_remarks.add(text)
-        say(text)
+        write_remark(text)
 
 
 def with_plain_signs(text: str) -> str:
@@ -211,7 +211,7 @@ def with_plain_signs(text: str) -> str:
     )
 
 
-def drop_output() -> None:
+def flush_or_drop_output() -> None:
     """Flush standard output and error; where this fails, discard what was not written.
 
     Otherwise Python would try to write it at exit, and fail.

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Self
 import click
 
 from foon_asp.asp.reporter import Reporter
-from foon_asp.cli.output import console, say_once
+from foon_asp.cli.output import console, write_remark_once
 from foon_asp.daemon_thread import DaemonThread
 from foon_asp.deadline import Deadline
 from foon_asp.problem import Costs, Objective
@@ -71,7 +71,7 @@ class Progress(Reporter):
 
     def warning(self, message: str) -> None:
         """Print a warning to stderr at once, if the command has not printed it already."""
-        say_once(message)
+        write_remark_once(message)
 
     def statistics(self, text: str) -> None:
         """Print statistics of a search to stderr at once."""

@@ -17,7 +17,7 @@ from foon_asp.cli.exit_code import ExitCode, exit_code_of
 from foon_asp.cli.named_path import WrittenPath
 from foon_asp.cli.output import write_data, write_parts
 from foon_asp.cli.output_file import check_outputs
-from foon_asp.cli.whole_process import keep
+from foon_asp.cli.whole_process import keep_until_exit
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.problem import ITEMS
@@ -110,7 +110,7 @@ def _answer_function(question: Question) -> Callable[..., ExitCode]:
         check_outputs()
         try:
             result = ask(question, values, deadline, form)
-            keep(result)
+            keep_until_exit(result)
         except NoTreeError as error:
             click.echo(str(error), err=True)
             return exit_code_of(error.ending)

@@ -9,7 +9,7 @@ import click
 from foon_asp.cli.click_option import Command, click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath, WrittenPath
-from foon_asp.cli.output import say_once
+from foon_asp.cli.output import write_remark_once
 from foon_asp.cli.progress_line import bytes_bar
 from foon_asp.dataset import Dataset
 from foon_asp.dataset.read_dataset import read_dataset as read_data
@@ -269,5 +269,5 @@ def read_dataset(
     if context:
         context.call_on_close(dataset.close)
     for text in dataset.brief:
-        say_once(text)
+        write_remark_once(text)
     return dataset

@@ -5,8 +5,7 @@ from fractions import Fraction
 from itertools import chain
 from typing import Unpack
 
-from foon_asp.asp import Outcome, Settings, Status
-from foon_asp.asp import solve as find
+from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.dataset.nearby import NearbyProblem, without_reading_more
 from foon_asp.dataset.nearby_optimum import near_goals
 from foon_asp.deadline import Deadline
@@ -163,7 +162,7 @@ def solve_all_goals(
             goal_settings = settings._replace(deadline=Deadline(*each_limits, within=outer))
             nearby = near_goals(goal, chosen, goal_settings)
             if nearby is None:
-                outcome = find(read_deferred(goal), chosen, goal_settings, caller().reporter, solved=solved)
+                outcome = solve(read_deferred(goal), chosen, goal_settings, caller().reporter, solved=solved)
             else:
                 outcome = answer_from_store(nearby, chosen, goal_settings).outcome
             outcomes_of[index].append(outcome)

@@ -11,7 +11,7 @@ from msgspec.structs import replace
 
 from foon_asp.asp import Outcome, Proof, Reporter, Settings, Status
 from foon_asp.asp.assembly import ReachOfRules, reach_of_rules
-from foon_asp.asp.optimum import solve as find
+from foon_asp.asp.optimum import solve
 from foon_asp.dataset.nearby_optimum import least_with_more, near_goals, solve_nearby
 from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, Problem, levels
@@ -506,7 +506,7 @@ def answer_problem(
 
     ``reporter``: ``None`` for that of the caller.
     """
-    return _answer_of(find(problem, objectives, settings, reporter or caller().reporter))
+    return _answer_of(solve(problem, objectives, settings, reporter or caller().reporter))
 
 
 def answer_under_rules(
@@ -563,9 +563,11 @@ def _answer_with_reading(
     problem = read_deferred(problem)
     is_partial = problem.network.object_numbers and problem.items is None and settings.constraints
     if is_partial and settings.replaced is None and reach_of_rules(settings) is ReachOfRules.TREE:
-        unconstrained = find(problem, objectives, settings._replace(constraints=(), constants=()), Reporter())
+        unconstrained = solve(
+            problem, objectives, settings._replace(constraints=(), constants=()), Reporter()
+        )
         if unconstrained.status is Status.OPTIMAL and unconstrained.costs:
-            partial = find(problem, objectives, settings, Reporter())
+            partial = solve(problem, objectives, settings, Reporter())
             order = levels(tuple(objectives))
             least = least_with_more(unconstrained.costs, order)
             if partial.status is Status.OPTIMAL and partial.costs and partial.costs.key(order) <= least:

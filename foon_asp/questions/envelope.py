@@ -65,7 +65,7 @@ class Envelope:
             settings.begun.interrupt()
             self._free_to_rise = set()
 
-    def units(self, motion: str) -> int:
+    def unit_count(self, motion: str) -> int:
         """Return the number of units of the best tree with a motion and without a rate of their own."""
         return self._count_by_motion(self._tree)[motion]
 
@@ -74,10 +74,10 @@ class Envelope:
 
         At a limit or ctrl-C, the end is not proved, and the deadline is interrupted.
         """
-        rate, units = (self._problem.rates or {})[motion], self.units(motion)
-        if above and (rate == 1 or self._unit_counts[motion] == units or motion in self._free_to_rise):
+        rate, unit_count = (self._problem.rates or {})[motion], self.unit_count(motion)
+        if above and (rate == 1 or self._unit_counts[motion] == unit_count or motion in self._free_to_rise):
             return IntervalEnd(None, None)
-        if not above and not units:
+        if not above and not unit_count:
             return IntervalEnd(None, None)
         try:
             if above:

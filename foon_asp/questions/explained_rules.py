@@ -108,7 +108,7 @@ class ExplainedRule(Value, frozen=True):
         return remark.text + ("" if in_same_place else f" ({Source(remark.file, remark.line)})")
 
     @property
-    def likeness(self) -> tuple[bool, str]:
+    def grouping_key(self) -> tuple[bool, str]:
         """The key by which facts are grouped: whether the rule is a fact, and its file and predicate.
 
         All rules that are no facts have the key ``(False, "")``.
@@ -137,7 +137,7 @@ class ExplainedRules(Document, frozen=True, kw_only=True, tag=schema_name("rules
 
         Of similar facts that follow each other, the first is shown and the others are counted.
         """
-        for (is_fact, _), group in groupby(self.rules, lambda rule: rule.likeness):
+        for (is_fact, _), group in groupby(self.rules, lambda rule: rule.grouping_key):
             alike = list(group)
             shown = [(alike[0], len(alike) - 1)] if is_fact else [(rule, 0) for rule in alike]
             for rule, similar in shown:
