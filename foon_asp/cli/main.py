@@ -95,7 +95,8 @@ def main(arguments: list[str] | None = None) -> None:
     """Run a command line, and exit the process with its exit code.
 
     ``arguments`` are the words after ``foon-asp``; ``None`` takes them from the process. Only in that case,
-    limits count from the start of the process, and its memory is not freed at exit.
+    limits count from the start of the process, and its memory is not freed at exit. Output is escaped by
+    :func:`safe_streams`. With ``--quiet``, only errors are written to stderr.
     """
     words = sys.argv[1:] if arguments is None else arguments
     with safe_streams(), resend_lost_interrupts(), warnings.catch_warnings():

@@ -193,7 +193,10 @@ def write_remark(text: str) -> None:
 
 
 def write_remark_once(text: str) -> None:
-    """Write a remark to standard error, unless the command wrote the same one before."""
+    """Write a remark to standard error, unless the command wrote the same remark before.
+
+    Outside of a command, the remark is always written.
+    """
     context = click.get_current_context(silent=True)
     written_remarks: set[str] = (
         set() if context is None else context.find_root().meta.setdefault(_WRITTEN_ONCE, set())

@@ -243,10 +243,10 @@ def read_dataset(
     stand_in_tables: Sequence[Path] = (),
     similar: Sequence[Path] = (),
 ) -> Dataset:
-    """Read the data that the options name; print each warning once.
+    """Read the data that the options name, with measures and tables of stand-ins; print each warning once.
 
-    ``sources`` are networks named as arguments, as in :func:`folder_and_networks`. The data are closed when
-    the command ends.
+    ``sources`` are networks named as arguments, as in :func:`folder_and_networks`. Reading stops at the
+    limits of the command. The data are closed when the command ends.
     """
     folder, network = folder_and_networks(sources, folder, network)
     with reading():

@@ -462,9 +462,11 @@ def _rank_trees(
             complete = True
             break
         if len(trees) == max_trees:
-            complete = max_loss is None
             break
         trees.append(_CostedIds(units, costs))
+        if max_loss is None and len(trees) == max_trees:  # no search for a tree that was not asked for
+            complete = True
+            break
     else:
         complete = ranked.complete
     proved_count = len(trees)

@@ -390,7 +390,8 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
     def _sharing_lines(self) -> Iterator[str]:
         """Yield lines with the costs of each goal by itself, and the units that serve several goals.
 
-        An answer for a single goal has no such lines.
+        An answer for a single goal has no such lines. If the goals were not solved one by one, a line names
+        the option for that. If one of them has no tree, the shared units are left out.
         """
         if not isinstance(self.serves, tuple):
             return

@@ -19,8 +19,8 @@ def trusted_text(user_rules: Rule, of_tree: bool) -> str:
     """Return in words what a certificate assumes of user rules without proof.
 
     The text names the files with their digests, the ready-made constraints and the constants. Then it says
-    which units or sets the rules exclude, require or limit. ``of_tree`` adds that the tree keeps to the
-    rules. Control characters in names are escaped.
+    which units or sets the rules exclude, require or limit, or that no tree keeps to them. ``of_tree`` adds
+    that the tree of the certificate keeps to the rules. Control characters in names are escaped.
     """
     names = [f"{file['name']} (SHA-256 {file['sha256']})" for file in user_rules["files"]]
     names += [*user_rules["library"], *user_rules["constants"]]

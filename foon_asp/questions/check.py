@@ -267,7 +267,7 @@ def check(
             such as a :class:`TaskTree`. Where items are used up, it is a plan, in which a unit may be listed
             several times.
         certificate: Also prove the tree the best, and write the proof. The argument is the path of the file.
-            It is not written for a tree that does not execute or breaks a rule.
+            It is not written for a tree that does not execute, has units of its own, or breaks a rule.
 
     Returns:
         Whether the tree ``executes``, the tree ``in_order``, what stops it, the rules that it ``breaks``, and

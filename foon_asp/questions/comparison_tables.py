@@ -24,14 +24,14 @@ _EXECUTES = {
 }
 _NO_RATIO = " " * len("  1.00×")
 _BETTER = "† better than the proved optimum, as only a tree that does not execute can be"
-_SHARES: dict[str, Callable[[SearchResult], bool | None]] = {
+_PREDICATES: dict[str, Callable[[SearchResult], bool | None]] = {
     "execute": lambda result: result.executes,
     "as listed": lambda result: result.verdict is Verdict.AS_LISTED,
     "when reordered": lambda result: result.verdict is Verdict.REORDERED,
     "never": lambda result: result.verdict is Verdict.NEVER,
     "used up": lambda result: result.runs_used_up,
 }
-_RARE: dict[str, Callable[[SearchResult], bool]] = {
+_RARE_PREDICATES: dict[str, Callable[[SearchResult], bool]] = {
     "(cycle)": lambda result: result.has_cycle,
     "break a rule": lambda result: bool(result.breaks),
     "† smaller": lambda result: result.beats_the_optimum(Objective.UNITS),
@@ -41,7 +41,7 @@ _RARE: dict[str, Callable[[SearchResult], bool]] = {
 def tidy_rows(comparison: Comparison) -> Iterator[Json]:
     """Yield a row for each search of a goal, as plain values by column.
 
-    A row says how the tree executes and which rules it breaks. For each objective, it has the measure of the
+    A row says how the tree executes, which node it lacks, and which rules it breaks. For each objective, it has the measure of the
     tree, the optimum with its status, and the ratio of the two.
     """
     for result in comparison.searches:
@@ -143,18 +143,20 @@ def summary_tables(summaries: Sequence[Summary], proved: bool) -> Iterator[Block
     """
     goal_count = max(len(summary.results) for summary in summaries)
     yield f"{counted(goal_count, 'goal')}; {'every' if proved else 'NOT every'} optimum is proved"
-    rare = {
-        heading: share
-        for heading, share in _RARE.items()
-        if any(map(share, (result for summary in summaries for result in summary.results)))
+    rare_predicates = {
+        heading: predicate
+        for heading, predicate in _RARE_PREDICATES.items()
+        if any(map(predicate, (result for summary in summaries for result in summary.results)))
     }
     rows = []
     for summary in summaries:
         trees = [result for result in summary.results if result.verdict is not None]
-        counts = [sum(map(bool, map(share, trees))) for share in (_SHARES | rare).values()]
+        predicates = (_PREDICATES | rare_predicates).values()
+        counts = [sum(map(bool, map(predicate, trees))) for predicate in predicates]
         shares = (f"{count} ({count / max(len(trees), 1):.1%})" for count in counts)
         rows.append((summary.search, f"{len(trees)} ({len(trees) / goal_count:.1%})", *shares))
-    yield from ("", Table(("search", "with a tree", *_SHARES, *rare), rows, frozenset({0})))
+    headings = ("search", "with a tree", *_PREDICATES, *rare_predicates)
+    yield from ("", Table(headings, rows, frozenset({0})))
     distances = [
         (
             summary.search,

@@ -35,15 +35,15 @@ def complete_docstring(
     if ask.__doc__ is None:  # python -OO
         return None
     text_of = {"problem": _PROBLEM, **texts, **docstring_entries(ask)}
-    written = inspect.cleandoc(ask.__doc__)
-    before, heading, after = written.partition("Parameters:\n")
+    docstring = inspect.cleandoc(ask.__doc__)
+    text_before, heading, text_after = docstring.partition("Parameters:\n")
     if heading:
-        after = after.partition("\n\n")[2]
+        text_after = text_after.partition("\n\n")[2]
     else:
-        before, heading, after = written.partition("Returns:\n")
-        after = heading + after
+        text_before, heading, text_after = docstring.partition("Returns:\n")
+        text_after = heading + text_after
     entries = (_entry(name, text_of[name]) for name in signature.parameters if name in text_of)
-    return f"{before}Parameters:\n{''.join(entries)}\n{after}\n"
+    return f"{text_before}Parameters:\n{''.join(entries)}\n{text_after}\n"
 
 
 def _entry(name: str, text: str) -> str:
