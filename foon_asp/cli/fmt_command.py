@@ -71,15 +71,15 @@ def command(paths: tuple[Path, ...], check: bool, output: Path | None, lenient: 
     return ExitCode.NEGATIVE if check and changed_count else ExitCode.DONE
 
 
-def _report(files: int, changed: int, refused: int, check: bool) -> None:
+def _report(file_count: int, changed_count: int, refused_count: int, check: bool) -> None:
     """Print the numbers of files that changed, were in canonical form, or were not understood, to stderr.
 
     Nothing is printed for a single file. With ``check``, the files have not been changed.
     """
-    if files < 2:
+    if file_count < 2:
         return
     verb = "would change" if check else "changed"
-    counts = [f"{changed} {verb}", f"{files - changed - refused} in canonical form"]
-    if refused:
-        counts.append(f"{refused} not understood")
-    click.echo(f"{files} files: {', '.join(counts)}", err=True)
+    counts = [f"{changed_count} {verb}", f"{file_count - changed_count - refused_count} in canonical form"]
+    if refused_count:
+        counts.append(f"{refused_count} not understood")
+    click.echo(f"{file_count} files: {', '.join(counts)}", err=True)

@@ -132,10 +132,10 @@ def _with_article(kind: str) -> str:
     return _WITH_ARTICLE.get(NameKind(kind), f"a {kind}")
 
 
-def _summary(renaming: Renaming, files: int, written: bool) -> str:
+def _summary(renaming: Renaming, file_count: int, written: bool) -> str:
     """Return a summary of a renaming in words: the mentions, the files, and whether they are written."""
     kind, old, new = renaming.rename
-    mentions = f"{counted(renaming.mentions, 'mention')} in {counted(files, 'file')}"
+    mentions = f"{counted(renaming.mentions, 'mention')} in {counted(file_count, 'file')}"
     text = f"the {kind} {old!r} becomes {new!r}: {mentions}"
     if renaming.already:
         text += (

@@ -60,13 +60,13 @@ class Optima(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("opt
         yield f"The best {trees} ({first.conditions})"
         yield ""
         objective_lists = list(dict.fromkeys(answer.objectives for answer in self.answers))
-        others = [
+        other_objectives = [
             objective for objective in dict.fromkeys(chain(*objective_lists)) if objective not in _ALWAYS
         ]
-        columns = (*_ALWAYS, *others)
+        columns = (*_ALWAYS, *other_objectives)
         rows: list[list[str | Cell]] = []
-        for goal, equal in self._by_goal():
-            for index, answers in enumerate(equal):
+        for goal, answer_groups in self._by_goal():
+            for index, answers in enumerate(answer_groups):
                 cells = _cells(answers, len(objective_lists), columns)
                 rows.append([Cell("" if index else goal, "strong"), *cells])
         yield Table(
@@ -86,8 +86,8 @@ class Optima(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("opt
             rows = goals.setdefault(answer.goals, {})
             rows.setdefault((answer.status, answer.costs), []).append(answer)
         for rows in goals.values():
-            equal = list(rows.values())
-            yield " + ".join(goal.label for goal in equal[0][0].goals), equal
+            answer_groups = list(rows.values())
+            yield " + ".join(goal.label for goal in answer_groups[0][0].goals), answer_groups
 
     def __repr__(self) -> str:
         return f"<Optima: {len(self.answers)} answers>"

@@ -41,8 +41,8 @@ _RARE_PREDICATES: dict[str, Callable[[SearchResult], bool]] = {
 def tidy_rows(comparison: Comparison) -> Iterator[Json]:
     """Yield a row for each search of a goal, as plain values by column.
 
-    A row says how the tree executes, which node it lacks, and which rules it breaks. For each objective, it has the measure of the
-    tree, the optimum with its status, and the ratio of the two.
+    A row says how the tree executes, which node it lacks, and which rules it breaks. For each objective, it
+    has the measure of the tree, the optimum with its status, and the ratio of the two.
     """
     for result in comparison.searches:
         missing = result.stuck_at if result.obstacle is None else result.obstacle.missing

@@ -34,7 +34,10 @@ class Agreement(Value, frozen=True):
 
     @classmethod
     def of(cls, sides: Sequence[Sequence[object]]) -> Self:
-        """Return the agreement of two sets, which ``sides`` has as sequences without repeats."""
+        """Return the agreement of two sets, which ``sides`` has as sequences without repeats.
+
+        For two empty sets, both coefficients are 1.
+        """
         a, b = map(len, sides)
         both = len(set(sides[0]).intersection(sides[1]))
         jaccard, f1 = (Fraction(both, a + b - both), Fraction(2 * both, a + b)) if a + b else (1, 1)
