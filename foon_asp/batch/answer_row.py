@@ -8,7 +8,7 @@ from msgspec.structs import asdict, replace
 
 from foon_asp.asp import Outcome, Settings, solve
 from foon_asp.asp.assembly import need_whole_network
-from foon_asp.batch.batch_question import Asker, BatchQuestion
+from foon_asp.batch.batch_question import BatchQuestion, OpenData
 from foon_asp.comparison.rows_file import RowForm
 from foon_asp.dataset.nearby_optimum import near_goals, solve_nearby
 from foon_asp.deadline import Deadline, LimitError
@@ -28,7 +28,8 @@ class AnswerRow(BatchQuestion, frozen=True, kw_only=True):
     Attributes:
         error: The error or the limit that left no tree; null if there was none.
         proof: The kind of proof; null if nothing is proved.
-        costs: The costs of the tree by every objective, null if unknown, and its ingredients.
+        costs: The costs of the tree by objective, and its number of ingredients; a cost that is not known is
+            null.
         lower_bound: By objective, the best value that a tree can still have.
         runs_used_up: Whether the tree runs where items are used up; null without a tree, and if that is not
             known.
@@ -55,19 +56,19 @@ ANSWERS = RowForm("batch-row", plain, lambda row: read_plain(AnswerRow, row), la
 
 
 def answer_row(
-    asker: Asker, question: BatchQuestion, memory_limit: int | None = None, settings: Settings | None = None
+    data: OpenData, question: BatchQuestion, memory_limit: int | None = None, settings: Settings | None = None
 ) -> AnswerRow:
     """Return the row with the answer of a question; a user error or a bug becomes the status ``failed``.
 
-    ``settings`` have the user rules. ``memory_limit`` is in bytes. If a limit leaves no tree, the field
-    ``error`` names it.
+    ``settings`` have the user rules; their deadline is replaced by one with the time limit of the question.
+    ``memory_limit`` is in bytes. If a limit leaves no tree, the field ``error`` names the limit.
     """
     began = time.perf_counter()
     try:
         deadline = Deadline(question.time_limit, memory_limit)
         settings = (settings or Settings())._replace(deadline=deadline)
         with deadline.watched("reading", late=True):
-            problem = asker.problem(question)
+            problem = data.problem(question)
         objectives = parse_objectives([question.objective], problem.measures)
         if problem.stand_ins is not None:
             objectives = with_dissimilarity(objectives)
@@ -95,12 +96,15 @@ def failed_row(question: BatchQuestion, error: str) -> AnswerRow:
 
 
 def _row(question: BatchQuestion, **answer: Any) -> AnswerRow:
-    """Return the row of a question with some fields of its answer."""
+    """Return the row of a question with those fields of its answer that are named."""
     return AnswerRow(**asdict(question), **answer)
 
 
 def _row_of_outcome(question: BatchQuestion, outcome: Outcome) -> AnswerRow:
-    """Return the row of a question from the outcome of the solver."""
+    """Return the row of a question with the outcome of the solver.
+
+    For a tree, it is also found whether the tree runs where items are used up.
+    """
     problem, units = outcome.problem, outcome.units
     row = _row(
         question,

@@ -30,7 +30,7 @@ def answer_columns(objectives: Iterable[Objective]) -> Iterator[tuple[str, Any]]
     """Yield the name and type of each column: the fields of a row, with costs and bounds by objective.
 
     A column is named ``costs.units``. A number that may be a fraction is a decimal; another column ending in
-    ``_exact`` has the exact number as text.
+    ``_exact`` has the exact number as text. A column ``costs.ingredients`` follows the other costs.
     """
     objectives = tuple(objectives)
     for field in msgspec.structs.fields(AnswerRow):
@@ -50,7 +50,7 @@ def check_table(file: Path, rows: Path) -> None:
     """Raise :class:`UserError` if a table cannot be written into ``file``, or would replace another file.
 
     Parquet needs pyarrow. An existing file may be replaced only if the file ``rows``, from which the table is
-    made, exists, too.
+    made, exists as well.
     """
     if file.suffix == ".parquet":
         try:
@@ -67,15 +67,18 @@ def check_table(file: Path, rows: Path) -> None:
 
 
 def write_table(file: Path, rows: Iterable[AnswerRow], objectives: Iterable[Objective]) -> None:
-    """Write rows into a file: CSV if it ends in ``.csv``, else Parquet; an existing file is replaced."""
-    flat = [
+    """Write rows into a file: CSV if its name ends in ``.csv``, else Parquet; an existing file is replaced.
+
+    Goals and amounts are lists, also for a single goal.
+    """
+    flat_rows = [
         flat_row(plain(row)) | {"goal": list(row.goals), "amount": list(row.amounts) or None} for row in rows
     ]
     types = dict(answer_columns(objectives))
     if file.suffix == ".csv":
-        write_whole(file, csv_text(flat, list(types)).encode("utf-8", "surrogatepass"))
+        write_whole(file, csv_text(flat_rows, list(types)).encode("utf-8", "surrogatepass"))
     else:
-        write_whole(file, _parquet_bytes(flat, types))
+        write_whole(file, _parquet_bytes(flat_rows, types))
 
 
 def _parquet_bytes(rows: list[Json], types: dict[str, Any]) -> bytes:

@@ -44,28 +44,31 @@ class BatchQuestion(Value, frozen=True):
 
     @property
     def goals(self) -> tuple[str, ...]:
-        """The goals that one tree makes, as a tuple, also of a single goal."""
+        """The goals that one tree makes; a single goal is in a tuple of one."""
         return (self.goal,) if isinstance(self.goal, str) else self.goal
 
     @property
     def amounts(self) -> tuple[int, ...]:
-        """The stated number of copies of each goal, as a tuple; empty if none is stated."""
+        """The number of copies wanted of each goal; empty if the question states none."""
         return (self.amount,) if isinstance(self.amount, int) else self.amount or ()
 
 
-class Asker(Protocol):
-    """Data that are open, and turn any number of questions into problems."""
+class OpenData(Protocol):
+    """Data that a process has opened, and that turn questions into problems."""
 
     def goals_of_word(self, word: str, containers: ContainerRule, kitchen: str | None) -> Sequence[str]:
-        """Return the goals that the word ``@goals`` or ``@makeable`` stands for, in one-line notation."""
+        """Return the goals that the word ``@goals`` or ``@makeable`` stands for, in one-line notation.
+
+        ``kitchen``: a file or ``@starting``; ``None`` for the kitchen of the data.
+        """
 
     def items(self, question: BatchQuestion) -> str:
-        """Return ``lasting`` or ``used-up``: the default for a question that does not say it."""
+        """Return ``lasting`` or ``used-up``: the value of ``items`` for a question that has none."""
 
     def problem(self, question: BatchQuestion) -> Problem:
         """Return the problem of a question; raises :class:`UserError` for an unknown goal or kitchen."""
 
 
-Opener = Callable[[], Asker]
+Opener = Callable[[], OpenData]
 """A function that opens the data, once in each worker. It can be pickled and hashed; equal functions open
 equal data."""

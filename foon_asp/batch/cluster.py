@@ -8,7 +8,7 @@ from itertools import islice
 
 from foon_asp.asp import Settings
 from foon_asp.batch.answer_row import AnswerRow, answer_row, failed_row
-from foon_asp.batch.batch_question import Asker, BatchQuestion, Opener
+from foon_asp.batch.batch_question import BatchQuestion, OpenData, Opener
 from foon_asp.errors import UserError
 
 _PATIENCE = "10s"  # time limit for an answer from the scheduler
@@ -27,10 +27,11 @@ def answer_on_cluster(
     worker keeps the data open until a question about other data comes. The files need the same names on every
     worker.
 
-    If a task fails, each of its questions is asked again in a task of its own. If the workers of a question
-    die repeatedly, another question on the same worker may be the cause. The question is then asked while no
-    other one runs on the cluster; if its worker dies again, its row says so. Raises :class:`UserError` if
-    there is no scheduler, or Dask is not installed.
+    A task has up to 32 questions. If it fails, each of its questions is asked again in a task of its own. If
+    the workers of a question die repeatedly, another question on the same worker may be the cause. The
+    question is then asked while no other one runs on the cluster; if its worker dies again, its row says so.
+    Any other failure of a single question also becomes its row. Raises :class:`UserError` if there is no
+    scheduler, or Dask is not installed.
     """
     try:
         from distributed import Client, KilledWorker, as_completed  # noqa: PLC0415 (an extra, slow to import)
@@ -49,13 +50,13 @@ def answer_on_cluster(
         running = as_completed()
 
         def submit(chunk: tuple[BatchQuestion, ...]) -> None:
-            """Submit a task with some questions, and record its questions by the key of the task."""
+            """Submit a task with the questions of a chunk, and store the chunk by the key of the task."""
             future = client.submit(_answer_first_questions, opener, chunk, memory_limit, settings, pure=False)
             chunk_of[future.key] = chunk
             running.add(future)
 
         def submit_ahead() -> None:
-            """Submit tasks until each thread has two on the cluster, first questions to be asked again."""
+            """Submit tasks until the cluster has two for each thread; those to be asked again come first."""
             while len(chunk_of) < max_submitted:
                 # several in a task, for each of which Dask takes some milliseconds
                 chunk = retries.popleft() if retries else tuple(islice(waiting, 32))
@@ -85,19 +86,19 @@ def answer_on_cluster(
 def _answer_first_questions(
     opener: Opener, chunk: tuple[BatchQuestion, ...], memory_limit: int | None, settings: Settings | None
 ) -> list[AnswerRow]:
-    """Return the rows of the first questions of a chunk: as many as begin within half a second.
+    """Return the rows of the first questions of a chunk, those that can begin within half a second.
 
-    The first question is always answered.
+    The first question is always answered. The caller asks the other questions again.
     """
-    asker = _open_cached(opener)
+    data = _open_cached(opener)
     began = time.monotonic()
-    rows = [answer_row(asker, chunk[0], memory_limit, settings)]
+    rows = [answer_row(data, chunk[0], memory_limit, settings)]
     while len(rows) < len(chunk) and time.monotonic() - began < 0.5:
-        rows.append(answer_row(asker, chunk[len(rows)], memory_limit, settings))
+        rows.append(answer_row(data, chunk[len(rows)], memory_limit, settings))
     return rows
 
 
 @functools.lru_cache(maxsize=1)
-def _open_cached(opener: Opener) -> Asker:
-    """Return open data; the last ones opened are kept, and returned again for an equal opener."""
+def _open_cached(opener: Opener) -> OpenData:
+    """Return open data; the data opened last are kept, and returned again for an equal opener."""
     return opener()

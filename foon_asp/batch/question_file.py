@@ -8,7 +8,7 @@ from pathlib import Path
 
 import msgspec
 
-from foon_asp.batch.batch_question import Asker, BatchQuestion
+from foon_asp.batch.batch_question import BatchQuestion, OpenData
 from foon_asp.errors import UserError
 from foon_asp.network import STARTING, Source, counted
 from foon_asp.problem import ITEMS, ContainerRule, parse_objectives
@@ -56,17 +56,20 @@ def read_questions(
 
 
 def files_of_questions(questions: Iterable[BatchQuestion]) -> set[Path]:
-    """Return the paths of the kitchens, stocks and lists of what stays that questions name."""
+    """Return the paths of the kitchens, stocks and lists of what stays that questions name.
+
+    The kitchen ``@starting`` is no file, and left out.
+    """
     names = {getattr(question, key) for question in questions for key in _FILE_KEYS}
     return {Path(name) for name in names - {None, str(STARTING)}}
 
 
-def expand_questions(questions: Iterable[BatchQuestion], asker: Asker) -> Iterator[BatchQuestion]:
+def expand_questions(questions: Iterable[BatchQuestion], data: OpenData) -> Iterator[BatchQuestion]:
     """Yield every question once, with ``@goals`` and ``@makeable`` replaced by one goal after another.
 
-    A question that does not say whether items are used up gets the default of the data.
+    A question that does not say whether items are used up gets what ``data.items`` returns.
     """
-    goals_of_word = functools.cache(asker.goals_of_word)
+    goals_of_word = functools.cache(data.goals_of_word)
     seen: set[BatchQuestion] = set()
     for question in questions:
         goals: Iterable[str | tuple[str, ...]] = (question.goal,)
@@ -75,7 +78,7 @@ def expand_questions(questions: Iterable[BatchQuestion], asker: Asker) -> Iterat
         for goal in goals:
             expanded = msgspec.structs.replace(question, goal=goal)
             if expanded.items is None:
-                expanded = msgspec.structs.replace(expanded, items=asker.items(expanded))
+                expanded = msgspec.structs.replace(expanded, items=data.items(expanded))
             if expanded not in seen:
                 seen.add(expanded)
                 yield expanded
@@ -84,7 +87,9 @@ def expand_questions(questions: Iterable[BatchQuestion], asker: Asker) -> Iterat
 def _questions_of_line(value: object, time_limit: float | None) -> Iterator[BatchQuestion]:
     """Yield a question for every combination of the values of a line, goals varying fastest.
 
-    Raises :class:`ValueError` for a wrong value, and for keys that do not go together.
+    ``value`` is the line as read from JSON. ``time_limit`` is for a line without one. A list of a single goal
+    becomes the goal. With amounts, items are used up. Raises :class:`ValueError` for a wrong value, and for
+    keys that do not go together.
     """
     if not isinstance(value, dict) or "goal" not in value:
         raise ValueError('expected an object such as {"goal": "ice", "objective": ["units", "success"]}')
@@ -131,9 +136,9 @@ def _as_list(value: object) -> list[object]:
 
 
 def _with_file_paths(question: BatchQuestion, folder: Path) -> BatchQuestion:
-    """Return the question with ``folder`` before its file names; ``@starting`` stays."""
-    named = {key: name for key in _FILE_KEYS if (name := getattr(question, key)) is not None}
-    files = {
-        key: str(folder / name) for key, name in named.items() if (key, name) != ("kitchen", str(STARTING))
+    """Return the question with its file names relative to ``folder``; the kitchen ``@starting`` stays."""
+    names = {key: name for key in _FILE_KEYS if (name := getattr(question, key)) is not None}
+    paths = {
+        key: str(folder / name) for key, name in names.items() if (key, name) != ("kitchen", str(STARTING))
     }
-    return msgspec.structs.replace(question, **files)
+    return msgspec.structs.replace(question, **paths)

@@ -40,29 +40,35 @@ class RunSummary(Document, frozen=True, kw_only=True, tag=schema_name("batch")):
 
     @classmethod
     def of(
-        cls, questions: int, before: Sequence[AnswerRow], now: Sequence[AnswerRow], seconds: float
+        cls,
+        question_count: int,
+        earlier_rows: Sequence[AnswerRow],
+        new_rows: Sequence[AnswerRow],
+        seconds: float,
     ) -> Self:
         """Return the summary of a run.
 
-        ``before`` are the rows of an earlier run, ``now`` those of this run, which took ``seconds``.
+        ``earlier_rows`` are the rows of an earlier run, ``new_rows`` those of this run, which took
+        ``seconds``.
         """
-        durations = [row.seconds for row in now if row.seconds is not None]
+        durations = [row.seconds for row in new_rows if row.seconds is not None]
+        proof_counts = Counter(row.proof for row in new_rows if row.proof is not None)
         summary = cls(
-            questions=questions,
-            answered_before=len(before),
-            answered=len(now),
-            statuses=dict(sorted(Counter(row.status for row in (*before, *now)).items())),
-            proofs=dict(sorted(Counter(row.proof for row in now if row.proof is not None).items())),
+            questions=question_count,
+            answered_before=len(earlier_rows),
+            answered=len(new_rows),
+            statuses=dict(sorted(Counter(row.status for row in (*earlier_rows, *new_rows)).items())),
+            proofs=dict(sorted(proof_counts.items())),
             seconds_median=statistics.median(durations) if durations else None,
             seconds_worst=max(durations, default=None),
             seconds=round(seconds, 3),
         )
-        return summary.knowing(errors=[row for row in now if row.error is not None])
+        return summary.knowing(errors=[row for row in new_rows if row.error is not None])
 
     def show(self) -> Iterator[Block]:
-        """Return the numbers of answers and proofs, the times, and the first three rows with an error."""
-        before = f", {self.answered_before:,} of them answered before" if self.answered_before else ""
-        yield counted(self.questions, "question", ",") + before
+        """Yield the numbers of answers and proofs, the times, and the first three rows with an error."""
+        earlier_text = f", {self.answered_before:,} of them answered before" if self.answered_before else ""
+        yield counted(self.questions, "question", ",") + earlier_text
         yield f"in total: {_counts_text(self.statuses, '') or 'none'}"
         if self.answered:
             yield f"answered {self.answered:,} in {self.seconds:.1f} s"
@@ -75,6 +81,6 @@ class RunSummary(Document, frozen=True, kw_only=True, tag=schema_name("batch")):
             yield f"... and {failed - 3} more failed: see their rows"
 
 
-def _counts_text(counts: dict[str, int], by: str) -> str:
-    """Return counts in words: ``3 by clingo, 1 by search``; ``by`` is the text before each name."""
-    return ", ".join(f"{count:,} {by}{name}" for name, count in counts.items())
+def _counts_text(counts: dict[str, int], prefix: str) -> str:
+    """Return counts in words: ``3 by clingo, 1 by search``; ``prefix`` is the text before each name."""
+    return ", ".join(f"{count:,} {prefix}{name}" for name, count in counts.items())

@@ -23,11 +23,11 @@ def answer_all(
     Each process opens the data for itself. ``memory_limit`` is in bytes for each process. A process is
     replaced if it dies, or if it has not answered ``grace`` seconds after the time limit of its question. The
     row of the question then says so. If the data cannot be opened, each row has the message of the
-    :class:`UserError`; so the caller should open the data once before.
+    :class:`UserError`; so the caller should open the data once in advance. Raises other errors of a process.
     """
 
     def seconds(question: BatchQuestion) -> float | None:
-        """Return after how many seconds a process counts as late; ``None`` without a time limit."""
+        """Return the seconds after which a process counts as late; ``None`` without a time limit."""
         return None if question.time_limit is None else question.time_limit + grace
 
     start_worker = partial(_answer_function, opener, memory_limit, settings)
@@ -45,5 +45,5 @@ def answer_all(
 def _answer_function(
     opener: Opener, memory_limit: int | None, settings: Settings | None
 ) -> "partial[AnswerRow]":
-    """Open the data in a worker, and return the function that answers a question."""
+    """Open the data in a worker, and return the function from a question to its row."""
     return partial(answer_row, opener(), memory_limit=memory_limit, settings=settings)

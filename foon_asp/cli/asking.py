@@ -11,7 +11,7 @@ import click
 from click.core import ParameterSource
 
 from foon_asp.cli import shared_options
-from foon_asp.cli.output import say
+from foon_asp.cli.output import write_remark
 from foon_asp.cli.progress_line import Progress
 from foon_asp.dataset import Dataset
 from foon_asp.deadline import Deadline
@@ -49,9 +49,9 @@ def ask(
 ) -> Result:
     """Read the data that a command names, call its question, and return the result.
 
-    ``values`` are the values of all options by name. ``form`` is the chosen format of the result; ``None`` is
-    the default. If no goal is named and several are assumed, the question is called for each of them. The
-    result is then an :class:`EachGoal`.
+    ``values`` are the values of all options by name. ``form`` is the chosen format of the result, or ``None``
+    for the default format. If no goal is named and there are several, the question is called for each one,
+    and the result is an :class:`EachGoal`. Progress is shown at a terminal.
     """
     option_names = {option.name for option in question.options}
     command = _Command({name: value for name, value in values.items() if name not in option_names})
@@ -81,24 +81,24 @@ def _warn_of_measures(command: "_Command", values: Mapping[str, Any]) -> None:
         measures_of.setdefault(measure.place, []).append(measure.name)
     for file, names in measures_of.items():
         if chosen_names.isdisjoint(names):
-            listed = " or ".join(f"--objective {name}" for name in names)
-            click.echo(
-                f"{file}: warning: no objective is its measure, so it has no effect; add {listed}", err=True
-            )
+            objective_options = " or ".join(f"--objective {name}" for name in names)
+            warning = "no objective is its measure, so it has no effect; add"
+            click.echo(f"{file}: warning: {warning} {objective_options}", err=True)
 
 
 def _subjects(question: Question, command: "_Command", values: Mapping[str, Any]) -> list[tuple[object, ...]]:
     """Return the first arguments of each call of a question, such as ``(problem,)``.
 
-    There is one call, or one for each of several assumed goals. Assumed goals and kitchen items are printed.
+    There is one call, or one for each of several goals if the command names none. If a command names no goals
+    or no data, a file with a tree may name them. Assumed goals and kitchen items are printed to stderr.
     """
     problem_options = values_with_role(question, values, Role.PROBLEM)
     tree = values.get("tree")
     if question.pose is not pose_plan and tree is not None and tree.is_file():  # a pipe is read once
-        listed = read_answer(tree)
-        data_for_trees(command, {tree: listed})
+        answer = read_answer(tree)
+        data_for_trees(command, {tree: answer})
         if problem_options.get("goals_named") == ():
-            problem_options["goals_named"] = tuple(map(str, listed.goals))
+            problem_options["goals_named"] = tuple(map(str, answer.goals))
     # the question itself reports them, or has none
     reports_goals = question.pose is pose_without_data or GOAL_OF_PLAN in question.options
     unnamed = not reports_goals and problem_options.get("goals_named") == ()
@@ -121,12 +121,15 @@ def _subjects(question: Question, command: "_Command", values: Mapping[str, Any]
         if not command.dataset.has_kitchen:
             lines += kitchen_lines(command.dataset, problems, shared_options.is_verbose())
         if lines:
-            say("\n".join(lines))
+            write_remark("\n".join(lines))
     return subjects
 
 
 def _refuse_one_file(question: Question, values: Mapping[str, Any]) -> None:
-    """Raise :class:`UserError` where the results for several goals would be written into one file."""
+    """Raise :class:`UserError` if the results for several goals would be written into one file.
+
+    That is so for a question whose result may be a file, and for a command with ``--certificate``.
+    """
     files = [values.get("output"), values.get("certificate")]
     if question.suffixes or any(files):
         raise UserError(
@@ -137,17 +140,18 @@ def _refuse_one_file(question: Question, values: Mapping[str, Any]) -> None:
 class _Command:
     """The current command of click, as :class:`foon_asp.questions.posing.Command` describes commands.
 
-    ``data`` are the values of the options of :func:`foon_asp.cli.shared_options.read_dataset` by name.
+    ``data_options`` are the values of the options of :func:`foon_asp.cli.shared_options.read_dataset` by
+    name.
     """
 
-    def __init__(self, data: dict[str, Any]) -> None:
-        self._data = data
+    def __init__(self, data_options: dict[str, Any]) -> None:
+        self._data_options = data_options
         self._context = click.get_current_context()
 
     @cached_property
     def dataset(self) -> Dataset:
         """The data that the options name, read at the first access."""
-        return shared_options.read_dataset(**self._data)
+        return shared_options.read_dataset(**self._data_options)
 
     @property
     def read_seconds(self) -> float | None:
@@ -165,18 +169,18 @@ class _Command:
     @property
     def names_data(self) -> bool:
         """Whether the command names a network, or a folder of data."""
-        return any(self._data.get(option) for option in ("sources", "folder", "network"))
+        return any(self._data_options.get(option) for option in ("sources", "folder", "network"))
 
     @property
     def level(self) -> int:
         """The level at which object nodes are compared."""
-        level: int = self._data["level"]
+        level: int = self._data_options["level"]
         return level
 
     @property
     def names_measures(self) -> bool:
         """Whether the command names files of measures."""
-        return bool(self._data.get("measures"))
+        return bool(self._data_options.get("measures"))
 
     def given(self, option: str) -> bool:
         """Return whether the value of an option is from the command line, and no default."""
@@ -185,7 +189,7 @@ class _Command:
     def add_sources(self, sources: Sequence[Path]) -> None:
         """Add networks to those that the command names; ``dataset`` then reads the data again."""
         if sources:
-            self._data["sources"] = (*self._data.get("sources", ()), *sources)
+            self._data_options["sources"] = (*self._data_options.get("sources", ()), *sources)
             self.__dict__.pop("dataset", None)
 
     def reading(self) -> AbstractContextManager[object]:

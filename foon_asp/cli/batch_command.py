@@ -88,19 +88,23 @@ def command(
         sources, data["folder"], data["network"]
     )
     measures = measure_names(data)
-    lines = read_questions(questions, time_limit, measures)
-    files = files_of_questions(lines)
+    unexpanded_questions = read_questions(questions, time_limit, measures)
+    files = files_of_questions(unexpanded_questions)
     refuse_inputs(results_file, files)
     opening = Opening(tuple(data.items()), data_digest(data, files))
     opened = opening(quiet=False)
-    distinct_questions = list(expand_questions(lines, opened))
+    distinct_questions = list(expand_questions(unexpanded_questions, opened))
 
     def warn(message: str) -> None:
         """Print a warning to standard error."""
         click.echo(message, err=True)
 
     settings = Settings(constraints, encodings, constants)
-    common = {"data": opening.digest, "level": data["level"], **rules_digest(settings, warn, opened.example)}
+    run_settings = {
+        "data": opening.digest,
+        "level": data["level"],
+        **rules_digest(settings, warn, opened.example),
+    }
     rows_file = results_file
     if results_file.suffix in TABLE_SUFFIXES:
         rows_file = results_file.with_name(f"{results_file.name}.jsonl")
@@ -108,9 +112,9 @@ def command(
     answered: list[AnswerRow] = []
     interrupted = False
     began = time.monotonic()
-    with RowsFile(rows_file, ANSWERS, common) as results:
-        for text in results.duplicate_warnings:
-            warn(text)
+    with RowsFile(rows_file, ANSWERS, run_settings) as results:
+        for warning in results.duplicate_warnings:
+            warn(warning)
         answered_before = [
             results.done[question] for question in distinct_questions if question in results.done
         ]

@@ -25,21 +25,21 @@ from foon_asp.text.object_list import read_object_list
 class Opening:
     """A function that opens the data of a batch, and that can be sent to other processes.
 
-    ``named``: name and value of each option for data. ``digest``: a digest of the contents of the files.
-    Equal openings open the same data.
+    ``options``: name and value of each option for data.
+    ``digest``: a digest of the contents of the files, by which equal openings open the same data.
     """
 
-    named: tuple[tuple[str, Any], ...]
+    options: tuple[tuple[str, Any], ...]
     digest: str
 
     def __call__(self, quiet: bool = True) -> "BatchData":
-        """Read the data; ``quiet`` suppresses the warnings, which the first process has shown already."""
+        """Read and return the data; ``quiet`` drops warnings, which the first process has shown already."""
         with contextlib.redirect_stderr(io.StringIO()) if quiet else contextlib.nullcontext():
-            return BatchData(shared_options.read_dataset(**dict(self.named)))
+            return BatchData(shared_options.read_dataset(**dict(self.options)))
 
 
 class BatchData:
-    """The data of a batch, with a dataset for each kitchen that was read so far."""
+    """The data of a batch, with a dataset for each kitchen that questions have named so far."""
 
     def __init__(self, dataset: Dataset) -> None:
         self._datasets: dict[str | None, Dataset] = {None: dataset}
@@ -74,7 +74,7 @@ class BatchData:
 
     @property
     def example(self) -> Problem:
-        """A problem over the data for any goal, on which the rules for all questions are checked first."""
+        """A problem over the data with an arbitrary goal, to check the rules for all questions on it."""
         return self._datasets[None].problem((0,), "strict")
 
     def problem(self, question: BatchQuestion) -> Problem:
@@ -90,9 +90,10 @@ class BatchData:
         return dataset.nearby(goals, question.containers, items)
 
     def _dataset_with_kitchen(self, kitchen: str | None) -> Dataset:
-        """Return the dataset with a kitchen, which is read once.
+        """Return the dataset with a kitchen; the file of a kitchen is read once.
 
-        ``kitchen`` is the path of a file, or ``@starting``; ``None`` is the kitchen of the data.
+        ``kitchen`` is the path of a file, ``@starting`` for the starting kitchen, or ``None`` for the kitchen
+        of the data.
         """
         if kitchen is not None and kitchen not in self._datasets:
             dataset = self._datasets[None]
@@ -104,9 +105,9 @@ class BatchData:
         return self._datasets[kitchen]
 
 
-def measure_names(named: dict[str, Any]) -> Collection[str]:
-    """Return the names of the measures in the files of ``--measure``; ``named`` has options by name."""
-    files = named["measures"]
+def measure_names(options: dict[str, Any]) -> Collection[str]:
+    """Return the names of the measures in the files of ``--measure``; ``options`` has values by name."""
+    files = options["measures"]
     if not files:
         return ()
     from foon_asp.rules.measure import read_measures
@@ -114,27 +115,28 @@ def measure_names(named: dict[str, Any]) -> Collection[str]:
     return read_measures(files)
 
 
-def data_digest(named: dict[str, Any], question_files: Iterable[Path]) -> str:
-    """Return 16 hexadecimal digits of a digest of all files that the options and the questions name.
+def data_digest(options: dict[str, Any], question_files: Iterable[Path]) -> str:
+    """Return 16 hexadecimal digits of a digest of the contents of all files that options and questions name.
 
-    Whether stand-ins are allowed, and whether the kitchen is the starting one, change the digest, too. Raises
+    ``options`` has values by name. The digest also depends on whether stand-ins are allowed, and on whether
+    the kitchen is the starting one; it does not depend on ``level`` and ``lenient``. Raises
     :class:`UserError` for a pipe, which the processes could not read again.
     """
     others = {"level", "lenient", "measures", "stand_ins", "stand_in_tables", "similar"}
-    files = find_data(**{key: value for key, value in named.items() if key not in others})
-    total = hashlib.sha256(b"stand-ins" if named["stand_ins"] else b"")
+    files = find_data(**{key: value for key, value in options.items() if key not in others})
+    digest = hashlib.sha256(b"stand-ins" if options["stand_ins"] else b"")
     if is_starting(files.kitchen):  # its answers are not those of an empty kitchen
-        total.update(str(STARTING).encode())
+        digest.update(str(STARTING).encode())
     for file in (
         *files.network,
         *(table for table in files[1:] if table not in {None, STARTING}),
         *sorted(set(question_files)),
-        *named["measures"],
-        *named["similar"],
-        *named["stand_in_tables"],
+        *options["measures"],
+        *options["similar"],
+        *options["stand_in_tables"],
     ):
         if not file.is_file():
             raise UserError(f"{file}: expected a file, since every process reads it again")
         with file.open("rb") as opened:
-            total.update(hashlib.file_digest(opened, "sha256").digest())
-    return total.hexdigest()[:16]
+            digest.update(hashlib.file_digest(opened, "sha256").digest())
+    return digest.hexdigest()[:16]

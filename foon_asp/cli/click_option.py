@@ -40,8 +40,8 @@ def _parse_soft(
     return parse_weights(value, parameter.opts[0])
 
 
-def _constraint(text: str) -> Constraint:
-    """Return the constraint that a value of ``--constraint`` names: a file, or a ready-made one."""
+def _parse_constraint(text: str) -> Constraint:
+    """Return the constraint that a value of ``--constraint`` names: a file, or a ready-made constraint."""
     return named_constraint(text, NamedPath)
 
 
@@ -58,7 +58,7 @@ def _split_sources(
 
 
 def _complete_from_data(context: click.Context, parameter: click.Parameter, incomplete: str) -> list[str]:
-    """Return the completions of an incomplete word that names something in the data."""
+    """Return the completions of the incomplete value of an option, from the data that the command names."""
     from foon_asp.cli.completed_words import completed_words
 
     return completed_words(context, parameter, incomplete)
@@ -81,10 +81,11 @@ def click_options(*options: Option) -> Callable[[Command], Command]:
 def click_option(option: Option) -> Callable[[Command], Command]:
     """Return a decorator that adds an option of a question as a parameter of click.
 
-    A positional option becomes an argument. The help of a repeatable one says that it is.
+    A positional option becomes an argument. The help of a repeatable option says that it is repeatable. An
+    option with the role ``EXTRA_VALUES`` is not passed to the command.
     """
     choices = option.choices() if callable(option.choices) else option.choices
-    kinds: dict[Kind, Any] = {
+    type_of_kind: dict[Kind, Any] = {
         Kind.TEXT: click.Choice(choices) if choices else None,
         Kind.WHOLE: int if option.least is None else click.IntRange(min=option.least),
         Kind.FILE: click.Path(path_type=NamedPath),
@@ -92,25 +93,25 @@ def click_option(option: Option) -> Callable[[Command], Command]:
         Kind.SECONDS: parse_seconds,
         Kind.SIZE: parse_memory_size,
         Kind.WEIGHTS: None,
-        Kind.CONSTRAINT: _constraint,
+        Kind.CONSTRAINT: _parse_constraint,
         Kind.OPTIONS: click.UNPROCESSED,
     }
     if option.positional:
         return click.argument(
             option.name,
-            type=kinds[option.kind],
+            type=type_of_kind[option.kind],
             nargs=-1 if option.many else 1,
             metavar=option.metavar,
             required=not (option.optional or option.many),
             callback=_split_sources if option.kind is Kind.OPTIONS else None,
         )
-    words = option.flags or ("--" + option.name.replace("_", "-"),)
+    flags = option.flags or ("--" + option.name.replace("_", "-"),)
     if option.kind is Kind.FLAG:
-        return click.option(*words, option.name, is_flag=True, help=option.help)
+        return click.option(*flags, option.name, is_flag=True, help=option.help)
     return click.option(
-        *words,
+        *flags,
         option.name,
-        type=kinds[option.kind],
+        type=type_of_kind[option.kind],
         multiple=option.many,
         default=option.default,
         show_default=option.default is not None,

@@ -28,29 +28,37 @@ def completed_words(context: click.Context, parameter: click.Parameter, prefix: 
 
 def _read_dataset(context: click.Context) -> Dataset:
     """Read the data that the incomplete command line names, without lines that are not understood."""
-    values = context.params
+    parameters = context.params
     # an option without its value stops click before it assigns arguments to names
-    sources = values.get("sources") or filter(os.path.exists, context.args)
-    networks = (*sources, *(values.get("network") or ()))
-    source = networks[0] if len(networks) == 1 else networks or values.get("folder")
-    tables = {name: values.get(name) for name in _TABLES}
-    measures, level = values.get("measures") or (), values.get("level") or 3
+    sources = parameters.get("sources") or filter(os.path.exists, context.args)
+    networks = (*sources, *(parameters.get("network") or ()))
+    source = networks[0] if len(networks) == 1 else networks or parameters.get("folder")
+    tables = {name: parameters.get(name) for name in _TABLES}
+    measures, level = parameters.get("measures") or (), parameters.get("level") or 3
     return load(source, **tables, measures=measures, level=level, lenient=True).dataset
 
 
 def _complete_goal(context: click.Context, prefix: str) -> Iterable[str]:
-    """Return the entries of the goals file that begin with ``prefix``, then other nodes that do."""
+    """Return the names in the goals file that begin with ``prefix``, then nodes in one-line notation.
+
+    The label or the notation of these nodes begins with ``prefix``.
+    """
     dataset = _read_dataset(context)
     names = dataset.names
-    listed = _words_with_prefix(entry_names(dataset.listed, names), prefix)
-    return chain(listed, (str(names.node(o)) for o in nodes_beginning(prefix, names, MAX_COMPLETIONS)))
+    entries = _words_with_prefix(entry_names(dataset.listed, names), prefix)
+    return chain(entries, (str(names.node(o)) for o in nodes_beginning(prefix, names, MAX_COMPLETIONS)))
 
 
 def _complete_objectives(context: click.Context, prefix: str) -> Iterable[str]:
-    """Return completions of the last name in a list of objectives: of ``units,s``, ``units,success``."""
+    """Return completions of the last name in a list of objectives: of ``units,s``, ``units,success``.
+
+    Objectives that the list has already are left out.
+    """
     done, comma, last = prefix.rpartition(",")
-    others = [name for name in (*Objective, *_read_dataset(context).measures) if name not in done.split(",")]
-    return (f"{done}{comma}{objective}" for objective in _words_with_prefix(others, last))
+    unused_names = [
+        name for name in (*Objective, *_read_dataset(context).measures) if name not in done.split(",")
+    ]
+    return (f"{done}{comma}{objective}" for objective in _words_with_prefix(unused_names, last))
 
 
 def _complete_constraint(context: click.Context, prefix: str) -> Iterable[str]:
@@ -63,7 +71,7 @@ def _complete_constraint(context: click.Context, prefix: str) -> Iterable[str]:
 
 
 def _complete_constant(context: click.Context, prefix: str) -> Iterable[str]:
-    """Return completions of the constants that the constraints named on the command line have."""
+    """Return completions of ``CONSTANT=VALUE`` for the constraints that the command line names."""
     constraints = context.params.get("constraints") or ()
     names = [constraint.name.partition(":")[0] for constraint in constraints]
     return chain.from_iterable(_constants_of(name, context, prefix) for name in names)

@@ -22,7 +22,7 @@ _LINE_VARIABLE = "FOON_ASP_LINE"  # in the environment: the line up to the curso
 
 
 class _Shell(ShellComplete):
-    """A shell that receives completions, one on each line; without any, it completes file names itself.
+    """A shell that receives completions, one on each line; without completions, it completes file names.
 
     This replaces the scripts of click, which split completions at the commas and blanks of names.
     """
@@ -35,9 +35,10 @@ class _Shell(ShellComplete):
         return words[1:], typed[:-1]
 
     def get_completions(self, args: list[str], incomplete: str) -> list[CompletionItem[str]]:
-        """Return the distinct completions, at most ``MAX_COMPLETIONS``.
+        """Return the distinct completions of the word ``incomplete``, at most ``MAX_COMPLETIONS``.
 
-        Those of ``--option=word`` begin with ``--option=``. There are none where the data cannot be read.
+        Completions of ``--option=word`` begin with ``--option=``. There are none where the data cannot be
+        read.
         """
         from foon_asp.cli.completed_words import MAX_COMPLETIONS
 
@@ -74,7 +75,7 @@ complete -o default -o filenames -F _foon_asp %(prog_name)s
 """
 
     def get_completions(self, args: list[str], incomplete: str) -> list[CompletionItem[str]]:
-        """Return the completions; unless a quote is open, without the text up to the last ``:`` or ``=``."""
+        """Return the completions; if no quote is open, without their text up to the last ``:`` or ``=``."""
         is_quoted = os.environ[_LINE_VARIABLE].removesuffix(incomplete).endswith(("'", '"'))
         completed = None if is_quoted else re.match(r".*[:=]", incomplete)
         items = super().get_completions(args, incomplete)

@@ -19,8 +19,10 @@ _EXPLAIN = CONSTRAINTS._replace(
     flags=("--explain",),
     help="Say what the rules of a file or of a ready-made constraint do, and how fast that is.",
 )
-_RULE = RULE._replace(name="stated", role=Role.COMMAND, help="A rule to explain, by itself or beside files.")
-_CONSTANTS = CONSTANTS._replace(name="values", help="The value of a #const in what is explained.")
+_RULE = RULE._replace(
+    name="rule_texts", role=Role.COMMAND, help="A rule to explain, by itself or beside files."
+)
+_CONSTANTS = CONSTANTS._replace(name="constant_values", help="The value of a #const in what is explained.")
 
 
 @click.command("constraints")
@@ -28,7 +30,10 @@ _CONSTANTS = CONSTANTS._replace(name="values", help="The value of a #const in wh
 @shared_options.format_option(*TABLES)
 @shared_options.debug_option
 def command(
-    explained: tuple[Constraint, ...], stated: tuple[str, ...], values: tuple[str, ...], format_: str
+    explained: tuple[Constraint, ...],
+    rule_texts: tuple[str, ...],
+    constant_values: tuple[str, ...],
+    format_: str,
 ) -> ExitCode:
     """List the ready-made constraints: what each demands, and how to use it.
 
@@ -39,18 +44,18 @@ def command(
     tree: that decides how much can be left out before the search. Name all that you use together, since a
     rule may depend on others.
     """
-    constraints = (*explained, *map(RuleText, stated))
+    constraints = (*explained, *map(RuleText, rule_texts))
     if constraints:
-        return _explain(constraints, values, format_)
-    if values:
+        return _explain(constraints, constant_values, format_)
+    if constant_values:
         raise UserError("-c sets a constant of what is explained: name that with --explain")
     return _show(list_constraints(), format_)
 
 
 def _explain(constraints: tuple[Constraint, ...], constants: tuple[str, ...], format_: str) -> ExitCode:
-    """Print what each rule does, and return ``ExitCode.DONE``.
+    """Print what each rule does; return ``ExitCode.DONE``.
 
-    Raises :class:`UserError` where the built-in encodings were changed.
+    Raises :class:`UserError` if the built-in encodings were changed, so that nothing is known of rules.
     """
     from foon_asp.questions.explained_rules import explain_rules  # takes clingo along
 

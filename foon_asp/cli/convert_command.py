@@ -21,7 +21,7 @@ from foon_asp.whole_file import utf_8, write_whole
 
 
 class _Task(NamedTuple):
-    """A file to convert, and the file to write; ``None`` is stdout."""
+    """A file to convert, and the file ``to`` write; ``to``: ``None`` for stdout."""
 
     file: Path
     to: Path | None
@@ -112,8 +112,10 @@ def _make_folder(folder: Path) -> None:
 def _tasks(files: list[FolderFile], is_folder: bool, output: Path | None, target: Dialect) -> list[_Task]:
     """Return a task for each file: where its conversion is written to.
 
-    ``is_folder`` says that a folder is converted. Raises :class:`UserError` for several files without an
-    output folder, and for two that would be written to one path.
+    ``is_folder`` says that a folder is converted. ``output`` is the value of ``--output``: for a single file,
+    the file to write or an existing folder to write it into; else a folder, which may be new. Raises
+    :class:`UserError` for several files without an output folder, and for two that would be written to one
+    path.
     """
     if len(files) == 1 and not is_folder:
         file = files[0].file
@@ -136,7 +138,7 @@ def _tasks(files: list[FolderFile], is_folder: bool, output: Path | None, target
 
 
 def _suffix(file: Path, target: Dialect) -> str:
-    """Return the ending for the name of a converted file; lists of objects may have one of their own."""
+    """Return the ending of the name of a converted file; for a list of objects, it may be a special one."""
     text, format_ = read_plain_text(file), format_with(target)
     return format_.list_suffix if format_of(text, str(file)).lists_objects(text) else format_.suffix
 
@@ -153,14 +155,16 @@ def _summary(tasks: list[_Task], results: list[Converted], target: Dialect, left
         dialect_counts = ", ".join(f"{count} {dialect}" for dialect, count in dialects.items())
         first_line = f"{len(tasks)} files ({dialect_counts}) → {target}"
     losses = [(kind, lost) for result in results for kind, lost in result.lost.items()]
-    rows = []
+    counted_losses = []
     for kind in dict.fromkeys(kind for kind, _ in losses):
         of_kind = [lost for lost_kind, lost in losses if lost_kind is kind]
-        rows.append((sum(lost.occurrences for lost in of_kind), f"{kind}; first at {of_kind[0].first}"))
+        count = sum(lost.occurrences for lost in of_kind)
+        counted_losses.append((count, f"{kind}; first at {of_kind[0].first}"))
     if left_out:
-        rows.append((left_out, "lines that are in no unit; see the warnings"))
-    if not rows:
+        counted_losses.append((left_out, "lines that are in no unit; see the warnings"))
+    if not counted_losses:
         return f"{first_line}; nothing is lost"
-    rows.sort(key=lambda row: -row[0])
-    width = len(f"{rows[0][0]:,}")
-    return "\n".join([f"{first_line}; not in the result:", *(f"  {n:>{width},}  {text}" for n, text in rows)])
+    counted_losses.sort(key=lambda loss: -loss[0])
+    width = len(f"{counted_losses[0][0]:,}")
+    lines = (f"  {count:>{width},}  {text}" for count, text in counted_losses)
+    return "\n".join([f"{first_line}; not in the result:", *lines])

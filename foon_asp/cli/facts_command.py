@@ -75,8 +75,9 @@ def command(
     problem = dataset.problem(goals, containers, items=used_up)
     if dataset.goals_from and not goals_named:
         if len(goals) > 1:
-            named = "".join(f"\n  --goal {shlex.quote(str(goal))}" for goal in dataset.assumed_goals())
-            raise UserError(f"name a goal with --goal; no file lists goals, and taken for them are{named}")
+            goal_options = "".join(f"\n  --goal {shlex.quote(str(goal))}" for goal in dataset.assumed_goals())
+            fault = "no file lists goals, and taken for them are"
+            raise UserError(f"name a goal with --goal; {fault}{goal_options}")
         click.echo("\n".join(goal_lines(dataset, problem.goal_nodes, shared_options.is_verbose())), err=True)
     if not dataset.has_kitchen:
         click.echo("\n".join(kitchen_lines(dataset, [problem], shared_options.is_verbose())), err=True)

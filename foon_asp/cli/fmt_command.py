@@ -48,7 +48,7 @@ def command(paths: tuple[Path, ...], check: bool, output: Path | None, lenient: 
     if output is not None and (check or len(files) > 1):
         raise UserError("-o is for a single file" + (" without --check" if check else ""))
     errors: list[Diagnostic] = []
-    changed = 0
+    changed_count = 0
     for file in files:
         try:
             text = read_plain_text(file)
@@ -59,24 +59,27 @@ def command(paths: tuple[Path, ...], check: bool, output: Path | None, lenient: 
             continue
         if output is not None:
             write_output(output, formatted)
-        elif formatted != (before := file.read_bytes()):
-            changed += 1
+        elif formatted != (old_content := file.read_bytes()):
+            changed_count += 1
             if check:
-                click.echo(line_diff(escaped(str(file)), before.decode(), formatted.decode()), nl=False)
+                click.echo(line_diff(escaped(str(file)), old_content.decode(), formatted.decode()), nl=False)
             else:
                 write_output(file, formatted)
-    _report(len(files), changed, len({error.source.file for error in errors}), check)
+    _report(len(files), changed_count, len({error.source.file for error in errors}), check)
     if errors:
         raise InputError(errors)
-    return ExitCode.NEGATIVE if check and changed else ExitCode.DONE
+    return ExitCode.NEGATIVE if check and changed_count else ExitCode.DONE
 
 
-def _report(files: int, changed: int, refused: int, check: bool) -> None:
-    """Print the numbers of files that changed or were refused; nothing for a single file."""
-    if files < 2:
+def _report(file_count: int, changed_count: int, refused_count: int, check: bool) -> None:
+    """Print the numbers of files that changed, were in canonical form, or were not understood, to stderr.
+
+    Nothing is printed for a single file. With ``check``, the files have not been changed.
+    """
+    if file_count < 2:
         return
     verb = "would change" if check else "changed"
-    counts = [f"{changed} {verb}", f"{files - changed - refused} in canonical form"]
-    if refused:
-        counts.append(f"{refused} not understood")
-    click.echo(f"{files} files: {', '.join(counts)}", err=True)
+    counts = [f"{changed_count} {verb}", f"{file_count - changed_count - refused_count} in canonical form"]
+    if refused_count:
+        counts.append(f"{refused_count} not understood")
+    click.echo(f"{file_count} files: {', '.join(counts)}", err=True)

@@ -188,17 +188,17 @@ def command(
         click.echo(f"wrote {baseline}: {counted(len(findings), 'finding')}", err=True)
         return ExitCode.DONE
     found = find_findings(on_disk, contents, select, ignore, baseline, vocabulary)
-    count = 0
+    mendable_count = 0
     if fix or diff:
         repaired = _repair(found, contents, unsafe_fixes)
-        count = sum(is_mendable(finding, unsafe_fixes) for finding in found.findings)
+        mendable_count = sum(is_mendable(finding, unsafe_fixes) for finding in found.findings)
         if diff:
-            return _show_repairs(repaired, count)
+            return _show_repairs(repaired, mendable_count)
         contents = _write_repairs(repaired, contents)
         found = find_findings(on_disk, contents, select, ignore, baseline, vocabulary)
         for content in contents.values():  # the mended text of standard input
             write_data(content)
-    linted = found.linted(mended=count)
+    linted = found.linted(mended=mendable_count)
     _report(linted, statistics, format_, err=fix and stdin)
     if baseline:
         _report_baseline(linted)
@@ -208,7 +208,7 @@ def command(
 def _write_vocabulary(files: Sequence[Path], output: Path | None) -> ExitCode:
     """Write the names in files as a vocabulary, which ``--vocabulary`` reads.
 
-    Raises :class:`UserError` for files with errors.
+    ``output``: ``None`` for stdout. Raises :class:`UserError` for files with errors.
     """
     linted = LintedFiles(files)
     linted.reader.raise_errors()
@@ -223,7 +223,8 @@ _Repaired = Mapping[Path, tuple[bytes, bytes]]  # the content of a file before a
 def _repair(found: Findings, contents: Mapping[Path, bytes], unsafe: bool) -> _Repaired:
     """Return the content before and after the repair, for each file with a finding that can be repaired.
 
-    ``contents`` are the contents of files that are not read from disk. Nothing is written.
+    ``contents`` are the contents of files that are not read from disk. ``unsafe`` adds fixes that change the
+    meaning. Nothing is written. Raises :class:`UserError` for a path that is no file.
     """
     fixes: dict[str, list[Diagnostic]] = {}
     for finding in found.findings:
@@ -233,34 +234,34 @@ def _repair(found: Findings, contents: Mapping[Path, bytes], unsafe: bool) -> _R
     for file in (file for file in found.files if str(file) in fixes):
         if file not in contents and not file.is_file():
             raise UserError(f"{file}: not a file that can be written; --fix repairs files in place")
-        before = contents[file] if file in contents else read_content(file)
-        repaired[file] = before, mend(before, fixes[str(file)], unsafe)
+        old_content = contents[file] if file in contents else read_content(file)
+        repaired[file] = old_content, mend(old_content, fixes[str(file)], unsafe)
     return repaired
 
 
 def _write_repairs(repaired: _Repaired, contents: Mapping[Path, bytes]) -> dict[Path, bytes]:
-    """Write the repaired files, except those in ``contents``; return ``contents``, repaired."""
-    for file, (before, after) in repaired.items():
-        if before != after and file not in contents:
-            write_whole(file, after)
+    """Write the repaired files that changed, except those in ``contents``; return ``contents``, repaired."""
+    for file, (old_content, new_content) in repaired.items():
+        if old_content != new_content and file not in contents:
+            write_whole(file, new_content)
             click.echo(f"wrote {file}", err=True)
     return {file: repaired[file][1] if file in repaired else content for file, content in contents.items()}
 
 
-def _show_repairs(repaired: _Repaired, count: int) -> ExitCode:
-    """Print the diff of the repairs, and the number of findings repaired; return the exit code."""
-    for file, (before, after) in repaired.items():
-        show_diff(str(file), plain_text(before, file), plain_text(after, file))
-    changed = sum(before != after for before, after in repaired.values())
-    click.echo(f"would mend {counted(count, 'finding')} in {counted(changed, 'file')}", err=True)
+def _show_repairs(repaired: _Repaired, finding_count: int) -> ExitCode:
+    """Print the diff of the repairs, and print ``finding_count``; return ``NEGATIVE`` for a change."""
+    for file, (old_content, new_content) in repaired.items():
+        show_diff(str(file), plain_text(old_content, file), plain_text(new_content, file))
+    changed = sum(old_content != new_content for old_content, new_content in repaired.values())
+    click.echo(f"would mend {counted(finding_count, 'finding')} in {counted(changed, 'file')}", err=True)
     return ExitCode.NEGATIVE if changed else ExitCode.DONE
 
 
 def _report(linted: Linted, statistics: bool, format_: str, err: bool) -> None:
-    """Print the findings, or with ``statistics`` their counts by code.
+    """Print the findings in a format, or with ``statistics`` a text with their counts by code.
 
-    With ``err``, text is printed to standard error. The format ``github`` is printed without escapes, since a
-    program reads it.
+    ``err`` prints to standard error, except for ``github`` and ``json``. The format ``github`` is printed
+    without escapes, since a program reads it.
     """
     if format_ == "github":
         write_data(linted.github())
@@ -272,7 +273,7 @@ def _report(linted: Linted, statistics: bool, format_: str, err: bool) -> None:
 
 
 def _report_baseline(linted: Linted) -> None:
-    """Print how many findings the baseline left out, and how many of its findings no longer occur."""
+    """Print to stderr how many findings the baseline left out, and how many in it no longer occur."""
     text = f"{counted(linted.known, 'known finding')} left out"
     if linted.gone:
         text += f"; {linted.gone} in the baseline {'is' if linted.gone == 1 else 'are'} gone: "

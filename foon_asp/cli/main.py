@@ -12,9 +12,9 @@ import click
 from foon_asp import __version__
 from foon_asp.cli.ctrl_c import end_at_ctrl_c, raise_at_ctrl_c
 from foon_asp.cli.exit_code import ExitCode, code_and_message
-from foon_asp.cli.output import drop_output, safe_streams, show_remarks
+from foon_asp.cli.output import flush_or_drop_output, safe_streams, show_remarks
 from foon_asp.cli.verbs import FIRST_VERBS, FOR_PROGRAMS, SHELL_REQUEST, VERBS, verb_command, write_verbs
-from foon_asp.cli.whole_process import BEGAN, keep, leave
+from foon_asp.cli.whole_process import BEGAN, exit_process, keep_until_exit
 from foon_asp.deadline import resend_lost_interrupts
 from foon_asp.errors import FoonWarning, UserError
 
@@ -68,7 +68,7 @@ class _Verbs(click.Group):
         write_verbs(formatter, "Verbs that most people need", FIRST_VERBS)
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> "list[CompletionItem[str]]":
-        """Return completions: verbs, except those for programs, and the options of ``foon-asp`` itself."""
+        """Return completions: verbs that are not for programs, and the options of ``foon-asp`` itself."""
         from click.shell_completion import CompletionItem
 
         verbs = [verb for verb, entry in VERBS.items() if entry.group != FOR_PROGRAMS]
@@ -95,7 +95,8 @@ def main(arguments: list[str] | None = None) -> None:
     """Run a command line, and exit the process with its exit code.
 
     ``arguments`` are the words after ``foon-asp``; ``None`` takes them from the process. Only in that case,
-    limits count from the start of the process, and its memory is not freed at exit.
+    limits count from the start of the process, and its memory is not freed at exit. Output is escaped by
+    :func:`safe_streams`. With ``--quiet``, only errors are written to stderr.
     """
     words = sys.argv[1:] if arguments is None else arguments
     with safe_streams(), resend_lost_interrupts(), warnings.catch_warnings():
@@ -108,9 +109,9 @@ def main(arguments: list[str] | None = None) -> None:
         except (OSError, UserError) as error:
             code = _report_error(error, debug=False)
         if code is not ExitCode.DONE:
-            drop_output()
+            flush_or_drop_output()
     if arguments is None:
-        leave(int(code))
+        exit_process(int(code))
     sys.exit(int(code))
 
 
@@ -131,8 +132,8 @@ def _run(words: list[str], began: float | None) -> ExitCode:
                 from foon_asp.cli.completion_command import answer_shell
 
                 return answer_shell(cli, os.environ[SHELL_REQUEST])
-            ended = cli.main(args=words, prog_name="foon-asp", standalone_mode=False, obj=began)
-            return ExitCode(ended or 0)
+            code = cli.main(args=words, prog_name="foon-asp", standalone_mode=False, obj=began)
+            return ExitCode(code or 0)
         finally:
             if began is not None:
                 end_at_ctrl_c()
@@ -145,14 +146,15 @@ def _run(words: list[str], began: float | None) -> ExitCode:
 def _report_error(error: BaseException, debug: bool) -> ExitCode:
     """Report an error on stderr, also under ``--quiet``, and return its exit code.
 
-    ``debug`` prints its traceback, too. A closed pipe is no error: the code is ``DONE``.
+    With ``debug``, its traceback is printed, too, unless the error is wrong usage or ctrl-C. A closed pipe is
+    no error: the remaining output is discarded, and the code is ``DONE``.
     """
-    keep(error)  # with the frames of its traceback, whose memory would take long to free
+    keep_until_exit(error)  # with the frames of its traceback, whose memory would take long to free
     show_remarks(True)
     if debug and not isinstance(error, click.ClickException | click.Abort | KeyboardInterrupt):
         traceback.print_exception(error)
     if isinstance(error, BrokenPipeError):  # the reader of our output has ended, as `head` does
-        drop_output()
+        flush_or_drop_output()
         return ExitCode.DONE
     ignored_output_errors = contextlib.suppress(OSError, UserError)
     if isinstance(error, click.ClickException):

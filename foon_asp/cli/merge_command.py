@@ -70,18 +70,18 @@ def command(
     The counts go to stderr. Exits with 0, or with 2 when something is not understood.
     """
     check_outputs()
-    folder, named = shared_options.folder_and_networks(sources, folder, network)
-    if folder is None and not named:
+    folder, networks = shared_options.folder_and_networks(sources, folder, network)
+    if folder is None and not networks:
         raise UserError("name the networks to merge, or a folder of data with --data")
     if store is not None and (output is not None or report):
         raise UserError("--store writes a store: leave out -o and --report")
     if store is None and any(tables[name] for name in tables.keys() - {"unit_prices", "unit_amounts"}):
         raise UserError("kitchen, rates, utensils and goals are kept in a store only: name one with --store")
-    files = find_data(folder, named, **tables)
+    files = find_data(folder, networks, **tables)
     with bytes_bar("merging", files.network):
         merged = merge_files(files, store, lenient)
-    for text in merged.warnings:
-        click.echo(text, err=True)
+    for warning in merged.warnings:
+        click.echo(warning, err=True)
     if store is not None:
         click.echo(merged.text(), nl=False)
         return ExitCode.DONE

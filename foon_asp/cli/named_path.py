@@ -21,7 +21,7 @@ class NamedPath(_Base):
     """
 
     def __format__(self, spec: str) -> str:
-        """Return the path escaped, in the format of a text."""
+        """Return the escaped path, formatted by ``spec`` as a text."""
         return format(escaped(str(self)), spec)
 
 

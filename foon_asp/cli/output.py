@@ -28,7 +28,7 @@ class SafeStream:
 
     ``stream``: the stream to write to; ``None`` if it was closed from the start.
     ``remarks``: whether failed writes are ignored, since an answer is complete without remarks.
-    ``styled``: whether the codes of colours are kept; names must then be escaped before.
+    ``styled``: whether the codes of colours are kept; the caller must then escape names.
     ``quiet``: whether text is dropped.
     """
 
@@ -60,7 +60,7 @@ class SafeStream:
         return len(text)
 
     def write_data(self, content: bytes) -> None:
-        """Write bytes unchanged, and flush; raises :class:`UserError` where this fails."""
+        """Write bytes unchanged, also if the stream is quiet, and flush; raises as :meth:`write` does."""
         with self._user_errors():
             stream = self._open_stream()
             stream.flush()
@@ -82,7 +82,7 @@ class SafeStream:
         return True
 
     def __getattr__(self, name: str) -> Any:
-        """Return another attribute of the stream that is written to."""
+        """Return an attribute of the stream that is written to, if this class does not define it."""
         return getattr(self.stream, name)
 
     def _open_stream(self) -> TextIO:
@@ -93,7 +93,7 @@ class SafeStream:
 
     @contextlib.contextmanager
     def _user_errors(self) -> Iterator[None]:
-        """In a ``with`` block, raise :class:`UserError` for a failed write; for ``remarks``, ignore it.
+        """In a ``with`` block, raise :class:`UserError` for a failed write; with ``remarks``, ignore it.
 
         A ``BrokenPipeError`` is raised as it is: the reader of the output has ended.
         """
@@ -108,7 +108,10 @@ class SafeStream:
 
 @contextlib.contextmanager
 def safe_streams() -> Iterator[None]:
-    """In a ``with`` block, let standard output and standard error be objects of :class:`SafeStream`."""
+    """In a ``with`` block, let standard output and standard error be objects of :class:`SafeStream`.
+
+    A failed write to standard error is ignored.
+    """
     out, err = sys.stdout, sys.stderr
     sys.stdout = cast(TextIO, SafeStream(out))
     sys.stderr = cast(TextIO, SafeStream(err, remarks=True))
@@ -148,7 +151,10 @@ def write_output(output: Path | None, content: bytes) -> None:
 
 
 def console(err: bool = False) -> "Console":
-    """Return a console of rich on standard output, or with ``err`` on standard error."""
+    """Return a console of rich on standard output, or with ``err`` on standard error.
+
+    ``--quiet`` does not silence the console. The caller escapes the names that it writes.
+    """
     from rich.console import Console
 
     target = sys.stderr if err else sys.stdout
@@ -157,51 +163,58 @@ def console(err: bool = False) -> "Console":
 
 
 def terminal_width_and_colour() -> tuple[int | None, bool]:
-    """Return the width of the terminal in columns, and whether it shows colours.
+    """Return the width of the terminal in columns, and whether it may show colours.
 
-    Where standard output is no terminal, they are ``None`` and ``False``.
+    Where standard output is no terminal, they are ``None`` and ``False``. ``NO_COLOR`` in the environment
+    forbids colours.
     """
     if not sys.stdout.isatty():
         return None, False
     return shutil.get_terminal_size().columns, "NO_COLOR" not in os.environ
 
 
-def write_parts(parts: Iterable[Block]) -> None:
-    """Write lines and tables to standard output, in the width and the colours of the terminal."""
+def write_parts(blocks: Iterable[Block]) -> None:
+    """Write lines and tables to standard output, in the width and the colours of the terminal.
+
+    Signs that the output cannot encode are replaced as in :func:`with_plain_signs`.
+    """
     width, coloured = terminal_width_and_colour()
-    text = with_plain_signs(blocks_text(parts, width, coloured))
+    text = with_plain_signs(blocks_text(blocks, width, coloured))
     stream = sys.stdout
     if coloured and isinstance(stream, SafeStream):
         stream = cast(TextIO, SafeStream(stream.stream, styled=True))
     stream.write(text)
 
 
-def say(text: str) -> None:
+def write_remark(text: str) -> None:
     """Write a remark to standard error, wrapped to the width of a terminal."""
     width = shutil.get_terminal_size().columns if sys.stderr.isatty() else None
     click.echo(blocks_text(text.split("\n"), width), err=True, nl=False)
 
 
-def say_once(text: str) -> None:
-    """Write a remark to standard error, unless the command wrote the same one before."""
+def write_remark_once(text: str) -> None:
+    """Write a remark to standard error, unless the command wrote the same remark before.
+
+    Outside of a command, the remark is always written.
+    """
     context = click.get_current_context(silent=True)
     written_remarks: set[str] = (
         set() if context is None else context.find_root().meta.setdefault(_WRITTEN_ONCE, set())
     )
     if text not in written_remarks:
         written_remarks.add(text)
-        say(text)
+        write_remark(text)
 
 
 def with_plain_signs(text: str) -> str:
-    """Return a text with ASCII in place of arrows and other signs that standard output cannot encode."""
+    """Return a text with ASCII for those of the signs ``→ ≈ × †`` that standard output cannot encode."""
     encoding = getattr(getattr(sys.stdout, "stream", sys.stdout), "encoding", None) or "utf-8"
     return text.translate(
         {ord(sign): ascii_ for sign, ascii_ in _SIGNS.items() if encodable(sign, encoding) != sign}
     )
 
 
-def drop_output() -> None:
+def flush_or_drop_output() -> None:
     """Flush standard output and error; where this fails, discard what was not written.
 
     Otherwise Python would try to write it at exit, and fail.

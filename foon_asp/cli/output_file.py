@@ -17,16 +17,16 @@ _DATA_OPTIONS = ("kitchen", "rates", "utensils", "goals", "unit_prices", "unit_a
 _STDIN = Path("/dev/stdin")  # may be a file: foon-asp lint - < recipe.txt
 
 
-def check_outputs(read: Iterable[Path] = (), written: Iterable[Path] | None = None) -> None:
+def check_outputs(further_inputs: Iterable[Path] = (), written: Iterable[Path] | None = None) -> None:
     """Raise :class:`UserError` if the current command would write a file that it reads, or one file twice.
 
-    ``read`` are further inputs, which its parameters do not name. ``written`` are its outputs; by default,
-    the outputs that its parameters name. The check runs before a search, which may take an hour.
+    ``further_inputs`` are inputs that its parameters do not name. ``written`` are its outputs, by default
+    those that its parameters name. The check runs before a search, which may take an hour.
     """
     outputs = [*(_output_files() if written is None else written)]
     if not outputs:
         return
-    inputs = [*read_files(), *read]
+    inputs = [*read_files(), *further_inputs]
     for number, file in enumerate(outputs):
         refuse_inputs(file, inputs)
         if any(_same_output(file, other) for other in outputs[:number]):
@@ -40,17 +40,18 @@ def refuse_inputs(file: Path, inputs: Iterable[Path]) -> None:
 
 
 def read_files() -> Iterator[Path]:
-    """Yield the files that the current command reads: named files, and the files of folders.
+    """Yield the files that the current command reads: named files, files of folders, and data files.
 
-    Standard input is always one of them, since it may be a file.
+    The bundled data are among them if the command names no data. Standard input is always one of them, since
+    it may be a file.
     """
     context = click.get_current_context()
     written = {parameter.name for parameter in _output_parameters(context)}
-    named: list[Path] = []
+    paths: list[Path] = []
     for name, value in context.params.items():
         if name not in written:
-            named += _paths_in(value)
-    for path in named:
+            paths += _paths_in(value)
+    for path in paths:
         yield from _files_read_for(path)
     if "network" in context.params:
         sources = context.params.get("sources", ())
@@ -67,7 +68,10 @@ def _output_parameters(context: click.Context) -> list[click.Parameter]:
 
 
 def _output_files() -> Iterator[Path]:
-    """Yield the output files that the parameters of the current command name; ``-`` is none."""
+    """Yield the output files that the parameters of the current command name; ``-`` is no file.
+
+    For an output folder of ``export``, these are the files to be written into it.
+    """
     context = click.get_current_context()
     for parameter in _output_parameters(context):
         for path in _paths_in(context.params[str(parameter.name)]):
@@ -96,7 +100,8 @@ def _files_read_for(path: Path) -> Iterator[Path]:
     """Yield the files read for a path that a parameter names.
 
     They are the encodings and networks of a folder, a file with the files that it includes, or the file of a
-    ready-made constraint. Of a path that cannot be read, there are none.
+    ready-made constraint. The domains in the folder of a problem in PDDL are among them. For a path that
+    cannot be read, there are none.
     """
     with contextlib.suppress(UserError, OSError):  # reported when it is read
         if path.is_dir():
@@ -114,10 +119,10 @@ def _files_read_for(path: Path) -> Iterator[Path]:
 
 
 def _same_file(file: Path, other: Path) -> bool:
-    """Return whether two paths are one regular file that exists, also through links."""
+    """Whether two paths are one regular file that exists, also through links."""
     return file.is_file() and other.is_file() and file.samefile(other)
 
 
 def _same_output(file: Path, other: Path) -> bool:
-    """Return whether two paths name one file, which need not exist yet."""
+    """Whether two paths name one file, which need not exist yet."""
     return _same_file(file, other) or file.resolve() == other.resolve()

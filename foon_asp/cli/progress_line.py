@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Self
 import click
 
 from foon_asp.asp.reporter import Reporter
-from foon_asp.cli.output import console, say_once
+from foon_asp.cli.output import console, write_remark_once
 from foon_asp.daemon_thread import DaemonThread
 from foon_asp.deadline import Deadline
 from foon_asp.problem import Costs, Objective
@@ -70,8 +70,8 @@ class Progress(Reporter):
             self._finished.get()
 
     def warning(self, message: str) -> None:
-        """Print a warning to stderr at once, unless the command has printed it already."""
-        say_once(message)
+        """Print a warning to stderr at once, if the command has not printed it already."""
+        write_remark_once(message)
 
     def statistics(self, text: str) -> None:
         """Print statistics of a search to stderr at once."""
@@ -82,13 +82,16 @@ class Progress(Reporter):
         self._costs = costs
 
     def bound(self, objective: Objective, bound: int | Fraction) -> None:
-        """Store a bound; the first of an objective is also stored as such, with its time."""
+        """Store a bound on an objective, and the first bound on the objective with its time."""
         if self._bound is None or self._bound[0] != objective:
             self._first_bound = (bound, time.monotonic())
         self._bound = (objective, bound)
 
     def step(self, word: str, done: int, total: int) -> None:
-        """Store the number of steps done and their total; ``word`` says what is done."""
+        """Store the number of steps done and their total; ``word`` says what is done.
+
+        The number at the first call counts as done before the search.
+        """
         if self._step is None:
             self._initial_steps = done
         self._step = (word, done, total)
@@ -114,16 +117,17 @@ class Progress(Reporter):
         return f"{tree}  |  {bound}  |  {seconds}  |  ctrl-C stops with the best"
 
     def _remaining_seconds(self, now: float) -> float | None:
-        """Estimate the remaining seconds; ``None`` without any progress to extrapolate."""
+        """Return an estimate of the remaining seconds; ``None`` without progress to extrapolate."""
         if self._step is not None:
             _, done, total = self._step
-            new = done - self._initial_steps
-            return (now - self._began) / new * (total - done) if new else None
+            new_steps = done - self._initial_steps
+            return (now - self._began) / new_steps * (total - done) if new_steps else None
         if self._costs is None or self._bound is None or self._first_bound is None:
             return None
-        (objective, bound), (first, first_time) = self._bound, self._first_bound
-        closed, gap = abs(Fraction(bound - first)), abs(Fraction(self._costs.measure(objective) - bound))
-        return float(gap / closed) * (now - first_time) if closed and gap else None
+        (objective, bound), (first_bound, first_time) = self._bound, self._first_bound
+        closed_gap = abs(Fraction(bound - first_bound))
+        gap = abs(Fraction(self._costs.measure(objective) - bound))
+        return float(gap / closed_gap) * (now - first_time) if closed_gap and gap else None
 
     def __rich__(self) -> "Text":
         """Return the current line, whenever rich draws it."""
@@ -141,19 +145,19 @@ def bytes_bar(word: str, files: Iterable[Path]) -> Iterator[None]:
     if not sys.stderr.isatty() or click.get_current_context(silent=True) is None:
         yield
         return
-    total = size_of(files)
-    began, done = time.monotonic(), 0
+    total_bytes = size_of(files)
+    began, bytes_read = time.monotonic(), 0
     advance: Callable[[int], None] | None = None
     with contextlib.ExitStack() as bars:
 
-        def report(read: int) -> None:
+        def report(new_bytes: int) -> None:
             """Add the number of bytes read since the last call; after a second, show the bar."""
-            nonlocal advance, done
-            done += read
+            nonlocal advance, bytes_read
+            bytes_read += new_bytes
             if advance is not None:
-                advance(read)
+                advance(new_bytes)
             elif time.monotonic() - began >= _DELAY_SECONDS:
-                advance = bars.enter_context(_bar(word, total, done))
+                advance = bars.enter_context(_bar(word, total_bytes, bytes_read))
 
         with reporting_to(report):
             yield

@@ -17,7 +17,7 @@ from foon_asp.cli.exit_code import ExitCode, exit_code_of
 from foon_asp.cli.named_path import WrittenPath
 from foon_asp.cli.output import write_data, write_parts
 from foon_asp.cli.output_file import check_outputs
-from foon_asp.cli.whole_process import keep
+from foon_asp.cli.whole_process import keep_until_exit
 from foon_asp.deadline import Deadline
 from foon_asp.errors import UserError
 from foon_asp.problem import ITEMS
@@ -35,7 +35,11 @@ _ESCAPED_FORMATS = frozenset(
 
 
 def question_command(verb: str) -> click.Command:
-    """Import the module of a verb, and return the command that asks the question of the verb."""
+    """Import the module of a verb, and return the command that asks the question of the verb.
+
+    Its parameters are the options of the question, and those for limits, formats and data that it needs. The
+    command of ``view`` can also serve a page.
+    """
     question = find_question(verb)
     command: Callable[..., ExitCode] = _answer_function(question)
     if verb == "view":
@@ -92,7 +96,10 @@ def _answer_function(question: Question) -> Callable[..., ExitCode]:
         deadline: Deadline | None = None,
         **values: Any,
     ) -> ExitCode:
-        """Check the output files, call the question, and show or write the result and its charts."""
+        """Check the output files, call the question, and show or write the result and its charts.
+
+        If there is no tree to go on with, print the message of the :class:`NoTreeError`.
+        """
         charts = [file for files in values_with_role(question, values, Role.CHART).values() for file in files]
         if charts:
             from foon_asp.pictures.chart import check_suffix
@@ -103,7 +110,7 @@ def _answer_function(question: Question) -> Callable[..., ExitCode]:
         check_outputs()
         try:
             result = ask(question, values, deadline, form)
-            keep(result)
+            keep_until_exit(result)
         except NoTreeError as error:
             click.echo(str(error), err=True)
             return exit_code_of(error.ending)
@@ -126,19 +133,19 @@ def _answer_function(question: Question) -> Callable[..., ExitCode]:
 def _format_options(question: Question) -> list[Callable[[Command], Command]]:
     """Return decorators that add ``--format``, and ``--output`` for a result that can be a file.
 
-    For a question with a single format, there are none.
+    For a question with a single format, the list is empty.
     """
     if len(question.formats) == 1:
         return []
     if not question.suffixes:
         return [shared_options.format_option(*question.formats)]
-    first = question.formats[0].upper()
+    default = question.formats[0].upper()
     return [
         click.option(
             "--format",
             "format_",
             type=click.Choice(question.formats),
-            help=f"The format, in place of the ending of the file; without a file, {first} to stdout.",
+            help=f"The format, in place of the ending of the file; without a file, {default} to stdout.",
         ),
         click.option(
             "-o",
@@ -150,12 +157,12 @@ def _format_options(question: Question) -> list[Callable[[Command], Command]]:
     ]
 
 
-def _chosen_format(question: Question, named: str | None, output: Path | None) -> str:
-    """Return the format of a result: ``named``, else that of the ending of ``output``, else the default.
+def _chosen_format(question: Question, format_: str | None, output: Path | None) -> str:
+    """Return the format of a result: ``format_``, else that of the ending of ``output``, else the default.
 
     Raises :class:`UserError` for a picture or a page without an output at a terminal.
     """
-    form = named or (question.formats[0] if output is None else question.format_of(output))
+    form = format_ or (question.formats[0] if output is None else question.format_of(output))
     if form in _NOT_FOR_TERMINALS and output is None and sys.stdout.isatty():
         raise UserError(
             f"a terminal cannot show {_NOT_FOR_TERMINALS[form]}: write it into a file with -o FILE"
@@ -164,7 +171,10 @@ def _chosen_format(question: Question, named: str | None, output: Path | None) -
 
 
 def _show_result(result: Result, format_: str) -> None:
-    """Write a result to standard output in a format, and to stderr a remark that the format cannot hold."""
+    """Write a result to standard output in a format, and to stderr a remark that the format cannot hold.
+
+    If there is nothing to draw, only the remark is written.
+    """
     if format_ == "text":
         write_parts(result.show())
     elif format_ in _ESCAPED_FORMATS:

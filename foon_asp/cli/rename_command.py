@@ -73,13 +73,15 @@ def command(old: str, new: str, paths: tuple[Path, ...], kind: str | None, write
         raise InputError(errors)
     changed = {}
     for file, text in texts.items():
-        after = format_of(text, str(file)).renamed_text(text, str(file), renaming)
-        if after != text:
-            changed[file] = text, after
-    for file, (before, after) in changed.items():
-        show_diff(str(file), before, after)
+        new_text = format_of(text, str(file)).renamed_text(text, str(file), renaming)
+        if new_text != text:
+            changed[file] = text, new_text
+    for file, (old_text, new_text) in changed.items():
+        show_diff(str(file), old_text, new_text)
     if write:
-        write_all_whole({file: _byte_order_mark(file) + utf_8(after) for file, (_, after) in changed.items()})
+        write_all_whole(
+            {file: _byte_order_mark(file) + utf_8(new_text) for file, (_, new_text) in changed.items()}
+        )
     click.echo(_summary(renaming, len(changed), write), err=True)
     return ExitCode.DONE
 
@@ -93,15 +95,15 @@ def _files_to_rename_in(paths: Sequence[Path]) -> list[Path]:
 
 
 def _byte_order_mark(file: Path) -> bytes:
-    """Return the byte order mark of UTF-8 if a file begins with it, else no bytes; a renaming keeps it."""
+    """Return the byte order mark of UTF-8 if a file begins with it, else no bytes."""
     return BOM_UTF8 if read_content(file).startswith(BOM_UTF8) else b""
 
 
 def _kind_of_name(old: str, kind: str | None, texts: Mapping[Path, str]) -> str:
-    """Return what an old name is in the texts, such as ``object``; ``kind`` is the kind that the user chose.
+    """Return the kind of an old name in the texts, such as ``object``.
 
-    Raises :class:`UserError` if the name is nowhere, is not of the chosen kind, or is of several kinds and
-    none is chosen.
+    ``kind`` is the kind that the user chose; ``None`` if none was chosen. Raises :class:`UserError` if the
+    name is nowhere, is not of the chosen kind, or is of several kinds and none is chosen.
     """
     counts: Counter[tuple[str, str]] = Counter()
     for file, text in texts.items():
@@ -114,8 +116,8 @@ def _kind_of_name(old: str, kind: str | None, texts: Mapping[Path, str]) -> str:
     if kinds and kind is not None:
         raise UserError(f"{old!r} is no {kind}; it is {_with_article(kinds[0])}")
     if len(kinds) > 1:
-        listed = " and ".join(f"{_with_article(kind)} ({counts[kind, old]} times)" for kind in kinds)
-        raise UserError(f"{old!r} is {listed}: choose one with --kind")
+        kinds_text = " and ".join(f"{_with_article(kind)} ({counts[kind, old]} times)" for kind in kinds)
+        raise UserError(f"{old!r} is {kinds_text}: choose one with --kind")
     if not kinds:
         similar = difflib.get_close_matches(old, sorted({name for _, name in counts}), n=3, cutoff=0.7)
         hint = f"; there is {', '.join(map(repr, similar))}" if similar else ""
@@ -130,10 +132,10 @@ def _with_article(kind: str) -> str:
     return _WITH_ARTICLE.get(NameKind(kind), f"a {kind}")
 
 
-def _summary(renaming: Renaming, files: int, written: bool) -> str:
-    """Return a summary of a renaming in words: the mentions, the files, and what to do next."""
+def _summary(renaming: Renaming, file_count: int, written: bool) -> str:
+    """Return a summary of a renaming in words: the mentions, the files, and whether they are written."""
     kind, old, new = renaming.rename
-    mentions = f"{counted(renaming.mentions, 'mention')} in {counted(files, 'file')}"
+    mentions = f"{counted(renaming.mentions, 'mention')} in {counted(file_count, 'file')}"
     text = f"the {kind} {old!r} becomes {new!r}: {mentions}"
     if renaming.new_mentions:
         times = counted(renaming.new_mentions, "time")

@@ -21,15 +21,18 @@ _FILE_OPTIONS = {"output": "-o", "format_": "--format"}
 
 
 def with_serve_option(command: Callable[..., ExitCode], question: Question) -> Callable[..., ExitCode]:
-    """Add the option ``--serve`` to the command of ``view``.
+    """Return the command of ``view`` with the option ``--serve``, which serves a page in place of an answer.
 
-    The options of the ``question`` are for the page; all others are for the data.
+    The options of the ``question`` are for the page; all other options are for the data.
     """
     option_names = {option.name for option in question.options}
 
     @functools.wraps(command)
     def answer_or_serve(serve: bool, **values: Any) -> ExitCode:
-        """Serve the page if ``serve``, else call the command; no file can be written with the page."""
+        """Serve the page if ``serve``, else call the command.
+
+        Raises :class:`UserError` for an output file or a format beside ``--serve``.
+        """
         if not serve:
             return command(**values)
         for name, flag in _FILE_OPTIONS.items():
@@ -43,11 +46,11 @@ def with_serve_option(command: Callable[..., ExitCode], question: Question) -> C
     return click.option("--serve", is_flag=True, help=help_)(answer_or_serve)
 
 
-def _serve(question: dict[str, Any], data: dict[str, Any], deadline: Deadline) -> ExitCode:
-    """Serve the page until ctrl-C.
+def _serve(question_values: dict[str, Any], data_values: dict[str, Any], deadline: Deadline) -> ExitCode:
+    """Serve the page until ctrl-C, and print its address.
 
-    ``question`` and ``data`` are the values of options by name. The ``deadline`` says the limits of each
-    answer. Raises :class:`UserError` if a package is missing, or for wrong rules.
+    ``question_values`` and ``data_values`` are the values of options by name. The limits of the ``deadline``
+    are for each answer. Raises :class:`UserError` if a package is missing, or for wrong rules.
     """
     try:
         from foon_asp.serve.desk import Desk
@@ -55,25 +58,25 @@ def _serve(question: dict[str, Any], data: dict[str, Any], deadline: Deadline) -
         from foon_asp.serve.server import serve_desk
     except ImportError as error:
         raise UserError(f"--serve needs more packages ({error}): pip install 'foon-asp[view]'") from None
-    dataset = shared_options.read_dataset(**data)
+    dataset = shared_options.read_dataset(**data_values)
     form = Form(
-        goals=tuple(question["goals_named"]),
-        objectives=tuple(map(str, parse_objectives(question["objectives"], dataset.measures))),
-        containers=question["containers"],
-        items=question["items"],
-        beside=tuple(question["beside"]),
+        goals=tuple(question_values["goals_named"]),
+        objectives=tuple(map(str, parse_objectives(question_values["objectives"], dataset.measures))),
+        containers=question_values["containers"],
+        items=question_values["items"],
+        beside=tuple(question_values["beside"]),
     )
     rules = settings_of(
         {
-            "constraints": question["constraints"],
-            "constants": question["constants"],
-            "encodings": question["encodings"],
+            "constraints": question_values["constraints"],
+            "constants": question_values["constants"],
+            "encodings": question_values["encodings"],
         }
     )
     example = dataset.problem((0,), form.containers)
     # to report errors in files of rules before the page is opened
     assemble(rules, functools.partial(click.echo, err=True), problem=example)
-    used_up = items_of(dataset, question["items"], question["stock"], question["stays"])
+    used_up = items_of(dataset, question_values["items"], question_values["stock"], question_values["stays"])
     desk = Desk(Foon(dataset, "the data"), form, deadline.seconds, deadline.memory, rules, used_up)
     serve_desk(desk, lambda address: click.echo(f"{address}\nopen this in a browser; ctrl-C ends it"))
     return ExitCode.DONE

@@ -9,7 +9,7 @@ import click
 from foon_asp.cli.click_option import Command, click_options
 from foon_asp.cli.exit_code import ExitCode
 from foon_asp.cli.named_path import NamedPath, WrittenPath
-from foon_asp.cli.output import say_once
+from foon_asp.cli.output import write_remark_once
 from foon_asp.cli.progress_line import bytes_bar
 from foon_asp.dataset import Dataset
 from foon_asp.dataset.read_dataset import read_dataset as read_data
@@ -166,12 +166,13 @@ def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
     """Add the options for limits to a command.
 
     The command is called with the ``deadline`` that they set, in place of their values. If a limit stops it,
-    a message says what to do.
+    a message says what to do. Without an answer, this is the message of a :class:`LimitError`, which is
+    raised.
     """
 
     @functools.wraps(command)
     def limited(time_limit: float | None, memory_limit: int | None, **values: object) -> ExitCode:
-        """Call the command with its deadline; print advice if a limit stopped it."""
+        """Call the command with its deadline; print advice, or raise it, if a limit stopped the command."""
         deadline = start_deadline(time_limit, memory_limit)
         try:
             code = command(deadline=deadline, **values)
@@ -189,8 +190,8 @@ def limit_options(command: Callable[..., ExitCode]) -> Callable[..., ExitCode]:
 def start_deadline(time_limit: float | None, memory_limit: int | None) -> Deadline:
     """Return the deadline of the current command, and store it for :func:`reading`.
 
-    The limits are in seconds and in bytes; ``None`` is unlimited. Time counts from the start of the process,
-    if the process runs only this command.
+    The limits are in seconds and in bytes; ``None`` for no limit. Time counts from the start of the process
+    if the process runs only this command, else from now.
     """
     context = click.get_current_context()
     began = context.obj if isinstance(context.obj, float) else None
@@ -212,7 +213,8 @@ def folder_and_networks(
     """Return the data folder and the networks that a command names.
 
     ``sources`` are its arguments; ``folder`` and ``network`` are the values of ``--data`` and ``--network``.
-    An argument is a network. Only a folder that is named alone is the data folder.
+    If a folder is the only argument and neither option is given, it is the data folder. Otherwise, each
+    argument is a network.
 
     Raises :class:`UserError` for a source that does not exist.
     """
@@ -241,10 +243,10 @@ def read_dataset(
     stand_in_tables: Sequence[Path] = (),
     similar: Sequence[Path] = (),
 ) -> Dataset:
-    """Read the data that the options name; print each warning once.
+    """Read the data that the options name, with measures and tables of stand-ins; print each warning once.
 
-    ``sources`` are networks named as arguments, as in :func:`folder_and_networks`. The data are closed when
-    the command ends.
+    ``sources`` are networks named as arguments, as in :func:`folder_and_networks`. Reading stops at the
+    limits of the command. The data are closed when the command ends.
     """
     folder, network = folder_and_networks(sources, folder, network)
     with reading():
@@ -267,5 +269,5 @@ def read_dataset(
     if context:
         context.call_on_close(dataset.close)
     for text in dataset.brief:
-        say_once(text)
+        write_remark_once(text)
     return dataset

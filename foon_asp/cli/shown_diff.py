@@ -10,12 +10,12 @@ from foon_asp.report.line_diff import line_diff
 from foon_asp.whole_file import utf_8
 
 
-def show_diff(file: str, before: str, after: str) -> None:
+def show_diff(file: str, old_text: str, new_text: str) -> None:
     """Print the diff between two texts of a file.
 
-    At a terminal, its characters are escaped; a program gets them unchanged.
+    The name of the file is escaped. At a terminal, the texts are escaped, too; a program gets them unchanged.
     """
-    text = line_diff(escaped(file), before, after)
+    text = line_diff(escaped(file), old_text, new_text)
     if sys.stdout.isatty():
         click.echo(text, nl=False)
     else:

@@ -46,7 +46,7 @@ def verb_command(verb: str) -> click.Command:
 
 
 def verbs_of(group: str) -> Sequence[str]:
-    """Return the verbs under a heading of the help, in their order there."""
+    """Return the verbs under a heading of the help, in the order in which the help lists them."""
     return [verb for verb, entry in VERBS.items() if entry.group == group]
 
 

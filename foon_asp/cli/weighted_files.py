@@ -10,10 +10,10 @@ from foon_asp.rules.passed_constraint import Constraint, find_constraint, given_
 def parse_weights(settings: Sequence[str], option: str) -> dict[Constraint, int]:
     """Parse the values ``FILE.lp=WEIGHT`` of an option; return the weight of each constraint.
 
-    A weight is a whole number from 1 to a million. In place of the file, there may be a rule or a ready-made
+    A weight is a whole number from 1 to 1,000,000. In place of the file, there may be a rule or a ready-made
     constraint. ``option`` is the flag, for messages.
 
-    Raises :class:`UserError` for a value of another form, and for a constraint with two weights.
+    Raises :class:`UserError` for a value of another form, and for a constraint with two different weights.
     """
     weights: dict[Constraint, int] = {}
     for setting in settings:

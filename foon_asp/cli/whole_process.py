@@ -10,18 +10,18 @@ from typing import NoReturn
 BEGAN = time.monotonic()
 """The time, of the monotonic clock, when the command line was imported: shortly after the process started."""
 
-_kept: list[object] = []
+_kept_objects: list[object] = []
 
 
-def keep(*objects: object) -> None:
-    """Refer to objects until the next call, so that Python does not free them before the process exits.
+def keep_until_exit(*objects: object) -> None:
+    """Keep references to objects, so that Python does not free them before the process exits.
 
-    Freeing a network of a million units would take seconds.
+    They replace the objects of the previous call. Freeing a network of a million units would take seconds.
     """
-    _kept[:] = objects
+    _kept_objects[:] = objects
 
 
-def leave(code: int) -> NoReturn:
+def exit_process(code: int) -> NoReturn:
     """Run the exit handlers, flush the output, and exit the process without freeing its objects."""
     atexit._run_exitfuncs()
     for stream in (sys.stdout, sys.stderr):

@@ -39,11 +39,11 @@ class AlignedNode(Value, frozen=True):
     """A node of a recipe, and the nearest one of a network.
 
     Attributes:
-        match: known: the network has it; one edit: it has one that differs in one edit of the table of
-            stand-ins; new: it has neither.
+        match: known: the network has the node; one edit: the network has a node that differs in one edit of
+            the table of stand-ins; new: neither is so.
         node: The node of the recipe.
-        nearest: The node of the network that is one edit away; null for others.
-        edit: What the two differ in; null for others.
+        nearest: The node of the network that is one edit away; null for a known or a new node.
+        edit: The edit in which the two nodes differ; null for a known or a new node.
     """
 
     match: Match
@@ -57,8 +57,8 @@ class Aligned(Result, frozen=True, kw_only=True, tag=schema_name("align")):
 
     Attributes:
         in_network: How many nodes of the recipe the network has.
-        one_edit: How many are one edit away from a node that it has.
-        new: How many are neither.
+        one_edit: How many nodes of the recipe are one edit away from a node of the network.
+        new: How many nodes of the recipe are neither in the network nor one edit away.
         labels_known: How many labels of the recipe the network has.
         labels: How many different labels the recipe has.
         units_known: How many units of the recipe the network has.
@@ -87,11 +87,14 @@ class Aligned(Result, frozen=True, kw_only=True, tag=schema_name("align")):
     """The units of the recipe in the words of the network."""
 
     def foon(self) -> str:
-        """Return the recipe as FOON text, where nodes that differ in a word are as in the network."""
+        """Return the recipe as FOON text; a node that differs in a word or label is as the network has it."""
         return write_units(self.aligned_units, ["In the words of another network"])
 
     def show(self) -> Iterator[Block]:
-        """Yield how many nodes are known, the nodes one edit away with their edits, and the new nodes."""
+        """Yield counts of nodes, labels and units, the nodes one edit away with their edits, and new nodes.
+
+        The nodes one edit away are in order of the price of their edit.
+        """
         yield (
             f"{counted(len(self.nodes), 'node')}: {self.in_network} known, {self.one_edit} one edit away, "
             f"{self.new} new"
@@ -112,9 +115,9 @@ class Aligned(Result, frozen=True, kw_only=True, tag=schema_name("align")):
 
 
 def _pose_recipe(command: Command) -> tuple[Foon]:
-    """Return the recipe that a command names, as the first argument of :func:`align`.
+    """Return the recipe that a command names, in a tuple, as the first argument of :func:`align`.
 
-    Raises :class:`UserError` if it names none.
+    Raises :class:`UserError` if the command names none.
     """
     if not command.names_data:
         raise UserError("align what? name a recipe: foon-asp align RECIPE --to NETWORK")
@@ -160,43 +163,44 @@ def align(
     if to is None:
         raise UserError("align with what? name a network: --to NETWORK")
     recipe = data.dataset.data.network
-    read = to.dataset if isinstance(to, Foon) else read_dataset(find_data(None, [Path(to)]))
-    other = read.data.network
+    target = to.dataset if isinstance(to, Foon) else read_dataset(find_data(None, [Path(to)]))
+    network = target.data.network
     table = data.dataset.stand_ins or StandInTable.usual()
-    prices = NodePrices(other, table)
-    nearest = {node: _node_one_edit_away(node, other, table, prices) for node in recipe.objects}
-    nodes = tuple(_aligned_node(node, o, recipe, other, table) for node, o in nearest.items())
+    prices = NodePrices(network, table)
+    nearest = {node: _node_one_edit_away(node, network, table, prices) for node in recipe.objects}
+    nodes = tuple(_aligned_node(node, o, recipe, network, table) for node, o in nearest.items())
     matches = Counter(node.match for node in nodes)
     labels = set(recipe.by_label)
     aligned = Aligned(
         in_network=matches[Match.IN_NETWORK],
         one_edit=matches[Match.ONE_EDIT],
         new=matches[Match.NEW],
-        labels_known=len(labels & set(other.by_label)),
+        labels_known=len(labels & set(network.by_label)),
         labels=len(labels),
-        units_known=sum(other.unit_id(unit) is not None for unit in recipe),
+        units_known=sum(network.unit_id(unit) is not None for unit in recipe),
         units=len(recipe),
         nodes=nodes,
     )
-    words = {
-        node: other.objects[o] if o is not None and row.edit and row.edit.edit in _WORD_EDITS else node
+    aligned_of = {
+        node: network.objects[o] if o is not None and row.edit and row.edit.edit in _WORD_EDITS else node
         for (node, o), row in zip(nearest.items(), nodes, strict=True)
     }
-    renamed = (
+    aligned_units = (
         FunctionalUnit.of(
-            unit.motion, map(words.__getitem__, unit.inputs), map(words.__getitem__, unit.outputs)
+            unit.motion, map(aligned_of.__getitem__, unit.inputs), map(aligned_of.__getitem__, unit.outputs)
         )
         for unit in recipe
     )
-    return aligned.knowing(aligned_units=tuple(renamed))
+    return aligned.knowing(aligned_units=tuple(aligned_units))
 
 
 def _node_one_edit_away(
     node: ObjectNode, network: Network, table: StandInTable, prices: NodePrices
 ) -> int | None:
-    """Return the id of the cheapest node of a network that differs from a node in one edit of the table.
+    """Return the id of the node of a network that may stand in for ``node`` by a single edit of the table.
 
-    It is ``None`` if there is no such node, or if the network has the node itself.
+    Of several such nodes, the one with the lowest price is returned. Return ``None`` if there is none, or if
+    the network has ``node`` itself.
     """
     if network.object_id(node) is not None:
         return None
@@ -205,15 +209,16 @@ def _node_one_edit_away(
 
 
 def _aligned_node(
-    node: ObjectNode, nearest: int | None, recipe: Network, other: Network, table: StandInTable
+    node: ObjectNode, nearest: int | None, recipe: Network, network: Network, table: StandInTable
 ) -> AlignedNode:
-    """Return how a node of a recipe is found in the ``other`` network.
+    """Return a node of a ``recipe`` as a value that says how the ``network`` has it.
 
-    ``nearest`` is the id of the node one edit away; ``None`` if there is none, or if the node is known.
+    ``nearest`` is the id of the node of the network one edit away; ``None`` if there is none, or if the
+    network has ``node`` itself.
     """
     value = named_node(recipe, node)
     if nearest is None:
-        match = Match.NEW if other.object_id(node) is None else Match.IN_NETWORK
+        match = Match.NEW if network.object_id(node) is None else Match.IN_NETWORK
         return AlignedNode(match, value, None, None)
-    (edit,) = table.differences(other.objects[nearest], node) or ()
-    return AlignedNode(Match.ONE_EDIT, value, node_of(other, nearest), NodeEdit(*edit))
+    (edit,) = table.differences(network.objects[nearest], node) or ()
+    return AlignedNode(Match.ONE_EDIT, value, node_of(network, nearest), NodeEdit(*edit))

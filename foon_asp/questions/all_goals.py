@@ -5,8 +5,7 @@ from fractions import Fraction
 from itertools import chain
 from typing import Unpack
 
-from foon_asp.asp import Outcome, Settings, Status
-from foon_asp.asp import solve as find
+from foon_asp.asp import Outcome, Settings, Status, solve
 from foon_asp.dataset.nearby import NearbyProblem, without_reading_more
 from foon_asp.dataset.nearby_optimum import near_goals
 from foon_asp.deadline import Deadline
@@ -52,19 +51,22 @@ class Optima(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("opt
         return Ending.LIMIT if stopped else Ending.DONE
 
     def show(self) -> Iterator[Block]:
-        """Yield a table and notes on its words; answers with equal goal, status and costs share a row."""
+        """Yield a title, a table, and notes on words and signs in the table.
+
+        Answers with equal goal, status and costs share a row.
+        """
         first = self.answers[0]
         trees, tree = ("task trees", "tree") if self.items == "lasting" else ("plans", "plan")
         yield f"The best {trees} ({first.conditions})"
         yield ""
         objective_lists = list(dict.fromkeys(answer.objectives for answer in self.answers))
-        others = [
+        other_objectives = [
             objective for objective in dict.fromkeys(chain(*objective_lists)) if objective not in _ALWAYS
         ]
-        columns = (*_ALWAYS, *others)
+        columns = (*_ALWAYS, *other_objectives)
         rows: list[list[str | Cell]] = []
-        for goal, equal in self._by_goal():
-            for index, answers in enumerate(equal):
+        for goal, answer_groups in self._by_goal():
+            for index, answers in enumerate(answer_groups):
                 cells = _cells(answers, len(objective_lists), columns)
                 rows.append([Cell("" if index else goal, "strong"), *cells])
         yield Table(
@@ -84,8 +86,8 @@ class Optima(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("opt
             rows = goals.setdefault(answer.goals, {})
             rows.setdefault((answer.status, answer.costs), []).append(answer)
         for rows in goals.values():
-            equal = list(rows.values())
-            yield " + ".join(goal.label for goal in equal[0][0].goals), equal
+            answer_groups = list(rows.values())
+            yield " + ".join(goal.label for goal in answer_groups[0][0].goals), answer_groups
 
     def __repr__(self) -> str:
         return f"<Optima: {len(self.answers)} answers>"
@@ -94,8 +96,10 @@ class Optima(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("opt
 def _cells(answers: list[Answer], list_count: int, columns: Iterable[Objective]) -> Iterator[str | Cell]:
     """Yield the cells of a row, without that of the goal, for answers with equal status and costs.
 
-    ``list_count`` is the number of lists of objectives. If the answers are for all lists, a cell says
-    ``all``.
+    The first cell names the lists of objectives that the answers are for. It says ``all`` if there are
+    several lists, ``list_count`` in number, and the answers are for all of them. A ``*`` marks a tree that
+    does not run if items are used up. The measures by the objectives in ``columns``, the status and the sum
+    of the seconds follow.
     """
     first = answers[0]
     names = [" then ".join(answer.objectives) for answer in answers]
@@ -111,14 +115,14 @@ def _cells(answers: list[Answer], list_count: int, columns: Iterable[Objective])
 
 
 def _measure_text(objective: Objective, measure: int | Fraction) -> str:
-    """Return a measure as text: a success rate as a decimal, such as ``0.6440`` or ``6.440e-04``."""
+    """Return a measure as text; a success rate is a decimal: ``0.6440``, or ``6.440e-04`` below 1/1000."""
     if objective is not Objective.SUCCESS:
         return figure_text(objective, measure)
     return f"{float(measure):.4f}" if measure >= Fraction(1, 1000) else f"{float(measure):.3e}"
 
 
 def _is_short_of_copies(answer: Answer) -> bool:
-    """Return whether the tree of the answer, if any, would not run if items were used up."""
+    """Whether the answer has a tree, and this tree is known not to run if items are used up."""
     return answer.used_up is not None and answer.used_up.runs is False
 
 
@@ -145,24 +149,24 @@ def solve_all_goals(
         >>> [answer.costs.units for answer in found.answers]
         [2, 3, 7, 7]
     """
-    texts = [objectives] if isinstance(objectives, str) else objectives
-    lists = [chosen_objectives(problem, text) for text in texts]
+    list_texts = [objectives] if isinstance(objectives, str) else objectives
+    lists = [chosen_objectives(problem, text) for text in list_texts]
     # limits are for each answer, ctrl-C is for all of them
     settings, each_limits = settings_of(options), limits_of(options)
     outer = Deadline(within=caller().deadline)
-    solved = [SolvedGoals() for _ in lists]
+    solved_by_list = [SolvedGoals() for _ in lists]
     outcomes_of: dict[int, list[Outcome]] = {}
-    for number, goal in _in_search_order(_problems_by_goal(problem, settings), solved[0]):
-        outcomes_of[number] = []
-        for chosen, others in zip(lists, solved, strict=True):
+    for index, goal in _in_search_order(_problems_by_goal(problem, settings), solved_by_list[0]):
+        outcomes_of[index] = []
+        for chosen, solved in zip(lists, solved_by_list, strict=True):
             goal_settings = settings._replace(deadline=Deadline(*each_limits, within=outer))
             nearby = near_goals(goal, chosen, goal_settings)
             if nearby is None:
-                outcome = find(read_deferred(goal), chosen, goal_settings, caller().reporter, solved=others)
+                outcome = solve(read_deferred(goal), chosen, goal_settings, caller().reporter, solved=solved)
             else:
                 outcome = answer_from_store(nearby, chosen, goal_settings).outcome
-            outcomes_of[number].append(outcome)
-    outcomes = [outcome for number in range(len(outcomes_of)) for outcome in outcomes_of[number]]
+            outcomes_of[index].append(outcome)
+    outcomes = [outcome for index in range(len(outcomes_of)) for outcome in outcomes_of[index]]
     objectives_of_all = dict.fromkeys(objective for outcome in outcomes for objective in outcome.objectives)
     return Optima(
         **head_of(without_reading_more(problem), objectives_of_all), answers=tuple(map(Answer.of, outcomes))
@@ -173,20 +177,21 @@ def _in_search_order(problems: Sequence[Problem], solved: SolvedGoals) -> Iterat
     """Yield problems of one goal each, with their index, in the order in which they are to be solved.
 
     The order is the given one until ``solved`` has landmarks to share. From then on, it is by ascending
-    ``h_add`` of the goal.
+    ``h_add`` of the goal. The caller adds to ``solved`` while it solves the problems.
     """
     remaining = [*range(len(problems))]
     while remaining and not solved.sharing:
-        number = remaining.pop(0)
-        yield number, problems[number]
-    for number in sorted(remaining, key=lambda number: solved.h_add(problems[number].goals[0])):
-        yield number, problems[number]
+        index = remaining.pop(0)
+        yield index, problems[index]
+    for index in sorted(remaining, key=lambda index: solved.h_add(problems[index].goals[0])):
+        yield index, problems[index]
 
 
 def _problems_by_goal(problem: Problem, settings: Settings) -> list[Problem]:
     """Return a problem for each goal of a problem.
 
-    Of a large store, only what an answer needs is read if there are no rules, else all data.
+    Over a large store without rules and replaced encodings, each problem reads units near its own goal.
+    Otherwise the whole network is read if rules or stand-ins need it.
     """
     if isinstance(problem, NearbyProblem) and not settings.constraints and settings.replaced is None:
         return problem.single_goal_problems()

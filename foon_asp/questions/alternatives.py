@@ -109,7 +109,10 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
         return Ending.DONE if self.trees else Ending.NEGATIVE
 
     def show(self) -> Iterator[Block]:
-        """Yield the number of trees, and for the first 20 their costs and differences from the first tree."""
+        """Yield the goals, what is proved, and up to 20 trees with their costs.
+
+        The first tree is shown with all its steps, each other one by its differences from the first.
+        """
         yield from self.goal_lines()
         yield from self._claim_lines()
         max_shown = 20
@@ -132,42 +135,43 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
 
         For trees that differ most, they also say where the trees part.
         """
-        rule, number = self.conditions, len(self.trees)
+        conditions, tree_count = self.conditions, len(self.trees)
         if not self.trees and self.complete:
-            yield f"infeasible: proved that no task tree exists ({rule})"
+            yield f"infeasible: proved that no task tree exists ({conditions})"
         elif not self.trees:
-            yield f"unknown: stopped at a limit before any task tree was found ({rule})"
+            yield f"unknown: stopped at a limit before any task tree was found ({conditions})"
         elif self.wanted is None:
             yield from self._optimal_claim_lines()
-        elif number < self.wanted and self.complete:
-            be = "is" if number == 1 else "are"
-            yield f"there {be} {counted(number, 'tree')} and no more ({rule})"
+        elif tree_count < self.wanted and self.complete:
+            be = "is" if tree_count == 1 else "are"
+            yield f"there {be} {counted(tree_count, 'tree')} and no more ({conditions})"
         elif not self.complete:
-            yield f"{counted(number, 'tree')} of those found before a limit ({rule})"
+            yield f"{counted(tree_count, 'tree')} of those found before a limit ({conditions})"
             if self.unproved:
                 yield f"other trees may come before the last {self.unproved} of them"
         else:
-            yield f"{counted(number, 'tree')} ({rule})"
+            yield f"{counted(tree_count, 'tree')} ({conditions})"
         if self.different and self.trees:
             yield from self._parting_lines()
 
     def _optimal_claim_lines(self) -> Iterator[str]:
         """Yield lines on optimal trees: their number, whether it is proved, and the steps in all of them."""
-        rule, by, number = self.conditions, ", then ".join(self.objectives), len(self.trees)
+        conditions, by, tree_count = self.conditions, ", then ".join(self.objectives), len(self.trees)
         costs = costs_text(self.trees[0].costs, self.objectives)
-        if number == self.unproved:
-            yield f"feasible, not proved best by {by} ({rule}; stopped at a limit): {costs}"
+        if tree_count == self.unproved:
+            yield f"feasible, not proved best by {by} ({conditions}; stopped at a limit): {costs}"
         elif not self.complete:
-            yield f"at least {counted(number, 'optimal tree')} by {by} ({rule}; stopped at a limit): {costs}"
-        elif number == 1:
-            yield f"the optimal tree by {by} is the only one: proved ({rule}): {costs}"
+            optimal_trees = counted(tree_count, "optimal tree")
+            yield f"at least {optimal_trees} by {by} ({conditions}; stopped at a limit): {costs}"
+        elif tree_count == 1:
+            yield f"the optimal tree by {by} is the only one: proved ({conditions}): {costs}"
         else:
-            yield f"{number} optimal trees by {by}, and no others: proved ({rule}): {costs}"
-        if number > 1 and self.optimal:
-            every = set(self.in_every_optimal)
-            yield f"in every one{' found' * (not self.complete)}: {counted(len(every), 'unit')}"
-            shown = {step.id: step for step in self.trees[0].units if step.id in every}
-            yield from step_lines(shown[unit] for unit in self.in_every_optimal)
+            yield f"{tree_count} optimal trees by {by}, and no others: proved ({conditions}): {costs}"
+        if tree_count > 1 and self.optimal:
+            common_units = set(self.in_every_optimal)
+            yield f"in every one{' found' * (not self.complete)}: {counted(len(common_units), 'unit')}"
+            step_of = {step.id: step for step in self.trees[0].units if step.id in common_units}
+            yield from step_lines(step_of[unit] for unit in self.in_every_optimal)
 
     def _parting_lines(self) -> Iterator[str]:
         """Yield lines on each object node that trees make in different ways, with the trees of each way."""
@@ -195,7 +199,7 @@ class Alternatives(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_nam
 
 
 class _CostedIds(NamedTuple):
-    """A tree, by the ids of its units in an order that executes, and its costs."""
+    """A tree with its costs: ``units`` are the ids of its units in an order that executes."""
 
     units: tuple[int, ...]
     costs: Costs
@@ -204,7 +208,7 @@ class _CostedIds(NamedTuple):
 class _Pool(NamedTuple):
     """Trees in order of their costs.
 
-    ``complete``: whether no tree is missing that was asked for.
+    ``complete``: whether all trees that were asked for are among them.
     ``unproved``: the number of trees at the end of the list before which other trees might come.
     """
 
@@ -224,9 +228,10 @@ def alternatives_or_union(
     limit: int = 100,
     **options: Unpack[CommonOptions],
 ) -> Result:
-    """Return :func:`alternatives`, or with ``union`` the units of every and of some optimal tree.
+    """Return the result of :func:`alternatives`; with ``union``, the units of every and of some optimal tree.
 
-    Raises :class:`UserError` for ``union`` with ``best`` or ``different``.
+    With ``union``, ``limit`` has no effect. Raises :class:`UserError` for ``union`` with ``best`` or
+    ``different``.
     """
     if not union:
         return alternatives(
@@ -287,7 +292,7 @@ def alternatives(
         different: Find this many trees that differ most from each other.
         within: Among ``different`` trees (and with ``--union``), how much worse by the first objective a tree
             may be, in percent. 10 allows 11 units if 10 are best, or 0.9 times the best success.
-        limit: The greatest number of trees to look at.
+        limit: The greatest number of trees to look at. It has no effect on ``best``.
 
     Returns:
         The ``trees``; ``complete`` tells whether they are all that were asked for, proved.
@@ -320,8 +325,8 @@ def alternatives(
 
 
 def _alternatives_of(problem: Problem, objectives: tuple[Objective, ...], pool: _Pool) -> Alternatives:
-    """Return the trees of a pool as a result, with the units of all optimal trees and where trees part."""
-    order, number = levels(objectives), problem.network.unit_number
+    """Return the trees of a pool as a result, with units of all and of some optimal trees, and partings."""
+    order, unit_number = levels(objectives), problem.network.unit_number
     proved = pool.trees if len(pool.trees) > pool.unproved else ()
     optimal = [
         frozenset(tree.units) for tree in proved if tree.costs.key(order) == proved[0].costs.key(order)
@@ -331,17 +336,18 @@ def _alternatives_of(problem: Problem, objectives: tuple[Objective, ...], pool: 
         complete=pool.complete,
         unproved=pool.unproved,
         optimal=len(optimal),
-        in_every_optimal=tuple(sorted(map(number, frozenset.intersection(*optimal) if optimal else ()))),
-        in_some_optimal=tuple(sorted(map(number, frozenset().union(*optimal)))),
+        in_every_optimal=tuple(sorted(map(unit_number, frozenset.intersection(*optimal) if optimal else ()))),
+        in_some_optimal=tuple(sorted(map(unit_number, frozenset().union(*optimal)))),
         partings=tuple(_partings(problem, [frozenset(tree.units) for tree in pool.trees])),
         trees=tuple(costed_tree(problem, tree.units, tree.costs) for tree in pool.trees),
     )
 
 
 def _partings(problem: Problem, trees: Sequence[frozenset[int]]) -> Iterator[Parting]:
-    """Yield the node nearest to the goals that the trees make in different ways, if there is one.
+    """Yield the first node, from the goals backwards, that the trees make in different ways, if there is one.
 
-    Then follows such a node for each group of trees that make this node in one way, and so on.
+    The trees that make this node in one way are a group. For each group of several trees, the first node that
+    they make in different ways follows, and so on.
     """
     groups = [tuple(range(len(trees)))]
     for group in groups:  # grows during the loop
@@ -358,9 +364,9 @@ def _first_parting(
 ) -> tuple[int, dict[tuple[int, ...], list[int]]] | None:
     """Return the first object node, from the goals backwards, that trees make in different ways.
 
-    ``trees`` maps indices of trees to their units. The node comes with a mapping from the units that make it
-    to the indices of the trees with these units. A unit that needs the node itself does not make it. ``None``
-    is returned if the trees part nowhere.
+    ``trees`` maps indices of trees to their units. The node is returned by id, with a mapping from the units
+    that make it to the indices of the trees with these units. A unit that needs the node itself does not make
+    it. Nodes of the kitchen are skipped. Return ``None`` if the trees make every node in the same way.
     """
     queue = list(problem.goals)
     for o in queue:  # grows during the loop
@@ -380,27 +386,28 @@ def _first_parting(
 
 
 def _most_different(pool: _Pool, count: int, settings: Settings) -> _Pool:
-    """Choose ``count`` trees of a pool, such that the most similar two differ as much as possible.
+    """Return a pool of ``count`` trees of a pool, such that the most similar two differ as much as possible.
 
-    This is max-min diversity, solved by clingo. A pool without more trees is returned as it is. If a limit
-    comes first, the choice is the best that was found, or else a greedy one.
+    This is max-min diversity, solved by clingo. A pool of at most ``count`` trees is returned as it is. If a
+    limit comes first, the choice is the best that was found, or else a greedy one, and the pool is not
+    complete. The trees keep their order.
     """
     if len(pool.trees) <= count:
         return pool
-    ended = run(
+    clingo_run = run(
         (question_encoding("most_different.lp"),),
         write_distances(list(map(_executions, pool.trees)), count),
         CLINGO_OPTIONS,
         settings.begun,
         predicates=[("_chosen", 1)],
     )
-    if ended.exhausted and not ended.atoms:
+    if clingo_run.exhausted and not clingo_run.atoms:
         raise BugError("no trees could be chosen")
-    chosen = sorted(ended.atoms["_chosen"]) if ended.atoms else _choose_far_apart(pool.trees, count)
+    chosen = sorted(clingo_run.atoms["_chosen"]) if clingo_run.atoms else _choose_far_apart(pool.trees, count)
     return pool._replace(
-        trees=tuple(pool.trees[number] for number in chosen),
-        complete=pool.complete and ended.exhausted,
-        unproved=sum(number >= len(pool.trees) - pool.unproved for number in chosen),
+        trees=tuple(pool.trees[index] for index in chosen),
+        complete=pool.complete and clingo_run.exhausted,
+        unproved=sum(index >= len(pool.trees) - pool.unproved for index in chosen),
     )
 
 
@@ -415,17 +422,15 @@ def _executions(tree: _CostedIds) -> frozenset[tuple[int, int]]:
 
 
 def _choose_far_apart(trees: Sequence[_CostedIds], count: int) -> list[int]:
-    """Choose ``count`` trees greedily, each the most different from those before (farthest point first).
+    """Choose ``count`` trees greedily: the first, then each time the tree farthest from those chosen before.
 
-    Return their indices in ascending order; the first tree is among them.
+    This is farthest-point-first traversal. Return the indices of the trees in ascending order.
     """
     executions = list(map(_executions, trees))
     chosen = [0]
     while len(chosen) < count:
         remaining = (index for index in range(len(trees)) if index not in chosen)
-        chosen.append(
-            max(remaining, key=lambda n: min(len(executions[n] ^ executions[before]) for before in chosen))
-        )
+        chosen.append(max(remaining, key=lambda i: min(len(executions[i] ^ executions[j]) for j in chosen)))
     return sorted(chosen)
 
 
@@ -436,10 +441,11 @@ def _rank_trees(
     max_trees: int,
     max_loss: Fraction | None,
 ) -> _Pool:
-    """Enumerate trees in order of costs, at most ``max_trees``.
+    """Return a pool of at most ``max_trees`` trees, enumerated in order of costs.
 
     ``max_loss`` is a share of the best value of the first objective: a tenth allows 11 units if 10 are best.
-    A loss of 0 allows only trees that are optimal by all objectives, and ``None`` allows all trees. After a
+    A loss of 0 allows only trees that are optimal by all objectives, and ``None`` allows all trees. The pool
+    is complete if no allowed tree is missing; for ``None``, also if it has ``max_trees`` trees. After a
     limit, the pool ends with trees that were found but are not proved to be the next ones.
     """
     if problem.items is not None and max_loss == 0:
@@ -456,9 +462,11 @@ def _rank_trees(
             complete = True
             break
         if len(trees) == max_trees:
-            complete = max_loss is None
             break
         trees.append(_CostedIds(units, costs))
+        if max_loss is None and len(trees) == max_trees:  # no search for a tree that was not asked for
+            complete = True
+            break
     else:
         complete = ranked.complete
     proved_count = len(trees)
@@ -473,15 +481,19 @@ def _rank_trees(
 
 
 def _is_worse(costs: Costs, best: Costs, order: tuple[Objective, ...], max_loss: Fraction) -> bool:
-    """Return whether costs are worse than the best by more than ``max_loss``, as in :func:`_rank_trees`."""
+    """Whether costs are worse than ``best`` by more than ``max_loss``.
+
+    A loss of 0 compares by all objectives in ``order``. Another loss is a share of the best value of the
+    first objective, which alone is compared.
+    """
     if not max_loss:
         return costs.key(order) > best.key(order)
-    figure, best_figure = Fraction(costs.measure(order[0])), Fraction(best.measure(order[0]))
+    measure, best_measure = Fraction(costs.measure(order[0])), Fraction(best.measure(order[0]))
     if multiplies(order[0]):
-        return figure < best_figure * (1 - max_loss)
-    return figure > best_figure * (1 + max_loss)
+        return measure < best_measure * (1 - max_loss)
+    return measure > best_measure * (1 + max_loss)
 
 
 def _tree_numbers(indices: Sequence[int]) -> str:
-    """Return ``trees 1, 3`` for the indices 0 and 2."""
+    """Return the numbers of trees in words: ``trees 1, 3`` for the indices 0 and 2, ``tree 1`` for 0."""
     return f"tree{'s' * (len(indices) > 1)} {', '.join(str(index + 1) for index in indices)}"

@@ -11,7 +11,7 @@ from msgspec.structs import replace
 
 from foon_asp.asp import Outcome, Proof, Reporter, Settings, Status
 from foon_asp.asp.assembly import ReachOfRules, reach_of_rules
-from foon_asp.asp.optimum import solve as find
+from foon_asp.asp.optimum import solve
 from foon_asp.dataset.nearby_optimum import least_with_more, near_goals, solve_nearby
 from foon_asp.network import counted
 from foon_asp.problem import Costs, Objective, Problem, levels
@@ -107,8 +107,8 @@ class SkippedGoal(Value, frozen=True):
     def __str__(self) -> str:
         if self.cause is Cause.CYCLE:
             return f"{self.goal}: {self.object} can only be made from itself ({self.cycle_size} in the cycle)"
-        what = "it" if self.object == self.goal else self.object
-        return f"{self.goal}: {what} is not in the kitchen, and no unit makes it"
+        missing = "it" if self.object == self.goal else self.object
+        return f"{self.goal}: {missing} is not in the kitchen, and no unit makes it"
 
 
 class EngineCheck(Value, frozen=True):
@@ -316,19 +316,22 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
 
     @property
     def claim(self) -> str:
-        """A line with the status, objectives and costs of the tree; without one, why there is none."""
+        """A line with the status, objectives and costs of the tree; without a tree, why there is none."""
         noun = "task tree" if self.items == "lasting" else "plan"
-        rule = self.conditions if self.encodings is None else f"{self.conditions}, as {self.encodings} has it"
+        conditions = self.conditions
+        if self.encodings is not None:
+            conditions += f", as {self.encodings} has it"
         if self.status is Status.INFEASIBLE:
-            return f"infeasible: proved that no {noun} exists ({rule})"
+            return f"infeasible: proved that no {noun} exists ({conditions})"
         if self.costs is None:
-            return f"unknown: stopped at {self.stopped or 'a limit'}, before any {noun} was found ({rule})"
+            limit = self.stopped or "a limit"
+            return f"unknown: stopped at {limit}, before any {noun} was found ({conditions})"
         claim = "optimal" if self.status is Status.OPTIMAL else "feasible, not proved best"
         best = ", then ".join(self.objectives)
-        return f"{claim} by {best} ({rule}): {costs_text(self.costs, self.objectives)}"
+        return f"{claim} by {best} ({conditions}): {costs_text(self.costs, self.objectives)}"
 
     def headlines(self) -> list[str]:
-        """Return the claim, and a second line if the tree would not run with items used up."""
+        """Return the claim, and for some trees a second line: the note of :func:`used_up_note`."""
         note = [] if self.ids is None else used_up_note(self.problem, self.problem.tree(self.ids))
         return [self.claim, *note]
 
@@ -354,7 +357,10 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         yield from (*self.goal_lines(), *self.findings(), *self.notes)
 
     def findings(self) -> Iterator[Block]:
-        """Yield the claim, the remarks and the steps; if no tree exists, the reasons for that."""
+        """Yield the claim, the remarks and the steps; if no tree exists, the reasons for that.
+
+        For a tree that is not proved best, the bounds follow the remarks.
+        """
         yield from self.headlines()
         yield from self.remarks()
         if self.status is Status.FEASIBLE:
@@ -369,7 +375,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
             yield from why_infeasible(self.problem, caller().deadline)
 
     def remarks(self) -> Iterator[str]:
-        """Yield lines on goals left out, on shared units, soft constraints, retries and stand-ins."""
+        """Yield lines on goals left out, shared units, soft constraints, retries and stand-ins, if any."""
         if isinstance(self.skipped, tuple) and self.skipped:
             be = "is" if len(self.skipped) == 1 else "are"
             yield f"{counted(len(self.skipped), 'goal')} cannot be made and {be} left out:"
@@ -382,7 +388,11 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
             yield from stand_in_lines(self.stand_ins)
 
     def _sharing_lines(self) -> Iterator[str]:
-        """Yield lines with the costs of each goal by itself, and the units that serve several goals."""
+        """Yield lines with the costs of each goal by itself, and the units that serve several goals.
+
+        An answer for a single goal has no such lines. If the goals were not solved one by one, a line names
+        the option for that. If one of them has no tree, the shared units are left out.
+        """
         if not isinstance(self.serves, tuple):
             return
         yield from map(str, self.goals_alone if isinstance(self.goals_alone, tuple) else ())
@@ -396,8 +406,10 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         elif total is None:
             return
         else:
-            alone, together = (figure_text(by, measure) for measure in (total, self.costs.measure(by)))
-            yield f"{by} one by one {alone}, together {together}; {shared_text}"
+            alone_text, together_text = (
+                figure_text(by, measure) for measure in (total, self.costs.measure(by))
+            )
+            yield f"{by} one by one {alone_text}, together {together_text}; {shared_text}"
         for step in self.units:
             if step.id in shared:
                 labels = ", ".join(goal.label for goal in shared[step.id])
@@ -407,14 +419,15 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         """Yield lines with the penalty, and the soft constraints that the tree breaks."""
         if not isinstance(self.soft_constraints, tuple) or self.penalty is None:
             return
-        number = counted(len(self.soft_constraints), "soft constraint")
+        all_constraints = counted(len(self.soft_constraints), "soft constraint")
         broken = [constraint for constraint in self.soft_constraints if constraint.broken]
         if not broken:
-            one = len(self.soft_constraints) == 1
-            yield f"penalty 0: {'the soft constraint holds' if one else f'all of {number} hold'}"
+            is_single = len(self.soft_constraints) == 1
+            holding = "the soft constraint holds" if is_single else f"all of {all_constraints} hold"
+            yield f"penalty 0: {holding}"
             return
         least = "the least there is" if self.status is Status.OPTIMAL else "not proved least"
-        yield f"penalty {self.penalty}, {least}: {len(broken)} of {number} broken"
+        yield f"penalty {self.penalty}, {least}: {len(broken)} of {all_constraints} broken"
         for constraint in broken:
             times = "" if constraint.broken == 1 else f", {constraint.broken} times"
             yield from constraint.lines(f"    (weight {constraint.weight}{times})")
@@ -430,7 +443,10 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
     """How long motions take; motions without a stated duration are missing."""
 
     def robot_plan(self) -> "RobotPlan | None":
-        """Return the plan for a robot's program, with any retry policy; ``None`` without a tree."""
+        """Return the plan for a robot's program, with the retry policy if there is one.
+
+        Return ``None`` without a tree.
+        """
         if self.ids is None:
             return None
         from foon_asp.questions.robot_plan import RobotPlan  # noqa: PLC0415
@@ -442,16 +458,17 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         return RobotPlan.of(self.problem, self.objectives, self.ids, self.durations, policy)
 
     def remark(self, format_: str) -> str:
-        """Return lines on what a format cannot hold: the claim, and notes.
+        """Return lines on what a format cannot hold: the claim, the remarks, and the notes on the proof.
 
-        A tree that is proved optimal without soft constraints needs no claim.
+        The claim is left out if the tree is proved optimal without soft constraints. The remarks are left out
+        for ``json``, which has them as fields. Formats of steps get a note if no utensils are known.
         """
-        claim, *note = self.headlines()
-        note += self.remarks()
-        claimed = [] if self.status is Status.OPTIMAL and self.penalty is UNSET else [claim]
+        claim, *remarks = self.headlines()
+        remarks += self.remarks()
+        claims = [] if self.status is Status.OPTIMAL and self.penalty is UNSET else [claim]
         if format_ in {"steps", "steps-csv", "behaviour-tree"} and self.units and not self.problem.utensils:
-            note.append("note: no utensils are known (--utensils): tools are what a step leaves as it is")
-        return "\n".join([*claimed, *([] if format_ == "json" else note), *self.notes])
+            remarks.append("note: no utensils are known (--utensils): tools are what a step leaves as it is")
+        return "\n".join([*claims, *([] if format_ == "json" else remarks), *self.notes])
 
     def drawing(self) -> "Drawing | None":
         """Return the drawing of the tree; ``None`` without a tree."""
@@ -466,7 +483,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
 
 
 class WithAnswer(Result, AboutGoals, frozen=True, kw_only=True):
-    """A result that comes with the best tree, which its picture shows.
+    """A result that has the best tree, and draws it.
 
     Attributes:
         answer: The best tree; null without one.
@@ -488,9 +505,9 @@ def answer_problem(
 ) -> Answer:
     """Solve a problem; return the answer, with the seconds that reading took, if they are known.
 
-    ``reporter`` is by default that of the caller.
+    ``reporter``: ``None`` for that of the caller.
     """
-    return _answer_of(find(problem, objectives, settings, reporter or caller().reporter))
+    return _answer_of(solve(problem, objectives, settings, reporter or caller().reporter))
 
 
 def answer_under_rules(
@@ -498,11 +515,15 @@ def answer_under_rules(
 ) -> Answer:
     """Solve a problem under user rules, which may be about units that no goal needs.
 
-    Of a large store, the units nearest to the goals are read first, if :func:`near_goals` allows it.
-    Otherwise the part that the goals can need is read, if no rule looks beyond a tree. A tree with a unit
-    outside this part has a unit more than its goals need. If such a tree cannot be better, no more is read.
+    Of a large store, no more is read than the answer takes. There are three ways:
 
-    If a limit stops the reading of more, the answer is what was found before.
+    1. If :func:`near_goals` allows it, :func:`answer_from_store` answers.
+    2. Otherwise, the units near the goals and those that the rules require are read
+       (:func:`solve_nearby_under`). The outcome is the answer if it is proved, or if a limit is reached.
+    3. Otherwise, and for data that are no large store, :func:`_answer_with_reading` answers.
+
+    If a limit or ctrl-C stops the third way, the answer is the tree of the second way, if that found one.
+    ``reporter``: ``None`` for that of the caller.
     """
     nearby = near_goals(problem, objectives, settings)
     if nearby is not None:
@@ -531,16 +552,23 @@ def answer_under_rules(
 def _answer_with_reading(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, reporter: Reporter
 ) -> Answer:
-    """Solve over the part that the goals can need, and over all data if a better tree may need more.
+    """Solve over the units that the goals can need, and over all data if rules or a better tree need more.
 
-    If a limit stops the reading of all data, the best tree of the part is returned as ``FEASIBLE``.
+    If no rule looks beyond a tree, the problem over the units that the goals can need is solved first,
+    without rules and then with them. A tree with another unit has a unit more than its goals need. So it
+    costs at least the optimum without rules, plus a unit. If it cannot be better, no more is read.
+
+    If a limit stops the reading of all data, the tree found so far is returned as ``FEASIBLE``, with the
+    optimum without rules as its bound. Without such a tree, the interrupt is raised.
     """
     problem = read_deferred(problem)
     is_partial = problem.network.object_numbers and problem.items is None and settings.constraints
     if is_partial and settings.replaced is None and reach_of_rules(settings) is ReachOfRules.TREE:
-        unconstrained = find(problem, objectives, settings._replace(constraints=(), constants=()), Reporter())
+        unconstrained = solve(
+            problem, objectives, settings._replace(constraints=(), constants=()), Reporter()
+        )
         if unconstrained.status is Status.OPTIMAL and unconstrained.costs:
-            partial = find(problem, objectives, settings, Reporter())
+            partial = solve(problem, objectives, settings, Reporter())
             order = levels(tuple(objectives))
             least = least_with_more(unconstrained.costs, order)
             if partial.status is Status.OPTIMAL and partial.costs and partial.costs.key(order) <= least:
@@ -559,10 +587,10 @@ def _answer_with_reading(
 
 
 def answer_from_store(nearby: "Nearby", objectives: Sequence[Objective], settings: Settings) -> Answer:
-    """Solve a problem over a large store, and read no more of it than the proof takes.
+    """Solve a problem over a large store, and read no more of the store than the proof takes.
 
-    If that gives no answer, for example since no tree exists, all data are read and the problem is solved
-    again.
+    If this gives no answer, for example since no tree exists, all data are read, and
+    :func:`answer_under_rules` solves the problem again.
     """
     outcome = solve_nearby(nearby, objectives, settings, caller().reporter)
     if outcome is not None:
@@ -573,7 +601,10 @@ def answer_from_store(nearby: "Nearby", objectives: Sequence[Objective], setting
 
 
 def _answer_of(outcome: Outcome) -> Answer:
-    """Return the answer for an outcome; add the time of reading to its ``seconds``, if it is known."""
+    """Return the answer for an outcome.
+
+    If the time of reading is known, it is added to the ``seconds`` of the outcome in place.
+    """
     read_seconds = caller().read_seconds
     if read_seconds is not None:
         outcome.seconds["read"] = read_seconds

@@ -63,7 +63,7 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
         greatest_success: The best success with any help; null if there is no tree or a limit was reached.
         more_help_changes_nothing: Whether the last row has the greatest success.
         reach: The success to reach, if one was given.
-        smallest: The fewest helped units that reach it; null where no row does.
+        smallest: The fewest helped units with which that success is reached; null if no row reaches it.
         rows: The best tree for each number of units.
 
     Example:
@@ -94,7 +94,7 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
         return tuple(map(self._tree, self.rows))
 
     def _tree(self, row: AssistedTree) -> Tree | None:
-        """Return the tree of a row; ``None`` where it has none."""
+        """Return the tree of a row, with a claim; ``None`` for a row without a tree."""
         if row.units is None or row.costs is None:
             return None
         ids = self.problem.network.units_of_numbers(step.id for step in row.units if step.id is not None)
@@ -115,20 +115,21 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
     def show(self) -> Iterator[Block]:
         """Yield a table with a row for each number of helped units, and what is proved of the success.
 
-        The tree of the last row follows if ``most`` was given, or if it reaches the wanted success.
+        The tree of the last row follows if ``most`` was given, or if it reaches the success to reach. If no
+        tree exists, one line says so in place of the table.
         """
         yield from self.goal_lines()
-        rule, last = self.problem.conditions, self.rows[-1]
+        conditions, last = self.problem.conditions, self.rows[-1]
         if self.complete and self.greatest_success is None:
-            yield f"infeasible: proved that no task tree exists, with help or without ({rule})"
+            yield f"infeasible: proved that no task tree exists, with help or without ({conditions})"
             return
-        never = "who never fails" if self.person is None else "at rates of the person's own"
+        person = "who never fails" if self.person is None else "at rates of the person's own"
         claim = (
             "each row is proved"
             if self.complete
             else "stopped at a limit: some rows are missing or not proved"
         )
-        yield f"best success with a person's help, {never} ({rule}); {claim}"
+        yield f"best success with a person's help, {person} ({conditions}); {claim}"
         yield ""
         yield Table(("helped", "success", "units", "the person takes"), [*self._cells()], frozenset({3}))
         yield ""
@@ -142,25 +143,29 @@ class Assistance(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name(
             yield from (line for step in last.units or () for line in step.lines())
 
     def _cells(self) -> Iterator[tuple[str, ...]]:
-        """Yield the cells of each row; the last has helped units added or removed since the row before."""
+        """Yield the cells of each row: the number of helped units, success, units and changes.
+
+        The changes are the helped units that were added or removed since the row before. For a tree that is
+        not proved best, they end with a remark and its bound.
+        """
         motions = {step.id: step.motion for row in self.rows for step in row.units or ()}
-        before: tuple[int, ...] = ()
+        previous_helped: tuple[int, ...] = ()
         for row in self.rows:
             if row.costs is None or row.success is None:
                 none = "no tree" if row.status is Status.INFEASIBLE else "no tree found yet"
                 yield str(row.most), none, "", ""
                 continue
-            changes = [("-", unit) for unit in before if unit not in row.by_person]
-            changes += [("+", unit) for unit in row.by_person if unit not in before]
+            changes = [("-", unit) for unit in previous_helped if unit not in row.by_person]
+            changes += [("+", unit) for unit in row.by_person if unit not in previous_helped]
             texts = [f"{sign} {unit} {motions[unit]}" for sign, unit in changes]
             if row.status is Status.FEASIBLE:
                 at_most = "" if row.bound is None else f" (at most {success_text(row.bound)})"
                 texts.append(f"not proved best{at_most}")
             yield str(row.most), success_text(row.success), str(row.costs.units), ", ".join(texts)
-            before = row.by_person
+            previous_helped = row.by_person
 
     def _remarks(self) -> Iterator[str]:
-        """Yield lines on whether the wanted success is reached, and on what more help changes."""
+        """Yield lines on whether the success to reach is reached, and on the success with any help."""
         last, greatest = self.rows[-1], self.greatest_success
         if self.reach is not None:
             # the number that was asked for as a decimal where it is a short one
@@ -255,10 +260,11 @@ def assist(
 def _read_person_rates(
     problem: Problem, person: File | Mapping[str, Number] | None
 ) -> dict[str, Fraction] | None:
-    """Return the success rates of a person by motion; ``None`` is a person who never fails.
+    """Return the success rates of a person by motion, from a file or a mapping.
 
-    Warn of motions that have no rate for the robot. Raises :class:`UserError` unless the rates of the robot
-    are known and above 0.
+    If ``person`` is ``None``, the person never fails, and ``None`` is returned. Motions that have no rate for
+    the robot are reported as warnings. Raises :class:`UserError` if the rates of the robot are not known, or
+    if a rate is not above 0 and at most 1.
     """
     problem.require_known_for([Objective.SUCCESS])
     assert problem.rates is not None
@@ -278,7 +284,7 @@ def _read_person_rates(
 
 
 def _assisted_tree(problem: Problem, max_helped: int, outcome: Outcome) -> AssistedTree:
-    """Return the best tree with help for up to ``max_helped`` units as a row of the result."""
+    """Return the outcome of a search with help for at most ``max_helped`` units as a row of the result."""
     units, helped, bound = outcome.units, outcome.problem.own_rates, outcome.bounds.get(Objective.SUCCESS)
     return AssistedTree(
         max_helped,

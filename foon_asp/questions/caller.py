@@ -22,10 +22,10 @@ class Caller(NamedTuple):
     """The caller of a question: Python or a command.
 
     ``reporter``: receives warnings and progress.
-    ``deadline``: the deadline of the command, if it has limits.
-    ``read_seconds``: how long reading took; ``None`` if that is not shown.
+    ``deadline``: the deadline of the caller; ``None`` without limits.
+    ``read_seconds``: how long reading the data took; ``None`` if that is not shown.
     ``lenient``: whether lines of a tree that are not understood are skipped.
-    ``form``: the format of the result; ``None`` for the default.
+    ``form``: the format in which the result will be shown; ``None`` for the default format.
     """
 
     reporter: Reporter

@@ -16,9 +16,11 @@ if TYPE_CHECKING:  # takes clingo along, which `verify` must not load
 
 
 def trusted_text(user_rules: Rule, of_tree: bool) -> str:
-    """Return in words what a certificate assumes of user rules, with the names of the rule files.
+    """Return in words what a certificate assumes of user rules without proof.
 
-    ``of_tree`` says that a tree is claimed to keep to the rules.
+    The text names the files with their digests, the ready-made constraints and the constants. Then it says
+    which units or sets the rules exclude, require or limit, or that no tree keeps to them. ``of_tree`` adds
+    that the tree of the certificate keeps to the rules. Control characters in names are escaped.
     """
     names = [f"{file['name']} (SHA-256 {file['sha256']})" for file in user_rules["files"]]
     names += [*user_rules["library"], *user_rules["constants"]]
@@ -47,18 +49,21 @@ def trusted_text(user_rules: Rule, of_tree: bool) -> str:
 
 
 def _limit_text(units: list[int], bound: int, alike: bool) -> str:
-    """Return in words that a tree has units of a total weight of at most ``bound``.
+    """Return in words that the weights of those units that a tree has add up to at most ``bound``.
 
-    All weights are 1 if the units are ``alike``. More than 20 units are only counted.
+    ``alike`` says that all weights are 1. More than 20 units are only counted.
     """
-    named = f"the units {', '.join(map(str, units))}" if len(units) <= 20 else f"{len(units)} units"
+    units_text = f"the units {', '.join(map(str, units))}" if len(units) <= 20 else f"{len(units)} units"
     if not alike:
-        return f"what {named} count comes to {bound} at most"
-    return f"no tree has {'all' if bound == len(units) - 1 else f'more than {bound}'} of {named}"
+        return f"what {units_text} count comes to {bound} at most"
+    return f"no tree has {'all' if bound == len(units) - 1 else f'more than {bound}'} of {units_text}"
 
 
 def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", file: str) -> Sequence[str]:
-    """Return lines on the proof of an answer, and on what a certificate in ``file`` proves."""
+    """Return lines on the proof of an answer, and on what a certificate in ``file`` proves.
+
+    ``certificate``: ``None`` if none was found; the lines then say so.
+    """
     by = outcome.proof or "none"
     if certificate is None and outcome.proof is None:
         return ["proof: none, so there is nothing to certify"]
@@ -68,8 +73,8 @@ def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", fil
     tree = "tree" if outcome.problem.items is None else "plan"
     user_rules = trusted_claims(content)
     if claim == "bound":
-        about = "all trees, without the constraints that it does not cover" if tree == "tree" else "all plans"
-        return [f"proof: {by}; the certificate {file} proves a bound on {about}: {bound_text(content)}"]
+        trees = "all trees, without the constraints that it does not cover" if tree == "tree" else "all plans"
+        return [f"proof: {by}; the certificate {file} proves a bound on {trees}: {bound_text(content)}"]
     if user_rules is not None:
         proved = "that there is no tree" if claim == "infeasible" else "the tree best"
         claim_text = f"the certificate {file} proves {proved}, but takes on trust what rules say,"
@@ -84,7 +89,7 @@ def certificate_lines(outcome: "Outcome", certificate: "Certificate | None", fil
 
 
 def proof_size(content: Mapping[str, Any]) -> str:
-    """Return the size of a proof in words: ``7 cuts``, for a plan also the number of nodes with a balance.
+    """Return the size of a proof in words: ``7 cuts``, or for a plan ``7 cuts, the balance of 2 nodes``.
 
     ``content`` is the JSON object of a certificate.
     """
@@ -100,7 +105,10 @@ def proof_size(content: Mapping[str, Any]) -> str:
 
 
 def bound_text(content: Mapping[str, Any]) -> str:
-    """Return in words the bound of a certificate on its first objective, and the gap of the tree to it."""
+    """Return in words the bound of a certificate on its first objective, and what its tree costs, if any.
+
+    ``content`` is the JSON object of the certificate. The gap between the two follows, except for success.
+    """
     objective, bound = content["objective"][0], content["bound"][0]
     text = (
         f"success at most {_success_text(bound)}"
@@ -120,11 +128,11 @@ def _success_text(exponents: Mapping[str, str]) -> str:
 
     ``exponents`` maps rates to exponents, such as ``{"9/10": "2"}``.
     """
-    precise = Context(prec=50, traps=[])
-    logarithm = Decimal(0)
-    for name, e in exponents.items():
-        rate, exponent = Fraction(name), Fraction(e)
-        log = precise.ln(Decimal(rate.numerator)) - precise.ln(Decimal(rate.denominator))
-        power = precise.divide(Decimal(exponent.numerator), Decimal(exponent.denominator))
-        logarithm = precise.add(logarithm, precise.multiply(power, log))
-    return f"{float(precise.exp(min(logarithm, Decimal(0)))):.4g}"
+    context = Context(prec=50, traps=[])
+    product_log = Decimal(0)
+    for rate_text, exponent_text in exponents.items():
+        rate, exponent = Fraction(rate_text), Fraction(exponent_text)
+        rate_log = context.ln(Decimal(rate.numerator)) - context.ln(Decimal(rate.denominator))
+        decimal_exponent = context.divide(Decimal(exponent.numerator), Decimal(exponent.denominator))
+        product_log = context.add(product_log, context.multiply(decimal_exponent, rate_log))
+    return f"{float(context.exp(min(product_log, Decimal(0)))):.4g}"

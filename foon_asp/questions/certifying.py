@@ -31,10 +31,11 @@ from foon_asp.whole_file import write_whole
 def solve_with_certificate(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, file: File | None = None
 ) -> Answer:
-    """Solve a problem, and search for a certificate of its answer; at a limit or ctrl-C, there is none.
+    """Solve a problem, and search for a certificate of its answer; return the answer with the certificate.
 
-    With a ``file``, a certificate that was found is written into it, and notes of the answer say what is
-    proved.
+    A limit or ctrl-C ends the search without a certificate. With a ``file``, a certificate that was found is
+    written into it, and notes of the answer say what is proved. The whole network is read, except for
+    problems that a part of a large store or their stand-ins suffice for.
     """
     deadline = settings.begun
     settings = settings._replace(deadline=deadline)
@@ -49,16 +50,16 @@ def solve_with_certificate(
         suffices = (
             problem.stand_ins is not None and problem_for_rules(problem, settings, objectives) is problem
         )
-        complete = problem if suffices or subject is not None else over_whole_network(problem)
-        answer = answer_problem(complete, objectives, settings)
-        proved = answer.problem
+        full_problem = problem if suffices or subject is not None else over_whole_network(problem)
+        answer = answer_problem(full_problem, objectives, settings)
+        certified_problem = answer.problem
     else:
         answer = answer_from_store(nearby, objectives, settings)
-        proved = nearby.relaxation
+        certified_problem = nearby.relaxation
     certificate = None
     with contextlib.suppress(KeyboardInterrupt), deadline.watched("looking for a certificate"):
         outcome, certificate = certify_outcome(
-            answer.outcome._replace(problem=proved), settings, lambda: deadline.passed, subject
+            answer.outcome._replace(problem=certified_problem), settings, lambda: deadline.passed, subject
         )
         answer = Answer.of(outcome._replace(problem=answer.problem))
     if file is None:
@@ -70,14 +71,14 @@ def solve_with_certificate(
 def _certificate_subject(problem: Problem) -> Subject | None:
     """Return the data that a certificate is about, for a problem over a part of a store.
 
-    ``None`` is returned for other problems, which have all their data with them.
+    Return ``None`` for a problem over the whole network, and for a problem whose units have own rates.
     """
-    data = problem.origin
-    if not problem.network.object_numbers or not isinstance(data, Dataset) or problem.own_rates:
+    dataset = problem.origin
+    if not problem.network.object_numbers or not isinstance(dataset, Dataset) or problem.own_rates:
         return None
     network = problem.network
     goals = [network.object_number(goal) for goal in problem.goals]
-    return data.with_kitchen_of(problem).subject(False, goals)
+    return dataset.with_kitchen_of(problem).subject(False, goals)
 
 
 def certify_tree(
@@ -86,7 +87,8 @@ def certify_tree(
     """Prove that an executable tree or plan is the best, without a search, and write the certificate.
 
     Return the certificate or ``None``, how the proof ended, and in words what is proved. The ending is
-    ``NEGATIVE`` if a better tree is found. Without a certificate, no file is written.
+    ``DONE`` if the tree is proved best by every objective, ``NEGATIVE`` if a better tree is found, and else
+    ``LIMIT``. Without a certificate, no file is written.
     """
     objectives, certificate = levels(objectives), None
     try:
@@ -107,9 +109,10 @@ def certify_tree(
 
 
 def _prove_best(tree: Tree, objectives: tuple[Objective, ...], settings: Settings) -> Certificate | None:
-    """Return a certificate that a tree is the best; ``None`` if none is found or a limit comes first.
+    """Return a certificate that a tree is the best, or of a bound on all trees.
 
-    Raises :class:`NotBestError` if a better tree is found.
+    Return ``None`` if no certificate is found, also at a limit. Raises :class:`NotBestError` if a better tree
+    is found.
     """
     problem, deadline, covered, units = tree.problem, settings.begun, coverage(settings), tree.ids
     with contextlib.suppress(KeyboardInterrupt), deadline.watched("looking for a certificate"):
@@ -122,6 +125,6 @@ def _prove_best(tree: Tree, objectives: tuple[Objective, ...], settings: Setting
 
 
 def _write_if_found(certificate: Certificate | None, file: File) -> None:
-    """Write a certificate into a file; for ``None``, write nothing."""
+    """Write a certificate as JSON into a file; for ``None``, write nothing."""
     if certificate is not None:
         write_whole(Path(file), certificate.text().encode())

@@ -45,7 +45,7 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
         verdict: Whether the tree executes; a plan executes as listed or not at all.
         as_listed: What stops the listed order, if anything.
         in_any_order: What stops every order of a tree, if anything.
-        order: Positions of units, from 1, in an order that executes, as far as one does.
+        order: The positions of units, from 1, in an order that executes. Units that cannot run are left out.
         used_up: Whether the tree, each step done once, runs where items are used up; null for a plan.
         costs: What the tree costs by every objective; null where the network does not have all of its units.
         not_in_network: The positions, from 1, of the units that are not in the network.
@@ -119,12 +119,12 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
         return self.proof_ending if sound else Ending.NEGATIVE
 
     def show(self) -> Iterator[Block]:
-        """Yield whether the tree executes, in which order, what stops it, and which rules it breaks."""
+        """Yield whether and in which order the tree executes, what stops it, broken rules, and the notes."""
         yield from verdict_lines(self.tree, self.simulation)
         yield from (*self._rule_lines(), *self.notes)
 
     def _rule_lines(self) -> Iterator[str]:
-        """Yield lines on whether the tree keeps to the rules, and on those that it breaks."""
+        """Yield lines on whether the tree keeps to the rules, and on broken rules; none without rules."""
         if self.breaks is UNSET:
             return
         if self.breaks is None:
@@ -151,11 +151,11 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
         return str(self.in_order or self.tree)
 
     def remark(self, format_: str) -> str:
-        """Return the notes on the certificate, which no format but text has."""
+        """Return the notes on the certificate, the same for each format: only text has them."""
         return "\n".join(self.notes)
 
     def drawing(self) -> Drawing | None:
-        """Return the drawing of the tree, if it can be drawn."""
+        """Return the drawing of the tree in the listed order."""
         return self.tree.drawing()
 
     def __repr__(self) -> str:
@@ -164,7 +164,7 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
 
 
 def _simulate(tree: Tree) -> Simulation:
-    """Simulate a tree, or replay a plan, for which only the listed order counts."""
+    """Simulate a tree in any order; replay a plan, in which items are used up, in the listed order alone."""
     if tree.problem.items is None:
         return simulate_for(tree.problem, tree)
     shortage = replay_for(tree.problem, tree).shortage
@@ -177,7 +177,7 @@ def _simulate(tree: Tree) -> Simulation:
 def _pose_tree(command: Command, tree: Path, **named: Any) -> tuple[Problem, Tree]:
     """Read a tree from a file, and return its problem and the tree.
 
-    With ``--repair``, the units of a tree without goals are added to the network.
+    With ``--repair``, a file that names no goals is added to the networks of the command.
     """
     if command.given("repair") and not read_answer(tree).goals:
         command.add_sources([tree])
@@ -195,9 +195,9 @@ def check_or_repair(
         return check(problem, tree, certificate=certificate, **options)
     if options.pop("objectives"):
         raise UserError("a repair has objectives of its own: leave --objective out")
-    from foon_asp.questions.repair import repair as repaired  # noqa: PLC0415 (the solver)
+    from foon_asp.questions.repair import repair as repair_tree  # noqa: PLC0415 (the solver)
 
-    return repaired(problem, tree, certificate=certificate, **options)
+    return repair_tree(problem, tree, certificate=certificate, **options)
 
 
 @question(
@@ -267,6 +267,7 @@ def check(
             such as a :class:`TaskTree`. Where items are used up, it is a plan, in which a unit may be listed
             several times.
         certificate: Also prove the tree the best, and write the proof. The argument is the path of the file.
+            It is not written for a tree that does not execute, has units of its own, or breaks a rule.
 
     Returns:
         Whether the tree ``executes``, the tree ``in_order``, what stops it, the rules that it ``breaks``, and
@@ -296,24 +297,24 @@ def check(
     if certificate is not None or (rule_check is not None and not rule_check.local):
         problem = over_whole_network(problem)
     chosen = () if certificate is None else chosen_objectives(problem, objectives or "units")
-    listed = as_tree(problem, tree)
-    checked = Checked.of(listed, chosen)
+    task_tree = as_tree(problem, tree)
+    checked = Checked.of(task_tree, chosen)
     if rule_check is not None:
         broken = None
         if checked.executes and not checked.not_in_network:
-            broken = tuple(rule.listed for rule in rule_check.broken_rules(listed.problem, listed.ids))
+            broken = tuple(rule.listed for rule in rule_check.broken_rules(task_tree.problem, task_tree.ids))
         checked = structs.replace(checked, breaks=broken).knowing(**checked.__dict__)
     in_order = checked.in_order
     if certificate is not None and in_order is not None and checked.ending is Ending.DONE:
         from foon_asp.questions.certifying import certify_tree  # noqa: PLC0415
 
-        proof, ended, note = certify_tree(in_order, chosen, rules, certificate)
-        checked.knowing(certificate=proof, proof_ending=ended, notes=(note,))
+        proof, proof_ending, note = certify_tree(in_order, chosen, rules, certificate)
+        checked.knowing(certificate=proof, proof_ending=proof_ending, notes=(note,))
     return checked
 
 
 def _user_rule_check(rules: "Settings", used_up: bool) -> "UserRuleCheck":
-    """Return a check of which user rules trees break, or with ``used_up`` plans; it takes clingo along."""
+    """Return the check that finds the user rules which a tree breaks, or with ``used_up`` a plan."""
     from foon_asp.asp.user_rule_check import UserRuleCheck  # noqa: PLC0415 (takes clingo along)
 
     return UserRuleCheck(rules, used_up)

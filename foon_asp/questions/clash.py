@@ -69,7 +69,9 @@ class Clash(Value, frozen=True, kw_only=True):
     def ending(self) -> Ending:
         """``DONE`` if a tree keeps to all constraints and the best one is proved.
 
-        It is ``NEGATIVE`` if it is proved that no tree does, and what is cheapest to drop; else ``LIMIT``.
+        It is ``NEGATIVE`` if no tree exists without the constraints either. It is also ``NEGATIVE`` if the
+        smallest clash and the best tree without the dropped constraints are proved. Otherwise it is
+        ``LIMIT``.
         """
         if not self.tree_exists_without_constraints:
             return Ending.NEGATIVE
@@ -80,45 +82,50 @@ class Clash(Value, frozen=True, kw_only=True):
             return Ending.NEGATIVE if proved else Ending.LIMIT
         return self.answer.ending
 
-    def lines(self, rule: str) -> Iterator[str]:
-        """Yield lines that say which constraints clash and which to drop.
+    def lines(self, conditions: str) -> Iterator[str]:
+        """Yield lines on constraints that clash, those cheapest to drop, and the best tree without these.
 
-        ``rule`` names the conditions under which claims hold, such as ``strict containers``.
+        ``conditions`` names the conditions under which claims hold, such as ``strict containers``.
         """
         dropped, answer = self.cheapest_to_drop, self.answer
         if not self.tree_exists_without_constraints:
-            yield f"no task tree is left whatever is dropped: proved ({rule})"
+            yield f"no task tree is left whatever is dropped: proved ({conditions})"
             yield "other rules of the files rule it out"
             return
         if not self.complete:
-            yield f"unknown: stopped at a limit before it was known whether the constraints clash ({rule})"
+            unknown = "unknown: stopped at a limit before it was known whether the constraints clash"
+            yield f"{unknown} ({conditions})"
             if dropped:
                 yield "without these there is a task tree; a cheaper set may do, or nothing has to be dropped"
                 yield from _constraint_lines(dropped)
             return
-        number = counted(len(self.constraints), "constraint")
+        all_constraints = counted(len(self.constraints), "constraint")
         if not self.constraints:
-            yield f"there is a task tree ({rule}); foon-asp solve finds the best"
+            yield f"there is a task tree ({conditions}); foon-asp solve finds the best"
             return
         if not dropped:
-            yield f"no clash: the {number} can hold{' together' * (len(self.constraints) > 1)} ({rule})"
+            together = " together" * (len(self.constraints) > 1)
+            yield f"no clash: the {all_constraints} can hold{together} ({conditions})"
             if answer is not None:
                 yield from answer.headlines()
             return
-        size = len(self.smallest_clash)
+        clash_size = len(self.smallest_clash)
         if not self.smallest_proved:
             unknown = "the smallest clash was not found within the limit"
-            yield f"the {number} cannot hold together ({rule}); {unknown}"
+            yield f"the {all_constraints} cannot hold together ({conditions}); {unknown}"
         elif len(self.constraints) == 1:
-            yield f"1 constraint leaves no task tree: proved ({rule})"
-        elif size == 1:
-            yield f"1 of the {number} leaves no task tree by itself: proved ({rule})"
+            yield f"1 constraint leaves no task tree: proved ({conditions})"
+        elif clash_size == 1:
+            yield f"1 of the {all_constraints} leaves no task tree by itself: proved ({conditions})"
         else:
-            yield f"{size} of the {number} cannot hold together, and no smaller set: proved ({rule})"
+            text = f"{clash_size} of the {all_constraints} cannot hold together"
+            yield f"{text}, and no smaller set: proved ({conditions})"
         yield from _constraint_lines(self.smallest_clash)
         weight = sum(constraint.weight for constraint in dropped)
-        at = "" if {constraint.weight for constraint in self.constraints} == {1} else f", weight {weight}"
-        yield f"cheapest to drop: {counted(len(dropped), 'constraint')}{at}"
+        weight_text = (
+            "" if {constraint.weight for constraint in self.constraints} == {1} else f", weight {weight}"
+        )
+        yield f"cheapest to drop: {counted(len(dropped), 'constraint')}{weight_text}"
         yield from _constraint_lines(dropped)
         if answer is not None and answer.status is not Status.UNKNOWN:
             claim, *note = answer.headlines()
@@ -129,11 +136,14 @@ class Clash(Value, frozen=True, kw_only=True):
 def find_clash(problem: Problem, settings: Settings, own_weights: Mapping[Constraint, int]) -> Clash:
     """Find a smallest clash of the constraints in ``settings``, and the cheapest constraints to drop.
 
-    ``own_weights`` are the costs of dropping a rule of a constraint, 1 by default. The smallest clash is a
-    smallest minimal unsatisfiable subset (MUS). It is found by implicit hitting sets (Ignatiev, Previti,
-    Liffiton and Marques-Silva, Smallest MUS Extraction with Minimal Hitting Set Dualization, CP 2015). A
-    correction set is a set of constraints without which a tree exists. Each round takes a smallest set that
-    hits all known correction sets. If no tree keeps to it, it is the clash; else a correction set is added.
+    The best tree by units without the dropped constraints is found, too. ``own_weights`` are the costs of
+    dropping a rule of a constraint, 1 by default. At a limit, the result has what was found by then.
+
+    The smallest clash is a smallest minimal unsatisfiable subset (MUS). It is found by implicit hitting sets
+    (Ignatiev, Previti, Liffiton and Marques-Silva, Smallest MUS Extraction with Minimal Hitting Set
+    Dualization, CP 2015). A correction set is a set of constraints without which a tree exists. Each round
+    takes a smallest set that hits all known correction sets. If no tree keeps to this set, it is the clash;
+    else a correction set is added.
     """
     deadline = settings.begun
     settings = settings._replace(deadline=deadline)

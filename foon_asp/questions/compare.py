@@ -52,7 +52,7 @@ class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("c
     """The searches and the optimum, compared for each goal of a problem.
 
     Attributes:
-        comparisons: One for each goal.
+        comparisons: The searches and the optimum for each goal.
         published: Published figures to show beside the measured ones, where they are asked for.
 
     Example:
@@ -68,10 +68,10 @@ class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("c
     published: PublishedTable | UnsetType = UNSET
 
     retrieved = Unserialized[tuple[Retrieved, ...]]()
-    """The tree of each search for each goal; empty unless trees are asked for, or there is only one."""
+    """The tree of each search for each goal, if trees are asked for or there is only one; else empty."""
 
     summed_up = Unserialized[bool]()
-    """Whether a summary alone is shown."""
+    """Whether only a summary is shown."""
 
     @property
     def proved(self) -> bool:
@@ -119,7 +119,7 @@ class Compared(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("c
         return self.retrieved[0].foon()
 
     def write_chart(self, file: File) -> None:
-        """Write a chart with a box for each search: the units of its trees divided by the optimum, by goal.
+        """Write a box plot: for each search, the units of its trees divided by the optimum, over all goals.
 
         Parameters:
             file: The path of the file, which ends in ``.svg`` or ``.png``.
@@ -143,10 +143,11 @@ def _pose_goals(
     stock: File | None,
     stays: File | None,
 ) -> tuple[Problem]:
-    """Return the problem whose goals are compared, as the first argument of :func:`compare`.
+    """Return the problem whose goals are compared, in a tuple, as the first argument of :func:`compare`.
 
-    With ``all_makeable``, it has any goal: :func:`compare` finds its goals. Raises :class:`UserError` for
-    goals that the published table does not have.
+    With ``all_makeable``, the problem has an arbitrary goal, which :func:`compare` replaces. With
+    ``published``, the goals are by default those of the published table. Other goals raise
+    :class:`UserError`, and a container rule other than that of the table is reported as a warning.
     """
     if published:
         table = read_published(published_file())
@@ -215,8 +216,8 @@ def compare(
             rates, the default leaves greedy-success out.
         trees: Show the trees of the searches too, step by step.
         all_makeable: Compare for every object that can be made, and print a summary.
-        published: Show the published figures beside the measured ones. Only some goals have such figures.
-            If true, ``ids`` is run as published: it takes the first unit everywhere.
+        published: Show the published figures beside the measured ones. If a goal has no such figures, they
+            are left out. With ``published``, ``ids`` is run as published: it takes the first unit everywhere.
         results: A file to which results are added, as JSON Lines; goals that it already has are not searched
             again.
 
@@ -292,29 +293,29 @@ def _compare_each_goal(
     jobs: int,
     results: File | None,
 ) -> Iterator[Comparison]:
-    """Return the comparison of each goal, in order.
+    """Return the comparison of each goal, in the order of the goals.
 
-    Comparisons that the file of ``results`` has are not repeated. All others are added to it. Progress is
-    reported to the caller.
+    Comparisons that the file of ``results`` has are not repeated. All others are added to the file. Progress
+    and warnings are reported to the caller.
     """
     goals = {str(node): goal for node, goal in zip(problem.goal_nodes, problem.goals, strict=True)}
     with contextlib.ExitStack() as stack:
         done: dict[object, Comparison] = {}
         file = None
         if results is not None:
-            begun_for = comparisons_question(problem, searches, settings, rules)
-            file = stack.enter_context(RowsFile(Path(results), COMPARISONS, begun_for))
+            file_question = comparisons_question(problem, searches, settings, rules)
+            file = stack.enter_context(RowsFile(Path(results), COMPARISONS, file_question))
             done = file.done
             for text in file.duplicate_warnings:
                 caller().reporter.warning(text)
         remaining = [goal for name, goal in goals.items() if name not in done]
-        before = len(goals) - len(remaining)
-        caller().reporter.step("comparing", before, len(goals))
+        done_before = len(goals) - len(remaining)
+        caller().reporter.step("comparing", done_before, len(goals))
         rows = compare_goals(problem, remaining, searches, settings, settings.time_limit, jobs, rules)
-        for number, row in enumerate(rows, 1):
+        for row_count, row in enumerate(rows, 1):
             if file is None:
                 done[row.goal.node] = row
             else:
                 file.add(row)
-            caller().reporter.step("comparing", before + number, len(goals))
+            caller().reporter.step("comparing", done_before + row_count, len(goals))
     return map(done.__getitem__, goals)

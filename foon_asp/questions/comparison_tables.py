@@ -24,14 +24,14 @@ _EXECUTES = {
 }
 _NO_RATIO = " " * len("  1.00×")
 _BETTER = "† better than the proved optimum, as only a tree that does not execute can be"
-_SHARES: dict[str, Callable[[SearchResult], bool | None]] = {
+_PREDICATES: dict[str, Callable[[SearchResult], bool | None]] = {
     "execute": lambda result: result.executes,
     "as listed": lambda result: result.verdict is Verdict.AS_LISTED,
     "when reordered": lambda result: result.verdict is Verdict.REORDERED,
     "never": lambda result: result.verdict is Verdict.NEVER,
     "used up": lambda result: result.runs_used_up,
 }
-_RARE: dict[str, Callable[[SearchResult], bool]] = {
+_RARE_PREDICATES: dict[str, Callable[[SearchResult], bool]] = {
     "(cycle)": lambda result: result.has_cycle,
     "break a rule": lambda result: bool(result.breaks),
     "† smaller": lambda result: result.beats_the_optimum(Objective.UNITS),
@@ -39,7 +39,11 @@ _RARE: dict[str, Callable[[SearchResult], bool]] = {
 
 
 def tidy_rows(comparison: Comparison) -> Iterator[Json]:
-    """Yield a row for each search, with the optimum, its status and the ratio for each objective."""
+    """Yield a row for each search of a goal, as plain values by column.
+
+    A row says how the tree executes, which node it lacks, and which rules it breaks. For each objective, it
+    has the measure of the tree, the optimum with its status, and the ratio of the two.
+    """
     for result in comparison.searches:
         missing = result.stuck_at if result.obstacle is None else result.obstacle.missing
         row: Json = {
@@ -74,13 +78,13 @@ def comparison_table(comparisons: Sequence[Comparison], used_up_noted: bool) -> 
     rows: list[Sequence[str | Cell] | str] = []
     for comparison in comparisons:
         optima = [comparison.optimum.get(objective) for objective in MEASURED]
-        figures = [
-            "" if best is None or best.value is None else _figure_text(objective, best.value) + _NO_RATIO
+        optimum_texts = [
+            "" if best is None or best.value is None else _measure_text(objective, best.value) + _NO_RATIO
             for objective, best in zip(MEASURED, optima, strict=True)
         ]
         status = " ".join(dict.fromkeys(best.status for best in optima if best))
         rows += ["", comparison.goal.node]
-        rows.append([Cell(text, "strong") for text in ("optimum", *figures, status, "")])
+        rows.append([Cell(text, "strong") for text in ("optimum", *optimum_texts, status, "")])
         rows += [tuple(_search_cells(result, broken)) for result in comparison.searches]
     yield Table(_HEADINGS, rows, frozenset({0, 4, 5}))
     yield ""
@@ -97,7 +101,11 @@ def comparison_table(comparisons: Sequence[Comparison], used_up_noted: bool) -> 
 
 
 def _search_cells(result: SearchResult, broken: Sequence[str]) -> Iterator[str | Cell]:
-    """Yield the cells of the row of a search; a rule that it breaks is shown by its number in ``broken``."""
+    """Yield the cells of the row of a search for a goal.
+
+    A rule that the tree breaks is shown by its number from 1 in ``broken``. Without a tree, the cell on
+    execution says how the search ended.
+    """
     yield result.search
     yield from (_measure_cell(result, objective) for objective in MEASURED)
     if result.verdict is None:
@@ -110,11 +118,14 @@ def _search_cells(result: SearchResult, broken: Sequence[str]) -> Iterator[str |
 
 
 def _measure_cell(result: SearchResult, objective: Objective) -> str:
-    """Return the measure of a search and its ratio to a proved optimum: ``10  1.11×``; empty if unknown."""
+    """Return the measure of a tree and its ratio to a proved optimum: ``10  1.11×``; empty if unknown.
+
+    A ``†`` marks a measure that is better than the optimum.
+    """
     measure = result.measures.get(objective)
     if measure is None:
         return ""
-    text = ("†" if result.beats_the_optimum(objective) else "") + _figure_text(objective, measure)
+    text = ("†" if result.beats_the_optimum(objective) else "") + _measure_text(objective, measure)
     ratio = result.ratios[objective]
     if ratio is None:
         return text + _NO_RATIO
@@ -124,24 +135,28 @@ def _measure_cell(result: SearchResult, objective: Objective) -> str:
 def summary_tables(summaries: Sequence[Summary], proved: bool) -> Iterator[Block]:
     """Yield summary tables over many goals: how many trees execute, and their ratios to the optimum.
 
+    Columns for cycles, broken rules and trees better than the optimum are there only if some tree has them.
+
     Parameters:
         summaries: One for each search.
         proved: Whether every optimum is proved.
     """
-    goals = max(len(summary.results) for summary in summaries)
-    yield f"{counted(goals, 'goal')}; {'every' if proved else 'NOT every'} optimum is proved"
-    rare = {
-        heading: share
-        for heading, share in _RARE.items()
-        if any(map(share, (result for summary in summaries for result in summary.results)))
+    goal_count = max(len(summary.results) for summary in summaries)
+    yield f"{counted(goal_count, 'goal')}; {'every' if proved else 'NOT every'} optimum is proved"
+    rare_predicates = {
+        heading: predicate
+        for heading, predicate in _RARE_PREDICATES.items()
+        if any(map(predicate, (result for summary in summaries for result in summary.results)))
     }
     rows = []
     for summary in summaries:
         trees = [result for result in summary.results if result.verdict is not None]
-        counts = [sum(map(bool, map(share, trees))) for share in (_SHARES | rare).values()]
+        predicates = (_PREDICATES | rare_predicates).values()
+        counts = [sum(map(bool, map(predicate, trees))) for predicate in predicates]
         shares = (f"{count} ({count / max(len(trees), 1):.1%})" for count in counts)
-        rows.append((summary.search, f"{len(trees)} ({len(trees) / goals:.1%})", *shares))
-    yield from ("", Table(("search", "with a tree", *_SHARES, *rare), rows, frozenset({0})))
+        rows.append((summary.search, f"{len(trees)} ({len(trees) / goal_count:.1%})", *shares))
+    headings = ("search", "with a tree", *_PREDICATES, *rare_predicates)
+    yield from ("", Table(headings, rows, frozenset({0})))
     distances = [
         (
             summary.search,
@@ -155,14 +170,14 @@ def summary_tables(summaries: Sequence[Summary], proved: bool) -> Iterator[Block
     ]
     if distances:
         yield from ("", "times worse than the optimum, of the trees that execute and keep to the rules")
-        figures = ("optimal", "mean", "median", "90th percentile", "worst")
-        yield Table(("search", "objective", *figures, "worst goal"), distances, frozenset({0, 1, 7}))
+        statistics = ("optimal", "mean", "median", "90th percentile", "worst")
+        yield Table(("search", "objective", *statistics, "worst goal"), distances, frozenset({0, 1, 7}))
 
 
 def published_table(table: PublishedTable, comparisons: Sequence[Comparison]) -> Iterator[Block]:
     """Yield a table of published and measured numbers of units, and how many agree for each search."""
     yield from ("Functional units, published → measured; = where they agree", "")
-    agree = dict.fromkeys(table.columns, 0)
+    agreeing_counts = dict.fromkeys(table.columns, 0)
     rows = []
     for comparison in comparisons:
         label, best = comparison.goal.label, comparison.optimum[Objective.UNITS]
@@ -170,17 +185,17 @@ def published_table(table: PublishedTable, comparisons: Sequence[Comparison]) ->
         cells = []
         for search in table.columns:
             published, measured_units = table.goals[label][search], units.get(search)
-            agree[search] += measured_units == published
+            agreeing_counts[search] += measured_units == published
             measured = "no tree" if measured_units is None else str(measured_units)
             cells.append(f"{published} =" if measured_units == published else f"{published} → {measured}")
         rows.append((label, *cells, best.status if best.value is None else str(best.value)))
     yield Table(("goal", *table.columns, "optimum"), rows, frozenset({0}))
-    counts = ", ".join(f"{search} {number} of {len(rows)}" for search, number in agree.items())
+    counts = ", ".join(f"{search} {count} of {len(rows)}" for search, count in agreeing_counts.items())
     yield from ("", f"Agreeing: {counts}", "", f"Published: {table.source}")
 
 
-def _figure_text(objective: Objective, value: Figure) -> str:
-    """Return a number of units or inputs, or a success rate in a few digits."""
+def _measure_text(objective: Objective, value: Figure) -> str:
+    """Return a measure as text: a whole number, or a success rate such as ``0.6440`` or ``6.44e-04``."""
     if not multiplies(objective):
         return str(value)
     return f"{float(value):.4f}" if value >= Fraction(1, 1000) else f"{float(value):.2e}"

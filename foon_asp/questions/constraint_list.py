@@ -16,7 +16,7 @@ class ConstraintParameter(Value, frozen=True):
     """A constant of a constraint.
 
     Attributes:
-        own_value: What the file sets it to; null where it does not.
+        own_value: The value that the file sets; null if it sets none.
         example: A value, as it is written in a command.
     """
 
@@ -29,7 +29,7 @@ class ReadyMadeConstraint(Value, frozen=True):
     """A constraint that comes with the program.
 
     Attributes:
-        purpose: What it demands.
+        purpose: What it demands of a tree.
     """
 
     name: str

@@ -21,8 +21,8 @@ def cross_check_answer(
 
     Parameters:
         answer: The answer.
-        settings: The settings that it was found under.
-        weights: The soft constraints that it was found under, with their weights.
+        settings: The settings under which the answer was found.
+        weights: The weights of its soft constraints.
         engines: The engines to ask besides bare clingo.
 
     Raises:
@@ -61,5 +61,5 @@ def _check_line(answer: Answer, check: Check) -> str:
     if check.refuted is not None:
         return f"{engine} disagrees and is wrong: {check.refuted} ({check.seconds:.2f} s)"
     by = ", ".join((*(() if answer.penalty is UNSET else ("penalty",)), *check.objectives))
-    that = "that no tree exists" if answer.status is Status.INFEASIBLE else f"by {by}"
-    return f"{engine} agrees {that} ({check.seconds:.2f} s)"
+    agreement = "that no tree exists" if answer.status is Status.INFEASIBLE else f"by {by}"
+    return f"{engine} agrees {agreement} ({check.seconds:.2f} s)"

@@ -25,9 +25,9 @@ _DISTRIBUTIONS = ("foon-asp", "clingo", "highspy")
 
 
 def write_disagreement(request: ClaimedAnswer, disagreement: DisagreementError) -> str:
-    """Write a report on a disagreement into a file of its own; return the message for the user.
+    """Write a report on a disagreement into a file in the current folder; return the message for the user.
 
-    The message also says if the file could not be written.
+    :func:`disagreement_name` names the file. If it cannot be written, the message says so.
     """
     name = disagreement_name(request.outcome)
     try:
@@ -40,7 +40,7 @@ def write_disagreement(request: ClaimedAnswer, disagreement: DisagreementError) 
 
 
 def disagreement_name(outcome: Outcome) -> str:
-    """Return the name of the file of a report: a digest of the network, and the ids of the goals."""
+    """Return the name of the file of a report, with a digest of the network and the ids of the goals."""
     problem = outcome.problem
     return (
         f"foon-asp-disagreement-{_digests(problem)['network'][:8]}-{'-'.join(map(str, problem.goals))}.json"
@@ -99,11 +99,11 @@ def disagreement_json(request: ClaimedAnswer, disagreement: DisagreementError) -
 
 
 def _rule_texts(constraints: Iterable[Constraint]) -> dict[Constraint, str]:
-    """Return the rules of each constraint as text, with those of included files."""
+    """Return the text of the rules of each constraint, with those of included files."""
     texts: dict[Constraint, str] = {}
     for constraint in constraints:
-        named = find_constraint(constraint)
-        file = named.file if isinstance(named, LibraryUse) else named
+        definition = find_constraint(constraint)
+        file = definition.file if isinstance(definition, LibraryUse) else definition
         texts[constraint] = file.text if isinstance(file, RuleText) else read_encoding(file).text
     return texts
 
@@ -111,7 +111,8 @@ def _rule_texts(constraints: Iterable[Constraint]) -> dict[Constraint, str]:
 def _data_files(problem: Problem) -> dict[str, str]:
     """Return the texts of a data folder for a problem, by file name.
 
-    Below level 3, they describe the network of level 3 that the network of the problem was made of.
+    Rates and prices of units are among them if the problem has any. Below level 3, the texts describe the
+    network of level 3 that the network of the problem was made of.
     """
     network = problem.network
     detailed = network.detailed or network

@@ -13,7 +13,10 @@ _ENTRY = re.compile(r"^    (\w+): (.*(?:\n        .*)*)", re.MULTILINE)
 
 
 def docstring_entries(ask: Callable[..., object]) -> dict[str, str]:
-    """Return the descriptions in the ``Parameters`` section of a docstring by name, each in one line."""
+    """Return the descriptions in the ``Parameters`` section of a function's docstring, each in one line.
+
+    The keys are the names of the parameters. Without a docstring, there are none.
+    """
     if ask.__doc__ is None:  # python -OO
         return {}
     section = inspect.cleandoc(ask.__doc__).partition("Parameters:\n")[2].partition("\n\n")[0]
@@ -23,24 +26,24 @@ def docstring_entries(ask: Callable[..., object]) -> dict[str, str]:
 def complete_docstring(
     ask: Callable[..., object], signature: inspect.Signature, texts: Mapping[str, str]
 ) -> str | None:
-    """Return the docstring of a function with a description of each parameter, in the order of its signature.
+    """Return the docstring of a function with descriptions of its parameters, in the order of the signature.
 
-    ``texts`` has descriptions by name. A description in the section ``Parameters`` of the docstring itself
-    replaces that of ``texts``. If the docstring has no such section, it is inserted before ``Returns``. A
-    function without docstring gives ``None``.
+    ``texts`` has descriptions by name; :func:`docstring_entries` take precedence. A parameter without a
+    description is left out. If the docstring has no section ``Parameters``, it is inserted before
+    ``Returns``. Return ``None`` for a function without docstring.
     """
     if ask.__doc__ is None:  # python -OO
         return None
     text_of = {"problem": _PROBLEM, **texts, **docstring_entries(ask)}
-    written = inspect.cleandoc(ask.__doc__)
-    before, heading, after = written.partition("Parameters:\n")
+    docstring = inspect.cleandoc(ask.__doc__)
+    text_before, heading, text_after = docstring.partition("Parameters:\n")
     if heading:
-        after = after.partition("\n\n")[2]
+        text_after = text_after.partition("\n\n")[2]
     else:
-        before, heading, after = written.partition("Returns:\n")
-        after = heading + after
+        text_before, heading, text_after = docstring.partition("Returns:\n")
+        text_after = heading + text_after
     entries = (_entry(name, text_of[name]) for name in signature.parameters if name in text_of)
-    return f"{before}Parameters:\n{''.join(entries)}\n{after}\n"
+    return f"{text_before}Parameters:\n{''.join(entries)}\n{text_after}\n"
 
 
 def _entry(name: str, text: str) -> str:

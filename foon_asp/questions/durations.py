@@ -12,23 +12,23 @@ Durations = str | PathLike[str] | Mapping[str, Number | Duration]
 """The path of a table, or seconds or a :class:`Duration` by motion."""
 
 
-def stated_durations(stated: Durations | None) -> dict[str, Duration]:
-    """Return durations by motion, in seconds, from a table or a mapping; ``None`` states none.
+def stated_durations(durations: Durations | None) -> dict[str, Duration]:
+    """Return durations by motion, read from a table or converted from a mapping.
 
-    Raises :class:`UserError` for a duration that is not above 0.
+    For ``None``, the result is empty. Raises :class:`UserError` for a duration that is not above 0.
     """
-    if isinstance(stated, str | PathLike):
-        return dict(DURATIONS.read(Path(stated)))
-    return {motion: duration_of(duration, motion) for motion, duration in (stated or {}).items()}
+    if isinstance(durations, str | PathLike):
+        return dict(DURATIONS.read(Path(durations)))
+    return {motion: duration_of(duration, motion) for motion, duration in (durations or {}).items()}
 
 
-def duration_of(stated: Number | Duration, motion: str) -> Duration:
-    """Return the duration of a motion from seconds or a :class:`Duration`.
+def duration_of(duration: Number | Duration, motion: str) -> Duration:
+    """Return the duration of a motion with exact seconds; a mere number of seconds is no passive duration.
 
-    Raises :class:`UserError` if it is not above 0.
+    Raises :class:`UserError` if the duration is not above 0.
     """
-    number, passive = stated if isinstance(stated, Duration) else (stated, False)
-    seconds = exact_number(number, f"the duration of {motion!r}")
+    stated_seconds, passive = duration if isinstance(duration, Duration) else (duration, False)
+    seconds = exact_number(stated_seconds, f"the duration of {motion!r}")
     if seconds <= 0:
-        raise UserError(f"found the duration {stated} of {motion!r}, expected one above 0")
+        raise UserError(f"found the duration {duration} of {motion!r}, expected one above 0")
     return Duration(seconds, passive)

@@ -24,8 +24,7 @@ class EachGoal(Result, frozen=True, kw_only=True, tag=schema_name("each")):
     """A question asked of several goals, each by itself.
 
     Attributes:
-        answers: The documents of the question, one for each goal in order; their own schema says what they
-            are.
+        answers: The documents of the question, one for each goal in order; each names its own schema.
     """
 
     answers: Annotated[tuple[Annotated[Any, _ANY_DOCUMENT], ...], Meta(min_length=2)]
@@ -37,7 +36,7 @@ class EachGoal(Result, frozen=True, kw_only=True, tag=schema_name("each")):
         return next(ending for ending in (Ending.LIMIT, Ending.NEGATIVE, Ending.DONE) if ending in endings)
 
     def show(self) -> Iterator[Block]:
-        """Yield the answers one after the other; a tree shared by several goals is shown once."""
+        """Yield the answers one after the other; answers with the same tree share one display of it."""
         from foon_asp.questions.answer import Answer  # noqa: PLC0415 (takes the solver along)
 
         for number, (first, *others) in enumerate(self._groups_by_tree()):
@@ -74,7 +73,7 @@ class EachGoal(Result, frozen=True, kw_only=True, tag=schema_name("each")):
         raise UserError("these are steps for several goals: name one with --goal")
 
     def remark(self, format_: str) -> str:
-        """Return the remarks that a format cannot express, goal by goal."""
+        """Return the remarks that a format cannot express, answer by answer."""
         return "\n".join(filter(None, (answer.remark(format_) for answer in self.answers)))
 
     def write_chart(self, file: File) -> None:

@@ -27,10 +27,10 @@ class _Tree(NamedTuple):
 class IntervalEnd(NamedTuple):
     """One end of the interval of a rate in which the tree stays optimal, and the best tree beyond.
 
-    ``at``: the rate at which another tree is as good; ``None`` if no rate on this side makes another one
+    ``at``: the rate at which another tree is as good; ``None`` if no rate on this side makes another tree
     better.
-    ``beyond``: the ids of the units of the other tree, in an order that executes; ``None`` with ``at``.
-    ``proved``: false if a limit came first; the end may then be nearer to the rate.
+    ``beyond``: the ids of the units of the other tree, in an order that executes; ``None`` if ``at`` is.
+    ``proved``: false if a limit came first; the true end may then be nearer to the rate.
     """
 
     at: Root | None
@@ -47,9 +47,12 @@ class Envelope:
     """
 
     def __init__(self, problem: Problem, tree: tuple[int, ...], settings: Settings) -> None:
-        """Find the motions that trees may have, and by searches those whose rates may rise without effect."""
+        """Find the motions that trees may have; search for those whose rates may rise to 1 without effect.
+
+        At a limit or ctrl-C, this search is given up, and the deadline is interrupted.
+        """
         self._problem, self._tree, self._settings = problem, tree, settings
-        self._holds = Postconditions(problem, levels(_SUCCESS), settings)
+        self._postconditions = Postconditions(problem, levels(_SUCCESS), settings)
         reached = reach(problem)
         # A unit that the goals cannot need makes no tree better, but user rules may require it.
         is_plain = not settings.constraints and settings.replaced is None
@@ -62,16 +65,19 @@ class Envelope:
             settings.begun.interrupt()
             self._free_to_rise = set()
 
-    def units(self, motion: str) -> int:
-        """Return how many units of the best tree have a motion, and no success rate of their own."""
+    def unit_count(self, motion: str) -> int:
+        """Return the number of units of the best tree with a motion and without a rate of their own."""
         return self._count_by_motion(self._tree)[motion]
 
     def end(self, motion: str, above: bool) -> IntervalEnd:
-        """Find the end of the interval above or below a motion's rate; at a limit, it is not proved."""
-        rate, units = (self._problem.rates or {})[motion], self.units(motion)
-        if above and (rate == 1 or self._unit_counts[motion] == units or motion in self._free_to_rise):
+        """Return the end of the interval above a motion's rate if ``above``, else the end below the rate.
+
+        At a limit or ctrl-C, the end is not proved, and the deadline is interrupted.
+        """
+        rate, unit_count = (self._problem.rates or {})[motion], self.unit_count(motion)
+        if above and (rate == 1 or self._unit_counts[motion] == unit_count or motion in self._free_to_rise):
             return IntervalEnd(None, None)
-        if not above and not units:
+        if not above and not unit_count:
             return IntervalEnd(None, None)
         try:
             if above:
@@ -135,22 +141,29 @@ class Envelope:
         network, own_rates = self._problem.network, self._problem.own_rates
         motions = set(self.motions)
         while motions:
-            others = {unit for unit in self._units if network.motions[unit] in motions}.difference(self._tree)
-            raised_rates = dict.fromkeys(others, Fraction(1)) | dict(own_rates)
+            varied_units = {unit for unit in self._units if network.motions[unit] in motions}.difference(
+                self._tree
+            )
+            raised_rates = dict.fromkeys(varied_units, Fraction(1)) | dict(own_rates)
             outcome, better = self._solve_varied(
                 replace(self._problem, own_rates=raised_rates, as_seen=self._problem)
             )
             if not better or outcome.units is None:
                 return motions if outcome.status is Status.OPTIMAL else set()
-            motions.difference_update(network.motions[unit] for unit in others.intersection(outcome.units))
+            motions.difference_update(
+                network.motions[unit] for unit in varied_units.intersection(outcome.units)
+            )
         return motions
 
     def _solve_varied(self, varied: Problem) -> tuple[Outcome, bool]:
-        """Return the optimum at other rates, and whether it is better than the envelope's tree there."""
+        """Return the optimum at other rates, and whether it is better than the best tree of the envelope.
+
+        Raises :class:`BugError` if a proved optimum is worse than this tree.
+        """
         outcome = solve(varied, _SUCCESS, self._settings, Reporter())
         tree_success = _success(varied.costs(self._tree))
         rival_success = Fraction(0) if outcome.costs is None else _success(outcome.costs)
-        self._holds.require(
+        self._postconditions.require(
             rival_success >= tree_success or outcome.status not in {Status.OPTIMAL, Status.INFEASIBLE},
             lambda: f"at other success rates {outcome.status} is said, but the tree {self._tree} is better",
         )
@@ -170,7 +183,7 @@ class Envelope:
 
 
 def _at_rate(problem: Problem, motion: str, degree: int, raised_rate: Fraction) -> Problem:
-    """Return a problem with all rates to the power of ``degree``; that of the motion is ``raised_rate``."""
+    """Return a problem with all rates to the power of ``degree``, and ``raised_rate`` for the motion."""
     raised = {name: rate**degree for name, rate in (problem.rates or {}).items()}
     own_rates = {unit: rate**degree for unit, rate in problem.own_rates.items()}
     return replace(problem, rates=raised | {motion: raised_rate}, own_rates=own_rates, as_seen=problem)

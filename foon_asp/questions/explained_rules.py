@@ -52,9 +52,9 @@ class ExplainedRule(Value, frozen=True):
         constraint: For a ready-made constraint with constants of its own, how it was named; null for others.
         kind: What it does to trees.
         one_of_a_set: Whether all that it requires is a unit of a set, or a unit of each of several sets.
-        reason: Why nothing more is known of it, or why it has no effect.
+        reason: Why nothing more is known of it, or why it has no effect; null for other rules.
         local: Whether it looks at nothing beyond the tree.
-        looks_beyond: What it looks at beyond the tree, if it is not local.
+        looks_beyond: What it looks at beyond the tree; null if it is local.
     """
 
     text: str
@@ -73,13 +73,16 @@ class ExplainedRule(Value, frozen=True):
         rule, (file, line, *_) = explained.rule, explained.source
         reason = _remark(rule.reason, explained.reason_source)
         beyond = _remark(rule.nonlocality, explained.nonlocality_source)
-        named = explained.use or None
-        return cls(explained.text, file, line, named, rule.kind, rule.one_of, reason, rule.local, beyond)
+        constraint_name = explained.use or None
+        return cls(
+            explained.text, file, line, constraint_name, rule.kind, rule.one_of, reason, rule.local, beyond
+        )
 
     def lines(self, similar: int) -> Iterator[str]:
-        """Yield lines on the place, text, effect and locality of a rule.
+        """Yield lines with the place, text and effect of a rule, and whether it looks beyond the tree.
 
-        ``similar`` is the number of further facts like this one, which are only counted.
+        The last is left out for a helper rule and for a rule without effect. ``similar`` is the number of
+        further facts like this one, which are only counted.
         """
         yield str(Source(self.file, self.line))
         if self.constraint:
@@ -105,8 +108,8 @@ class ExplainedRule(Value, frozen=True):
         return remark.text + ("" if in_same_place else f" ({Source(remark.file, remark.line)})")
 
     @property
-    def likeness(self) -> tuple[bool, str]:
-        """A key for grouping facts: whether the rule is one, and its file and predicate.
+    def grouping_key(self) -> tuple[bool, str]:
+        """The key by which facts are grouped: whether the rule is a fact, and its file and predicate.
 
         All rules that are no facts have the key ``(False, "")``.
         """
@@ -130,10 +133,13 @@ class ExplainedRules(Document, frozen=True, kw_only=True, tag=schema_name("rules
     meaning: str
 
     def show(self) -> Iterator[Block]:
-        """Yield the effect of each rule, and of all rules together; of similar facts, only the first."""
-        for (alike, _), group in groupby(self.rules, lambda rule: rule.likeness):
-            together = list(group)
-            shown = [(together[0], len(together) - 1)] if alike else [(rule, 0) for rule in together]
+        """Yield the effect of each rule, and of all rules together.
+
+        Of similar facts that follow each other, the first is shown and the others are counted.
+        """
+        for (is_fact, _), group in groupby(self.rules, lambda rule: rule.grouping_key):
+            alike = list(group)
+            shown = [(alike[0], len(alike) - 1)] if is_fact else [(rule, 0) for rule in alike]
             for rule, similar in shown:
                 yield from (*rule.lines(similar), "")
         yield f"together: {self.meaning}"
@@ -161,5 +167,5 @@ def explain_rules(
 
 
 def _remark(text: str, source: Source | None) -> Remark | None:
-    """Return a remark on a place; ``None`` without one."""
+    """Return a remark with the place that it is about; ``None`` without a place."""
     return None if source is None else Remark(text, source.file, source.line)

@@ -58,7 +58,10 @@ class Exported(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("e
     """The folder that the files were written into, if they were."""
 
     def show(self) -> Iterator[Block]:
-        """Yield the problem in PDDL; if files were written, their names, sizes and how costs were scaled."""
+        """Yield the problem in PDDL.
+
+        If files were written, yield instead their names, the size of the task, and how costs were scaled.
+        """
         if self.written is None:
             yield from self.problem_file.splitlines()
             return
@@ -101,10 +104,10 @@ class Exported(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("e
 
 
 def _export_and_write(
-    problem: Problem, *about: Any, folder_written: Path | None = None, **options: Any
+    problem: Problem, *arguments: Any, folder_written: Path | None = None, **options: Any
 ) -> Exported:
-    """Return :func:`export`, and write its files if ``folder_written`` names a folder."""
-    exported = export(problem, *about, **options)
+    """Return the result of :func:`export`; if ``folder_written`` names a folder, write the files into it."""
+    exported = export(problem, *arguments, **options)
     if folder_written is not None:
         exported.write(folder_written)
         exported.knowing(written=folder_written)
@@ -114,7 +117,7 @@ def _export_and_write(
 def _pose_export(
     command: Command, goals_named: Sequence[str], containers: str, items: str | None, **files: Any
 ) -> tuple[Problem]:
-    """Return the problem of the goals; with ``--items set``, it is one in which items are used up."""
+    """Return the problem of the goals, in a tuple; with ``--items set``, items are used up in it."""
     items = "used-up" if items == _MERGED else items or "lasting"
     return pose_problem(command, goals_named, containers, items, **files)
 
@@ -122,7 +125,7 @@ def _pose_export(
 def _has_merged_copies(problem: Problem, items: str | None) -> bool:
     """Return whether ``items`` is ``set``: then all copies of an object node are one.
 
-    Raises :class:`UserError` if ``items`` contradict the problem.
+    Raises :class:`UserError` for an unknown word, and if ``items`` contradicts the problem.
     """
     if items not in {None, *_ITEM_RULES}:
         raise UserError(f"found items={items!r}, expected one of {', '.join(_ITEM_RULES)}")

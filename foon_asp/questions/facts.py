@@ -29,7 +29,11 @@ class Facts(AboutGoals, frozen=True, kw_only=True, tag=schema_name("facts")):
 def facts_of(
     problem: Problem, objectives: Sequence[Objective], settings: Settings, soft: Mapping[Constraint, int]
 ) -> Facts:
-    """Return the facts and rules that clingo gets; ``soft`` maps soft constraints to their weights."""
+    """Return the facts for bare clingo, with those rules of users that bare clingo cannot read from a file.
+
+    With user rules or replaced encodings, the facts are for the whole network. ``soft`` maps soft constraints
+    to their weights.
+    """
     program = printable_program(problem, objectives, settings, soft).text
     lines = program.rstrip("\n").split("\n")  # a name may hold what other letters end a line
     return Facts(**head_of(problem, objectives), facts=tuple(lines))

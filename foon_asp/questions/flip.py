@@ -12,8 +12,8 @@ _SHORT = Fraction(1, 10**9)  # smallest number that is written without an expone
 class Flip(NamedTuple):
     """The value ``at`` of a rate beyond which another tree is the best.
 
-    ``rate`` is its present value. The other tree is the best at rates above ``at`` if ``above``, else at
-    rates below. Flips are ordered by the relative change from ``rate`` to ``at``.
+    ``rate`` is the present value of this rate. The other tree is the best at rates above ``at`` if ``above``,
+    else at rates below ``at``. Flips are ordered by the relative change from ``rate`` to ``at``.
     """
 
     rate: Fraction
@@ -22,7 +22,10 @@ class Flip(NamedTuple):
 
     @property
     def inwards(self) -> Fraction:
-        """The value ``at``, rounded towards ``rate`` to four digits; to more if it would pass ``rate``."""
+        """The value ``at``, rounded towards ``rate`` to four significant digits.
+
+        It has more digits if it would pass ``rate`` with four.
+        """
         digits = 4
         if self.at.rational == self.rate:
             return self.rate
@@ -41,9 +44,9 @@ class Flip(NamedTuple):
             if low == high == 0:
                 return "0 %"
             if low > 0:
-                shown = {Root(1, 100 * end).round_down(3) for end in (low, high)}
-                if len(shown) == 1:
-                    return f"{'+' if self.above else '-'}{decimal_text(shown.pop())} %"
+                rounded_percents = {Root(1, 100 * end).round_down(3) for end in (low, high)}
+                if len(rounded_percents) == 1:
+                    return f"{'+' if self.above else '-'}{decimal_text(rounded_percents.pop())} %"
             digits *= 2
 
     def change(self, digits: int) -> tuple[Fraction, Fraction]:
@@ -77,7 +80,10 @@ class Flip(NamedTuple):
 
 
 def decimal_text(value: Fraction) -> str:
-    """Return a number as a decimal if it has finitely many digits, else as a fraction: ``0.25``, ``1/3``."""
+    """Return a number as a decimal if it has finitely many digits, else as a fraction: ``0.25``, ``1/3``.
+
+    A decimal below 10^-9 has an exponent.
+    """
     context = Context(prec=value.numerator.bit_length() + value.denominator.bit_length())
     decimal = context.divide(Decimal(value.numerator), Decimal(value.denominator)).normalize(context)
     if Fraction(decimal) != value:

@@ -19,11 +19,11 @@ _BEST = (Objective.SUCCESS, Objective.UNITS)
 class PricedHelp:
     """Lagrangian relaxation of the number of helped units: help for a unit costs a factor of success.
 
-    Let S be the optimal success at a price q. A tree with help for M units has at most the success S / q^M,
-    or it would beat the optimum at that price. If the optimal tree at the price reaches this bound with help
-    for M units, it is optimal for M, also by fewest units, which break ties at the price. If no price closes
-    the gap, trees are enumerated in order of success at the price with the least bound, until the best tree
-    seen is as good as any later one can be.
+    At a price q, a helped unit counts with q times the person's rate. Let S be the optimal success at this
+    price. A tree with help for M units has at most the success S / q^M, or it would beat the optimum. If the
+    optimal tree at the price reaches this bound with help for M units, it is optimal for M, also by fewest
+    units, which break ties at the price. If no price closes the gap, trees are enumerated in order of success
+    at the price with the least bound, until the best tree seen is as good as any later one can be.
 
     The prices tried are the breakpoints at which help for another motion pays. The logarithm of the bound is
     convex in the logarithm of the price, so the least bound is found where the bound first rises.
@@ -41,7 +41,10 @@ class PricedHelp:
         self._outcomes: dict[Fraction, Outcome] = {}
 
     def best(self, max_helped: int) -> Outcome:
-        """Return the best tree with help for at most ``max_helped`` units; at a limit, the best one found."""
+        """Return the best tree with help for at most ``max_helped`` units.
+
+        At a limit, return the best tree found, which is not proved best.
+        """
         bounds: dict[Fraction, Fraction] = {}
         for price in self._prices:
             outcome = self._optimum_at(price)
@@ -62,7 +65,10 @@ class PricedHelp:
         return self._optimum_at(Fraction(1))
 
     def helped_units(self, max_helped: int, units: Iterable[int]) -> list[int]:
-        """Return the units of a tree, at most ``max_helped``, where help raises the success rate most."""
+        """Return those of the ``units`` where help raises the rate most, at most ``max_helped``.
+
+        Units that the person does not do better are left out.
+        """
         motions = self._problem.network.motions
         by_gain = sorted((self._break_even[motions[u]], u) for u in units if motions[u] in self._break_even)
         return [unit for _, unit in by_gain[:max_helped]]
@@ -84,7 +90,10 @@ class PricedHelp:
         return _as_optimal(best)
 
     def _best_before_limit(self, max_helped: int) -> Outcome:
-        """Return the best of the trees found at all prices so far, with the least bound that they prove."""
+        """Return the best of the trees found at all prices so far, with the least bound that is proved.
+
+        Without a tree, return the first outcome with that bound.
+        """
         outcomes = self._outcomes.values()
         trees = [
             self._with_help(max_helped, outcome.units) for outcome in outcomes if outcome.units is not None
@@ -98,14 +107,14 @@ class PricedHelp:
         return best._replace(bounds={Objective.SUCCESS: min(bounds)} if bounds else {})
 
     def _with_help(self, max_helped: int, units: tuple[int, ...]) -> Outcome:
-        """Return a tree, not proved best, whose ``max_helped`` units with the greatest gain are helped."""
+        """Return the tree of these units as a feasible outcome, with help for :meth:`helped_units`."""
         motions = self._problem.network.motions
         own_rates = {unit: self._better[motions[unit]] for unit in self.helped_units(max_helped, units)}
         problem = replace(self._problem, own_rates=own_rates)
         return Outcome(problem, _SUCCESS, Status.FEASIBLE, units, problem.costs(units), {}, {})
 
     def _optimum_at(self, price: Fraction) -> Outcome:
-        """Return the optimum where help for a unit costs this factor of success, solved once."""
+        """Return the optimum at a price, the factor of success that help for a unit costs; it is cached."""
         if price not in self._outcomes:
             reporter = (
                 Reporter() if self._outcomes else self._reporter
@@ -138,9 +147,9 @@ class CountedHelp:
         self._twins = replace(problem, network=network.with_copies(units), own_rates=own_rates)
 
     def best(self, max_helped: int) -> Outcome:
-        """Return the best tree with help for at most ``max_helped`` units."""
-        number = self._twins.network.unit_number
-        twins = {number(twin): number(unit) for twin, unit in self._originals.items()}
+        """Return the best tree with help for at most ``max_helped`` units, without copies of units."""
+        unit_number = self._twins.network.unit_number
+        twins = {unit_number(twin): unit_number(unit) for twin, unit in self._originals.items()}
         settings = self._settings._replace(bounded=assistance_bounds(twins, max_helped))
         outcome = solve(self._twins, _SUCCESS, settings, self._reporter)
         self._reporter = Reporter()  # later searches have other objectives or bounds
@@ -181,9 +190,9 @@ def helped_trees(
 ) -> HelpedTrees:
     """Find the best trees with help for 0, 1, 2, ... units.
 
-    ``person`` has the person's rates by motion; ``None`` is a person who never fails. The rows end with
+    ``person`` has the person's rates by motion; ``None`` for a person who never fails. The rows end with
     ``max_helped`` units, with the first tree whose success is at least ``wanted``, or where more help changes
-    nothing. At a limit, they end early.
+    nothing. ``None`` for either lifts its condition. At a limit, the rows end early.
 
     Raises :class:`UserError` for wrong rules, and for rules that look beyond the tree and at who does a unit.
     """
@@ -203,10 +212,10 @@ def helped_trees(
     try:
         while not complete:
             row = search.best(len(rows))
-            before = rows[-1] if rows else row
-            if row.status not in _PROVED and before.units is not None:  # help never makes a tree worse
-                row = min(row, before._replace(status=Status.FEASIBLE, bounds=row.bounds), key=_order_key)
-            _require_sound(len(rows), row, before, settings)
+            previous = rows[-1] if rows else row
+            if row.status not in _PROVED and previous.units is not None:  # help never makes a tree worse
+                row = min(row, previous._replace(status=Status.FEASIBLE, bounds=row.bounds), key=_order_key)
+            _require_sound(len(rows), row, previous, settings)
             rows.append(row)
             if row.status not in _PROVED:
                 break
@@ -216,8 +225,12 @@ def helped_trees(
             reached = wanted is not None and -_order_key(row)[0] >= wanted
             # a requested number is always solved, since more help may need fewer units
             compared_length = 1 if max_helped is None else 2
-            done = _order_key(row)[:compared_length] == _order_key(with_any_help)[:compared_length]
-            complete = reached or done or with_any_help.units is None or len(rows) - 1 == max_helped
+            more_help_is_vain = (
+                _order_key(row)[:compared_length] == _order_key(with_any_help)[:compared_length]
+            )
+            complete = (
+                reached or more_help_is_vain or with_any_help.units is None or len(rows) - 1 == max_helped
+            )
     except KeyboardInterrupt:
         if not rows:
             raise
@@ -238,20 +251,21 @@ def _as_optimal(tree: Outcome) -> Outcome:
     )
 
 
-def _require_sound(max_helped: int, row: Outcome, before: Outcome, settings: Settings) -> None:
-    """Raise an error if more than ``max_helped`` units are helped, costs are wrong, or more help is worse.
+def _require_sound(max_helped: int, row: Outcome, previous: Outcome, settings: Settings) -> None:
+    """Raise :class:`BugError` if ``row`` has wrong claims, too much help, or is worse than with less help.
 
-    ``row`` is the outcome to check, and ``before`` the one with less help.
+    ``max_helped`` is the greatest number of helped units, and ``previous`` the outcome with less help. An
+    outcome without a tree is not checked.
     """
     if row.units is None:
         return
-    holds = Postconditions(row.problem, _BEST, settings)
+    postconditions = Postconditions(row.problem, _BEST, settings)
     helped = row.problem.own_rates.keys()
-    holds.require(
+    postconditions.require(
         len(helped) <= max_helped and helped <= set(row.units),
         lambda: (
             f"the tree {row.units} with help for {max_helped} units at most has help for {sorted(helped)}"
         ),
     )
-    holds.require_true_claims(row)
-    holds.require_no_better(before, row, f"with help for {max_helped} units")
+    postconditions.require_true_claims(row)
+    postconditions.require_no_better(previous, row, f"with help for {max_helped} units")

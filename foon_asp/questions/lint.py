@@ -69,7 +69,10 @@ class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):
         return Ending.NEGATIVE if bad else Ending.DONE
 
     def show(self) -> Iterator[Block]:
-        """Yield the findings with their lines, those of one kind in a file folded, and a line of counts."""
+        """Yield the findings with their lines, and a line of counts.
+
+        Of each kind of finding in a file, the first three are shown, and the others counted.
+        """
         yield from finding_lines(self.findings)
         yield self._summary()
 
@@ -77,7 +80,7 @@ class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):
         """Return a table that counts the findings of each code, and a line of counts.
 
         Parameters:
-            width: The number of columns that lines are wrapped to; ``None`` wraps no line.
+            width: The number of columns that lines are wrapped to; ``None`` for no wrapping.
         """
         return blocks_text([code_table(self.findings), self._summary()], width)
 
@@ -86,12 +89,15 @@ class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):
         return summary_line(self.findings, self.files, self.mended)
 
     def json_dict(self) -> Json:
-        """Return the findings and the counts as plain values, without the text of lines over 1000 letters."""
-        short = [
+        """Return the findings and the counts as plain values.
+
+        The text or fix of a line of more than 1000 characters is null.
+        """
+        shortened = [
             structs.replace(finding, text=_unless_long(finding.text), fix=_unless_long(finding.fix))
             for finding in self.findings
         ]
-        values: Json = plain(structs.replace(self, findings=tuple(short)))
+        values: Json = plain(structs.replace(self, findings=tuple(shortened)))
         return values
 
     def table_rows(self) -> Iterator[Json]:
@@ -110,7 +116,7 @@ class Linted(Result, frozen=True, kw_only=True, tag=schema_name("lint")):
 
 
 def _unless_long(line: str | None, max_letters: int = 1000) -> str | None:
-    """Return a line, or ``None`` if it is long: thousands of findings might repeat it."""
+    """Return a line, or ``None`` if it has over ``max_letters``: thousands of findings might repeat it."""
     return line if line is not None and len(line) <= max_letters else None
 
 
@@ -127,7 +133,7 @@ class Findings(NamedTuple):
     gone: int = 0
 
     def linted(self, mended: int = 0) -> Linted:
-        """Return the findings as a result; ``mended`` is the number of findings that were repaired before."""
+        """Return the findings as a result; ``mended`` is the number of findings already repaired."""
         severities = Counter(finding.severity for finding in self.findings)
         codes = Counter(finding.code for finding in self.findings)
         return Linted(
@@ -196,7 +202,8 @@ def find_findings(
 ) -> Findings:
     """Return the findings of :func:`lint`, with their fixes and the counts of the ``baseline``.
 
-    ``select`` replaces the codes that settings select or ignore; ``ignore`` is added to them.
+    ``select`` replaces the codes that settings select or ignore; ``ignore`` is added to the ignored codes.
+    Raises :class:`UserError` for an unknown code, and without a file to lint.
     """
     for code in (*select, *ignore):
         if code not in CATALOG:
@@ -221,6 +228,6 @@ def linted_files(paths: Iterable[Path], contents: Iterable[Path] = ()) -> Sequen
 
     ``contents`` are the paths of files whose content is not read from disk.
     """
-    named = list(paths)
-    on_disk = with_tables(named, (file for file, _ in foon_files(named)))
+    path_list = list(paths)
+    on_disk = with_tables(path_list, (file for file, _ in foon_files(path_list)))
     return list(dict.fromkeys([*on_disk, *contents]))

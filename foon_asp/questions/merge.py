@@ -60,9 +60,9 @@ class Merged(Result, frozen=True, kw_only=True, tag=schema_name("merge")):
     """Lines on what was skipped or assumed in reading."""
 
     def show(self) -> Iterator[Block]:
-        """Yield the counts in one line."""
-        read = str(self.store or counted(len(self.files), "file", ","))
-        parts = [f"{read}: {counted(self.units, 'unit', ',')} of {self.copies:,} read"]
+        """Yield one line with the counts; zero prices and zero lines left out are not named."""
+        source_text = str(self.store or counted(len(self.files), "file", ","))
+        parts = [f"{source_text}: {counted(self.units, 'unit', ',')} of {self.copies:,} read"]
         parts.append(counted(self.objects, "object node", ","))
         if self.prices:
             parts.append(f"{counted(self.prices, 'price', ',')} of units not in the result")
@@ -105,7 +105,7 @@ class Merged(Result, frozen=True, kw_only=True, tag=schema_name("merge")):
 
         Parameters:
             file: The path of the file.
-            format_: ``foon``, or nothing.
+            format_: ``foon`` or ``None``.
 
         Raises:
             UserError: for another format, and for a network that is in a store.
@@ -149,19 +149,20 @@ def merge(
         >>> merged.copies - merged.units
         0
     """
-    named = as_paths(paths)
-    if not named:
+    networks = as_paths(paths)
+    if not networks:
         raise UserError("name the networks to merge")
-    folder = named[0] if isinstance(paths, str | PathLike) and named[0].is_dir() else None
-    prices, table = (None if file is None else as_path(file) for file in (unit_prices, unit_amounts))
-    data_files = find_data(folder, () if folder else named, unit_prices=prices, unit_amounts=table)
+    folder = networks[0] if isinstance(paths, str | PathLike) and networks[0].is_dir() else None
+    prices, amounts = (None if file is None else as_path(file) for file in (unit_prices, unit_amounts))
+    data_files = find_data(folder, () if folder else networks, unit_prices=prices, unit_amounts=amounts)
     return merge_files(data_files, None if store is None else as_path(store), lenient)
 
 
 def merge_files(data_files: DataFiles, store: Path | None, lenient: bool) -> Merged:
-    """Merge networks in memory, or with ``store`` merge them into a store, with all other data files.
+    """Merge networks in memory, or with a path ``store`` into a store, which keeps all other data files, too.
 
-    Raises :class:`UserError` if there is no unit, or if copies of a unit have different prices or amounts.
+    A file named twice is read once. ``lenient`` skips lines that are not understood. Raises
+    :class:`UserError` if there is no unit, or if copies of a unit have different prices or amounts.
     """
     network_files = tuple(dict.fromkeys(data_files.network))
     if store is not None:

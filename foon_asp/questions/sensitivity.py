@@ -258,7 +258,7 @@ def sensitivity(problem: Problem, **options: Unpack[CommonOptions]) -> Sensitivi
             flip = None if end.at is None else Flip(rate, end.at, above)
             ends.append(_end_value(answer, end, flip))
             flips += [] if flip is None else [flip]
-        interval = RateInterval(motion, rate, envelope.units(motion), *ends)
+        interval = RateInterval(motion, rate, envelope.unit_count(motion), *ends)
         if flips:
             flipping.append((min(flips), interval))
         else:

@@ -174,9 +174,11 @@ def test_limits_count_from_the_beginning_of_a_process_that_is_there_for_one_comm
 
 
 def test_a_process_ends_as_usual_though_at_once() -> None:
-    code = "import atexit; from foon_asp.cli.whole_process import leave; atexit.register(print, 'last')"
+    code = (
+        "import atexit; from foon_asp.cli.whole_process import exit_process; atexit.register(print, 'last')"
+    )
     ran = subprocess.run(
-        [sys.executable, "-c", f"{code}; print('first', end=' '); leave(3)"],
+        [sys.executable, "-c", f"{code}; print('first', end=' '); exit_process(3)"],
         capture_output=True,
         text=True,
         check=False,

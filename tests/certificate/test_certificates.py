@@ -366,7 +366,7 @@ def test_a_tree_called_optimal_that_is_not_ends_with_70(
         assert outcome.units is not None
         return outcome._replace(units=(*outcome.units, 0), costs=problem.costs((*outcome.units, 0)))
 
-    monkeypatch.setattr("foon_asp.questions.answer.find", worse)
+    monkeypatch.setattr("foon_asp.questions.answer.solve", worse)
     ran = cli("solve", "--goal", "ice", "--certificate", tmp_path / "proof.json")
     assert ran.code == 70
     assert "but there is a better tree, the units [" in ran.err

@@ -212,7 +212,7 @@ def test_a_bug_of_ours_exits_with_70(cli: Cli, data: Path, monkeypatch: pytest.M
     def fail(*_: object) -> None:
         raise ZeroDivisionError("oops")
 
-    monkeypatch.setattr("foon_asp.questions.answer.find", fail)
+    monkeypatch.setattr("foon_asp.questions.answer.solve", fail)
     ran = cli("solve", "--data", data)
     assert ran.code == 70
     assert "foon-asp has a bug: ZeroDivisionError: oops" in ran.err

@@ -315,7 +315,7 @@ def test_a_worse_tree_is_our_bug_with_all_that_is_needed(
     Path("at_least.lp").write_text(":- #count { U : use(U) } < 4.\n")
     Path("part.lp").write_text("touched(L) :- use(U), input(U,O), label(O,L).\n")
     Path("mine.lp").write_text('#include "part.lp".\n#const name = "".\n:- touched(name).\n')
-    monkeypatch.setattr("foon_asp.questions.answer.find", worse)
+    monkeypatch.setattr("foon_asp.questions.answer.solve", worse)
     words = (
         "--goal",
         "ice",

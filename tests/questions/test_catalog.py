@@ -17,7 +17,19 @@ from foon_asp.questions.result import Result
 from tests.conftest import Cli
 
 # parameters that the command line has no option for: it has them from elsewhere
-PYTHON_ONLY = {"problem", "foon", "about", "data", "a", "b", "level", "reporter", "cancel", "on_progress"}
+PYTHON_ONLY = {
+    "problem",
+    "foon",
+    "about",
+    "arguments",
+    "data",
+    "a",
+    "b",
+    "level",
+    "reporter",
+    "cancel",
+    "on_progress",
+}
 
 
 def function_of(verb: str) -> Callable[..., Result]:

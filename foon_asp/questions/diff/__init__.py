@@ -30,13 +30,13 @@ from foon_asp.text.plain_file import is_store
 
 
 class Named(NamedTuple):
-    """A task tree or a network, its name, and the amounts of a network.
+    """A task tree or a network that is compared, with its name, and for a network with amounts.
 
-    The name is the file that it was read from, or ``a`` or ``b``.
+    ``name``: the file that the tree or network was read from, or ``a`` or ``b``.
     """
 
     name: str
-    read: Tree | Network
+    compared: Tree | Network
     amounts: Amounts = MappingProxyType({})
 
 
@@ -46,7 +46,7 @@ _Comparable = Answer | Tree | Foon | File | Named
 def _pose_files(
     command: Command, a: Path, b: Path, goals_named: Sequence[str], containers: str
 ) -> tuple[Named, Named, int]:
-    """Read two files; return them and the level, as the arguments of :func:`diff`.
+    """Read two files as trees or networks; return them and the level, as the arguments of :func:`diff`.
 
     The data that the command names are read only if the files are task trees.
     """
@@ -59,33 +59,34 @@ def _read_pair(
     files: tuple[Path, Path],
     goals: Sequence[str | ObjectNode],
     containers: str | None,
-    data: Callable[[Mapping[Path, ListedTree]], Dataset],
+    read_data: Callable[[Mapping[Path, ListedTree]], Dataset],
 ) -> tuple[Named, Named]:
     """Read two files as trees of ``goals``, or as networks.
 
-    They are trees if goals are named, or if one of the files says that it is a tree. Then ``data`` is called
-    for the data that the trees are about.
+    They are trees if there are ``goals``, or if one of the files says that it is a tree. ``read_data`` then
+    reads the data that the trees are about. Without ``goals``, the trees are for the goals that the files
+    name. ``containers``: ``None`` for the container rule that a file names, or else the default rule.
     """
-    read: dict[Path, ListedTree | Tree | Foon] = {
+    content_of: dict[Path, ListedTree | Tree | Foon] = {
         file: _read_units_or_data(file) for file in dict.fromkeys(files)
     }
-    listed = {file: content for file, content in read.items() if isinstance(content, ListedTree)}
-    if goals or any(tree.is_tree for tree in listed.values()):
-        dataset = data(listed)
-        goals = goals or [goal for tree in listed.values() for goal in tree.goals]
-        for file, tree in listed.items():
-            read[file] = listed_tree(
+    trees = {file: content for file, content in content_of.items() if isinstance(content, ListedTree)}
+    if goals or any(tree.is_tree for tree in trees.values()):
+        dataset = read_data(trees)
+        goals = goals or [goal for tree in trees.values() for goal in tree.goals]
+        for file, tree in trees.items():
+            content_of[file] = listed_tree(
                 dataset, file, tree, goals, containers or tree.containers or DEFAULT_RULE.value
             )
-    a, b = (_named_network(str(file), read[file]) for file in files)
+    a, b = (_named_network(str(file), content_of[file]) for file in files)
     return a, b
 
 
 def _data_for_trees(level: int, files: Mapping[Path, ListedTree]) -> Dataset:
-    """Return the data that trees in files are about, where Python names no data.
+    """Return the data that trees in files are about, for a call from Python, which names no data.
 
-    They are read from the files that :func:`own_networks` finds; if it finds none, the bundled kitchen is
-    used.
+    They are read from the files that :func:`own_networks` finds. Without such files, they are the bundled
+    kitchen.
     """
     kitchen = load(level=level)
     network_files = own_networks(kitchen.network, files)
@@ -93,27 +94,28 @@ def _data_for_trees(level: int, files: Mapping[Path, ListedTree]) -> Dataset:
 
 
 def _read_units_or_data(file: Path) -> ListedTree | Foon:
-    """Read a file as a list of units in order; read a folder or a store as data."""
+    """Read a file as units in their order, and a folder or a store as data."""
     return load(file) if file.is_dir() or is_store(file) else read_answer(file)
 
 
-def _named_network(name: str, read: ListedTree | Tree | Foon) -> Named:
-    """Return data or a list of units as a network with its name; return a tree as it is, with its name."""
-    if isinstance(read, Tree):
-        return Named(name, read)
-    if isinstance(read, Foon):
-        return Named(name, read.network.detailed or read.network, read.dataset.source.amounts.units)
+def _named_network(name: str, compared: ListedTree | Tree | Foon) -> Named:
+    """Return data or listed units as a network at level 3, with its name; return a tree as it is."""
+    if isinstance(compared, Tree):
+        return Named(name, compared)
+    if isinstance(compared, Foon):
+        network = compared.network
+        return Named(name, network.detailed or network, compared.dataset.source.amounts.units)
     builder = NetworkBuilder()
-    for unit, source in read.units or ():
+    for unit, source in compared.units or ():
         builder.add(unit.motion, unit.inputs, unit.outputs, source)
-    return Named(name, builder.build(), read.amounts)
+    return Named(name, builder.build(), compared.amounts)
 
 
 def _with_name(name: str, compared: _Comparable, problem: Problem | None) -> Named:
     """Return an argument of :func:`diff` as a tree or a network, with its name.
 
-    A file is read as a tree of ``problem``; as a network if this is ``None``. Raises :class:`NoTreeError` for
-    an answer without a tree.
+    A file gets its path as name. It is read as a tree for ``problem``, or as a network if ``problem`` is
+    ``None``. Raises :class:`NoTreeError` for an answer without a tree.
     """
     if isinstance(compared, str | PathLike):
         name, file = str(compared), Path(compared)
@@ -209,14 +211,14 @@ def diff(
         if isinstance(a, str | PathLike) and isinstance(b, str | PathLike):
             goal = limits.get("goal", ())
             goals = [goal] if isinstance(goal, str | ObjectNode) else [*goal]
-            data = partial(_data_for_trees, level)
-            a, b = _read_pair((Path(a), Path(b)), goals, limits.get("containers"), data)
+            read_data = partial(_data_for_trees, level)
+            a, b = _read_pair((Path(a), Path(b)), goals, limits.get("containers"), read_data)
         problem = next((value.problem for value in (a, b) if isinstance(value, Answer | Tree)), None)
         named_a, named_b = _with_name("a", a, problem), _with_name("b", b, problem)
         names = named_a.name, named_b.name
-        if isinstance(named_a.read, Tree) and isinstance(named_b.read, Tree):
-            return compare_trees(names, (named_a.read, named_b.read))
-        if isinstance(named_a.read, Network) and isinstance(named_b.read, Network):
-            networks, amounts = (named_a.read, named_b.read), (named_a.amounts, named_b.amounts)
+        if isinstance(named_a.compared, Tree) and isinstance(named_b.compared, Tree):
+            return compare_trees(names, (named_a.compared, named_b.compared))
+        if isinstance(named_a.compared, Network) and isinstance(named_b.compared, Network):
+            networks, amounts = (named_a.compared, named_b.compared), (named_a.amounts, named_b.amounts)
             return compare_networks(names, networks, amounts, level)
         raise UserError(f"{' and '.join(names)}: found a task tree and a network, expected two of a kind")

@@ -15,7 +15,7 @@ from foon_asp.text.json_text import Json
 
 
 class NearUnits(Value, frozen=True):
-    """A unit of each of the two, which are nearly the same, and in what they differ."""
+    """Two units that are nearly the same, one of each tree or network, and their differences."""
 
     a: Unit
     b: Unit
@@ -40,11 +40,11 @@ class Difference(Result, frozen=True, kw_only=True):
     in_both: tuple[Unit, ...]
 
     def figures(self) -> Sequence[Sequence[str]]:
-        """Return the rows of a table of figures that compares the two, the headings first."""
+        """Return the rows of a table that compares the two by numbers, the headings first."""
         raise NotImplementedError
 
     def unit_lines(self) -> Iterator[str]:
-        """Yield the number of common units, then lines on pairs that nearly agree and on all other units."""
+        """Yield the number of common units, then lines on pairs that nearly agree and units of only one."""
         yield f"in both: {counted(len(self.in_both), 'unit', ',')}"
         if self.nearly_the_same:
             yield from ("", f"nearly the same: {counted(len(self.nearly_the_same), 'unit', ',')} in each")
@@ -57,14 +57,17 @@ class Difference(Result, frozen=True, kw_only=True):
             yield from (line for unit in units for line in unit.lines())
 
     def table_rows(self) -> Iterator[Json]:
-        """Return a row for each unit; its column ``in`` says in which of the two the unit is."""
+        """Return a row for each unit; its column ``in`` says in which of the two the unit is.
+
+        The values are ``a``, ``b`` and ``both``; for nearly equal pairs, ``a, nearly b`` and ``b, nearly a``.
+        """
         lists = [("a", self.only_in_a), ("b", self.only_in_b), ("both", self.in_both)]
         for pair in self.nearly_the_same:
             lists += [("a, nearly b", (pair.a,)), ("b, nearly a", (pair.b,))]
         return (flat_row({"in": membership, **plain(unit)}) for membership, units in lists for unit in units)
 
     def html(self) -> str:
-        """Return a page in HTML with a column for each of the two."""
+        """Return a page in HTML with a column for each of the two; the common units are folded."""
         return two_column_page(
             f"{self.a} and {self.b}",
             [str(self.a), str(self.b)],
@@ -83,7 +86,7 @@ class Difference(Result, frozen=True, kw_only=True):
 def difference_fields(a: Mapping[FunctionalUnit, Unit], b: Mapping[FunctionalUnit, Unit]) -> dict[str, Any]:
     """Return the fields of a :class:`Difference` by name, for the units of two trees or networks.
 
-    ``a`` and ``b`` map each unit to its value in the result.
+    ``a`` and ``b`` map each unit to its value in the result. The common units have the values of ``a``.
     """
     pairs = nearest_units([unit for unit in a if unit not in b], [unit for unit in b if unit not in a])
     paired = {unit for unit_a, unit_b, _ in pairs for unit in (unit_a, unit_b)}

@@ -34,7 +34,10 @@ class Agreement(Value, frozen=True):
 
     @classmethod
     def of(cls, sides: Sequence[Sequence[object]]) -> Self:
-        """Return the agreement of the two ``sides``, lists without repeats."""
+        """Return the agreement of two sets, which ``sides`` has as sequences without repeats.
+
+        For two empty sets, both coefficients are 1.
+        """
         a, b = map(len, sides)
         both = len(set(sides[0]).intersection(sides[1]))
         jaccard, f1 = (Fraction(both, a + b - both), Fraction(2 * both, a + b)) if a + b else (1, 1)
@@ -99,7 +102,7 @@ class NetworkDifference(Difference, frozen=True, kw_only=True, tag=schema_name("
                 (
                     f"{noun}, level {level_agreement.level}",
                     *(f"{count:,}" for count in (scores.a, scores.b, scores.both)),
-                    *(f"{float(figure):.3f}" for figure in (scores.jaccard, scores.f1)),
+                    *(f"{float(score):.3f}" for score in (scores.jaccard, scores.f1)),
                 )
                 for noun, field in (("units", "units"), ("object nodes", "nodes"))
                 for level_agreement in self.agreement
@@ -108,7 +111,7 @@ class NetworkDifference(Difference, frozen=True, kw_only=True, tag=schema_name("
         ]
 
     def show(self) -> Iterator[Block]:
-        """Yield the figures of all levels, the units in which the networks differ, and other amounts."""
+        """Yield the agreement at all levels, the units in which the networks differ, and other amounts."""
         yield from (f"compared as networks, at level {self.level}", f"A: {self.a}", f"B: {self.b}", "")
         headings, *rows = self.figures()
         yield from (Table(headings, rows), "")
@@ -122,7 +125,10 @@ class NetworkDifference(Difference, frozen=True, kw_only=True, tag=schema_name("
 def compare_networks(
     names: Sequence[str], networks: Sequence[Network], amounts: tuple[Amounts, Amounts], level: int
 ) -> NetworkDifference:
-    """Compare two networks, given at level 3: figures at each level, units and amounts at ``level``."""
+    """Compare two networks, given at level 3: their agreement at each level, and their units at ``level``.
+
+    Amounts are compared at level 3 only.
+    """
     at_level = {detail: [network_at_level(network, detail) for network in networks] for detail in LEVELS}
     a, b = ({n.unit(u): unit_of(n, u) for u in range(len(n))} for n in at_level[level])
     agreement = tuple(
@@ -142,10 +148,10 @@ def compare_networks(
 def _amount_differences(
     networks: Sequence[Network], amounts: tuple[Amounts, Amounts]
 ) -> Iterator[AmountDifference]:
-    """Yield the amounts in which units of both networks differ, in the order of the first one."""
+    """Yield the amounts in which units of both networks differ, in the order of the first network."""
     (a, b), (amounts_a, amounts_b) = networks, amounts
-    for number in range(len(a)) if amounts_a or amounts_b else ():
-        unit = a.unit(number)
+    for unit_id in range(len(a)) if amounts_a or amounts_b else ():
+        unit = a.unit(unit_id)
         if b.unit_id(unit) is None:
             continue
         of_a, of_b = (of_data.get(unit, ALL_ONE) for of_data in amounts)
@@ -153,4 +159,4 @@ def _amount_differences(
             for node in nodes:
                 pair = in_a.get(node, 1), in_b.get(node, 1)
                 if pair[0] != pair[1]:
-                    yield AmountDifference(unit_of(a, number), named_node(a, node), side, *pair)
+                    yield AmountDifference(unit_of(a, unit_id), named_node(a, node), side, *pair)

@@ -105,7 +105,10 @@ class TreeDifference(Difference, frozen=True, kw_only=True, tag=schema_name("dif
         return [("", "costs"), ("A", self.a.costs_text), ("B", self.b.costs_text)]
 
     def show(self) -> Iterator[Block]:
-        """Yield the costs of both, the units that only one has, and where the trees part."""
+        """Yield the costs of both, the differences of their units, and where the trees part.
+
+        If both have the same units, one line says so, and whether their order is the same.
+        """
         yield "compared as task trees"
         for letter, summary, tree in (("A", self.a, self.trees[0]), ("B", self.b, self.trees[1])):
             yield f"{letter}: {summary.name}    {summary.costs_text}"
@@ -146,7 +149,7 @@ def compare_trees(names: Sequence[str], trees: tuple[Tree, Tree]) -> TreeDiffere
 
 
 def _side_of(name: str, tree: Tree) -> Side:
-    """Return a tree as a :class:`Side`, without costs if a unit is not in the network."""
+    """Return a tree as a :class:`Side`, without costs if the network lacks one of its units."""
     problem = tree.problem
     ids = [number for unit in tree if (number := problem.network.unit_id(unit)) is not None]
     costs = problem.costs(ids) if len(ids) == len(tree) else None
@@ -154,7 +157,7 @@ def _side_of(name: str, tree: Tree) -> Side:
 
 
 def _unit_values(tree: Tree) -> dict[FunctionalUnit, Unit]:
-    """Map the units of a tree, in order and without repeats, to their values for the result."""
+    """Return the units of a tree, in order and without repeats, with their values for the result."""
     units: dict[FunctionalUnit, Unit] = {}
     for unit, source in zip(tree.units, tree.places, strict=True):
         units.setdefault(unit, listed_unit(tree.problem.network, unit, source))
@@ -166,20 +169,20 @@ _Origin = FunctionalUnit | bool
 
 
 def _origins(tree: Tree, goals: Sequence[ObjectNode]) -> dict[ObjectNode, _Origin]:
-    """Return how a tree gets each node that it needs, breadth first from the goals backwards.
+    """Return the origin of each node that a tree needs for ``goals``, breadth first from these backwards.
 
     A unit that needs a node itself does not make it.
     """
     problem = tree.problem
     container_rule = problem.containers, problem.utensils, problem.network
-    needs: dict[object, tuple[ObjectNode, ...]] = {
+    needed_inputs_of: dict[object, tuple[ObjectNode, ...]] = {
         unit: needed_inputs(unit, *container_rule) for unit in tree
     }
     makers = {
         node: unit
         for unit in reversed(tree.units)
         for node in given_outputs(unit, *container_rule)
-        if node not in needs[unit]
+        if node not in needed_inputs_of[unit]
     }
     origins: dict[ObjectNode, _Origin] = {}
     queue = deque(goals)
@@ -187,7 +190,7 @@ def _origins(tree: Tree, goals: Sequence[ObjectNode]) -> dict[ObjectNode, _Origi
         node = queue.popleft()
         if node not in origins:
             origins[node] = problem.at_hand(node) or makers.get(node, False)
-            queue += needs.get(origins[node], ())
+            queue += needed_inputs_of.get(origins[node], ())
     return origins
 
 
