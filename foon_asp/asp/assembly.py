@@ -135,7 +135,7 @@ def assemble(
         exact_success(),
         arguments,
         replaced=replaced,
-        own=not added and encodings is None,
+        is_built_in=not added and encodings is None,
         rules=rules,
         bounded=bounded is not None,
         looked_at=looked_at,
@@ -181,10 +181,10 @@ def ready_made_program(problem: Problem, settings: Settings, warn: Callable[[str
     whole_program = without_rules._replace(
         files=(*without_rules.files, *rules.files),
         arguments=(*constants, *without_rules.arguments),
-        own=False,
+        is_built_in=False,
         looked_at=rules.looked_at,
     )
-    return without_rules._replace(own=False, ready_made=rules, whole=whole_program)
+    return without_rules._replace(is_built_in=False, ready_made=rules, whole=whole_program)
 
 
 def _warn_of_names(

@@ -80,7 +80,7 @@ def bare_program(
     prepared = prepare(problem, objectives, settings, program._replace(understood=None))
     if prepared.tree is None:  # with all units, bare clingo can prove that a goal cannot be made
         all_reached = reach(problem)._replace(units=tuple(range(len(problem.network))))
-        units = relevant_units(problem, all_reached) if program.own else all_reached.units
+        units = relevant_units(problem, all_reached) if program.is_built_in else all_reached.units
         prepared = replace(prepared, units=units)
     return _bare_program_of(program, prepared.facts + write_objectives(prepared.levels) + penalty)
 

@@ -19,8 +19,8 @@ from foon_asp.rules.passed_constraint import RuleText
 class Postconditions:
     """Checks of the answers to one question; a check that fails raises :class:`BugError` with the question.
 
-    ``levels`` are the objectives as optimized. ``own`` says that all rules are built in. Then a tree that
-    does not execute is a bug of this program; otherwise it is an error in the user's rules.
+    ``levels`` are the objectives as optimized. ``is_built_in`` says that all rules are built in. Then a tree
+    that does not execute is a bug of this program; otherwise it is an error in the user's rules.
     """
 
     def __init__(
@@ -251,7 +251,9 @@ class Postconditions:
             "bounds": f"{settings.bounded.rules} {settings.bounded.below or ''}".replace("\n", " ").strip()
             if settings.bounded
             else "",
-            "time limit": "" if settings.begun.seconds is None else f"{settings.begun.seconds} s",
+            "time limit": ""
+            if settings.effective_deadline.seconds is None
+            else f"{settings.effective_deadline.seconds} s",
         }
         return "\n".join(
             [

@@ -42,7 +42,7 @@ class Prepared:
     ``tree``: a tree of these units; ``None`` if they do not make the goals.
     ``reduced``: the result of the reductions; ``None`` if none ran.
     ``stopped``: whether a limit or ctrl-C interrupted the preparation, so that nothing is known.
-    ``kept``: the problem restricted by user rules, if rules were applied before the search.
+    ``restricted_problem``: the problem restricted by user rules, if rules were applied before the search.
     ``contradicted``: whether user rules allow no tree.
     ``full_program``: the program with all user rules, if rules were applied before the search.
     ``unsettled``: whether clingo has to enforce some rules; ``tree`` and ``reduced`` ignore these.
@@ -58,7 +58,7 @@ class Prepared:
     tree: frozenset[int] | None = None
     reduced: Reduced | None = None
     stopped: bool = False
-    kept: Problem | None = None
+    restricted_problem: Problem | None = None
     contradicted: bool = False
     unsettled: bool = False
     redundant: bool = False
@@ -67,7 +67,9 @@ class Prepared:
     @cached_property
     def holds(self) -> Postconditions:
         """The postconditions that answers to this question have to satisfy."""
-        return Postconditions(self.kept or self.problem, self.levels, self.settings, self.program.own)
+        return Postconditions(
+            self.restricted_problem or self.problem, self.levels, self.settings, self.program.is_built_in
+        )
 
     @cached_property
     def scales(self) -> "Scales":
@@ -91,14 +93,18 @@ class Prepared:
                 predicates_read = writing.READ_BY_OURS | self.program.looked_at
                 facts = writing.write_facts_read(self.problem, self.units, predicates_read, self.scales)
             else:
-                looked_at = None if self.program.own else self.program.looked_at
+                looked_at = None if self.program.is_built_in else self.program.looked_at
                 facts = writing.write_facts(self.problem, self.units, self.scales, looked_at)
             bounded = self.settings.bounded
             facts += writing.write_below(bounded.below, self.scales) if bounded else ""
-            if self.kept is None or self.kept.restriction is None or self.unsettled:
+            if (
+                self.restricted_problem is None
+                or self.restricted_problem.restriction is None
+                or self.unsettled
+            ):
                 return facts
             number, remaining = self.problem.network.unit_number, frozenset(self.units)
-            sets = self.kept.restriction.required
+            sets = self.restricted_problem.restriction.required
             return facts + writing.write_required([map(number, sorted(remaining & units)) for units in sets])
 
     def keeps(self, units: Collection[int]) -> bool | None:
@@ -208,7 +214,7 @@ def prepare(
         from foon_asp.encoding.cost_scales import require_one_rounded  # noqa: PLC0415 (few questions have two)
 
         require_one_rounded(problem, objective_levels)
-    deadline = settings.begun
+    deadline = settings.effective_deadline
     prepared = Prepared(problem, objective_levels, settings, deadline, program)
     try:
         if problem.measures:
@@ -219,9 +225,9 @@ def prepare(
                 prepared = _apply_rules(prepared, program.added)
         if prepared.contradicted:
             return prepared
-        program, kept = prepared.program, prepared.kept or problem
-        if listener is not None and (program.own or _can_reduce_unsettled(prepared)):
-            presolve = partial(reduce, solved=None if prepared.kept else solved)
+        program, kept = prepared.program, prepared.restricted_problem or problem
+        if listener is not None and (program.is_built_in or _can_reduce_unsettled(prepared)):
+            presolve = partial(reduce, solved=None if prepared.restricted_problem else solved)
             if prepared.unsettled:
                 course = BOUND if brief else None
                 presolve = partial(reduce_under_rules, redundant=prepared.redundant, course=course)
@@ -242,7 +248,7 @@ def prepare(
             reached = reach(stocked)
             tree = first_tree(stocked, reached)
             # backwards with the kitchen as it is: items for sale may also be made
-            only_relevant = program.own or (prepared.unsettled and not prepared.redundant)
+            only_relevant = program.is_built_in or (prepared.unsettled and not prepared.redundant)
             units = relevant_units(kept, reached) if only_relevant else tuple(sorted(reached.units))
         return replace(prepared, units=units, tree=None if tree is None else frozenset(tree))
     except KeyboardInterrupt:
@@ -262,7 +268,7 @@ def _apply_rules(prepared: Prepared, rules: "Rules | ReadyMade") -> Prepared:
     problem = prepared.problem
     whole = replace(prepared, full_program=prepared.program)
     if rules.leave_to_search(problem):
-        return replace(whole, kept=problem, unsettled=True, redundant=rules.redundant)
+        return replace(whole, restricted_problem=problem, unsettled=True, redundant=rules.redundant)
     restriction = rules.restriction_of(problem, prepared.deadline)
     if restriction is None:
         return prepared
@@ -271,8 +277,8 @@ def _apply_rules(prepared: Prepared, rules: "Rules | ReadyMade") -> Prepared:
         return replace(prepared, contradicted=True)
     kept = replace(prepared.problem, restriction=restriction)
     if not rules.unsettled:
-        return replace(prepared, kept=kept, program=prepared.program.settled)
-    return replace(prepared, kept=kept, unsettled=True, redundant=rules.redundant)
+        return replace(prepared, restricted_problem=kept, program=prepared.program.settled)
+    return replace(prepared, restricted_problem=kept, unsettled=True, redundant=rules.redundant)
 
 
 def _can_reduce_unsettled(prepared: Prepared) -> bool:

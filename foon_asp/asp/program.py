@@ -22,7 +22,7 @@ class Program(NamedTuple):
     ``arguments``: clingo's arguments; those that set constants come first.
     ``constants``: the arguments that set constants.
     ``replaced``: whether some of the first three files differ from the built-in ones.
-    ``own``: whether every rule is built in, so that units that the goals do not need cannot matter.
+    ``is_built_in``: whether every rule is built in, so that units that the goals do not need cannot matter.
     ``rules``: rules as text, in addition to the files.
     ``bounded``: whether bounds on costs may exclude trees.
     ``looked_at``: the predicates that user rules read, by name and arity.
@@ -44,7 +44,7 @@ class Program(NamedTuple):
     exact_success: Path
     arguments: tuple[str, ...]
     replaced: bool
-    own: bool
+    is_built_in: bool
     rules: str = ""
     bounded: bool = False
     looked_at: frozenset[tuple[str, int]] = frozenset()
@@ -86,7 +86,7 @@ class Program(NamedTuple):
             files=(*self.ours, question_encoding("required.lp")),
             arguments=self.arguments[len(self.constants) :],
             constants=(),
-            own=True,
+            is_built_in=True,
             looked_at=frozenset(),
             text="",
             endless=False,

@@ -94,6 +94,6 @@ class Settings(NamedTuple):
         return asks_for_statistics(self.clingo_options)
 
     @property
-    def begun(self) -> Deadline:
+    def effective_deadline(self) -> Deadline:
         """The ``deadline``; if it is ``None``, a new :class:`Deadline` without limits, which begins now."""
         return self.deadline or Deadline()

@@ -53,7 +53,11 @@ def soft_rules(
         named = min(map(str, both))
         raise UserError(f"{named} is named as a constraint and as a soft one; leave one of them out")
     constraints, relaxed = relax(
-        weights, settings.constants, soft=True, deadline=settings.begun, before=settings.constraints
+        weights,
+        settings.constants,
+        soft=True,
+        deadline=settings.effective_deadline,
+        before=settings.constraints,
     )
     by_number = {constraint.number: weight_of[constraint.constraint] for constraint in constraints}
     return constraints, by_number, relaxed._replace(rules=relaxed.rules + write_soft(by_number))
@@ -73,7 +77,7 @@ def solve_soft(
     global variables. At a limit, the tree found so far is returned, without a proof. Raises
     :class:`UserError` like :func:`foon_asp.asp.solve`.
     """
-    settings = settings._replace(deadline=settings.begun)
+    settings = settings._replace(deadline=settings.effective_deadline)
     constraints, by_number, relaxed = soft_rules(settings, weights)
     settings = settings._replace(relaxed=relaxed)
     program = assemble(settings, (reporter or Reporter()).warning, problem=problem)

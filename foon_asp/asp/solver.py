@@ -179,7 +179,7 @@ class _Solver:
     @property
     def _initial_incumbent(self) -> Units | None:
         """The tree of the prepared question; ``None`` if user rules or bounds may exclude it."""
-        decided = self.program.own and not self.program.bounded
+        decided = self.program.is_built_in and not self.program.bounded
         return self.prepared.tree if decided else None
 
     def _solve(self) -> Outcome:

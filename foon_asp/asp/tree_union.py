@@ -59,7 +59,7 @@ def tree_union(
         undecided = frozenset(best.units or ())
         return TreeUnion(best, undecided, frozenset(), undecided)
     program = assemble(settings, Reporter().warning, problem=problem)
-    if worse and not program.own:
+    if worse and not program.is_built_in:
         raise UserError(
             "with rules or encodings of yours, --union is about the optimal trees only: leave out --within"
         )
@@ -106,9 +106,9 @@ class _UnionSearch:
         prepared question.
         """
         prepared, deadline = self._prepared, self._prepared.deadline
-        if not prepared.program.own or prepared.unsettled or not prepared.settings.reductions:
+        if not prepared.program.is_built_in or prepared.unsettled or not prepared.settings.reductions:
             return prepared.units
-        problem, levels = prepared.kept or prepared.problem, prepared.levels
+        problem, levels = prepared.restricted_problem or prepared.problem, prepared.levels
         try:
             reduced = reduce_under_rules(
                 problem, levels, expired=lambda: deadline.passed, redundant=prepared.redundant

@@ -51,7 +51,7 @@ class UserRuleCheck:
             self._run_on_tree(problem, tree) if problem.items is None else self._run_on_plan(problem, tree)
         )
         if not clingo_run.exhausted:
-            self._settings.begun.check()
+            self._settings.effective_deadline.check()
             raise KeyboardInterrupt
         if clingo_run.units is None:
             raise UserError(
@@ -70,7 +70,12 @@ class UserRuleCheck:
         units = sorted(used if self.local else used.union(reach(problem).units))
         objective_levels = levels((Objective.UNITS,))
         prepared = Prepared(
-            problem, objective_levels, self._settings, self._settings.begun, self._program, tuple(units)
+            problem,
+            objective_levels,
+            self._settings,
+            self._settings.effective_deadline,
+            self._program,
+            tuple(units),
         )
         numbers = list(map(problem.network.unit_number, sorted(used)))
         return prepared.run(write_tree(numbers) + write_least_penalty(1), predicates=[("_broken", 2)])
@@ -86,7 +91,7 @@ class UserRuleCheck:
                 program.files,
                 text,
                 program.arguments,
-                self._settings.begun,
+                self._settings.effective_deadline,
                 predicates=[("_broken", 2)],
                 endless=program.endless,
             )

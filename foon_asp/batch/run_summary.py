@@ -63,7 +63,7 @@ class RunSummary(Document, frozen=True, kw_only=True, tag=schema_name("batch")):
             seconds_worst=max(durations, default=None),
             seconds=round(seconds, 3),
         )
-        return summary.knowing(errors=[row for row in new_rows if row.error is not None])
+        return summary.set_unserialized(errors=[row for row in new_rows if row.error is not None])
 
     def show(self) -> Iterator[Block]:
         """Yield the numbers of answers and proofs, the times, and the first three rows with an error."""

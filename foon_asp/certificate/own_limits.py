@@ -36,9 +36,9 @@ class OwnLimits:
 
         Limits that follow from the ``covered`` ones are left out.
         """
-        self._problem, self._deadline = problem, settings.begun
+        self._problem, self._deadline = problem, settings.effective_deadline
         numbered, relaxed = relax(
-            settings.constraints, settings.constants, soft=True, deadline=settings.begun
+            settings.constraints, settings.constants, soft=True, deadline=settings.effective_deadline
         )
         shrinking = {rule.source for rule in rules.unsettled if rule.kind in {Kind.FACT, Kind.SHRINKING}}
         weights = {
@@ -54,7 +54,9 @@ class OwnLimits:
         self.found_limits: list[Limit] = []
         if self._has_user_rules:
             sums = (
-                sum_limit for sum_limit in rules.limits(problem, settings.begun) if not sum_limit.at_least
+                sum_limit
+                for sum_limit in rules.limits(problem, settings.effective_deadline)
+                if not sum_limit.at_least
             )
             limits = [
                 ({u: Fraction(n) for u, n in sum_limit.weights.items() if n}, sum_limit.bound)

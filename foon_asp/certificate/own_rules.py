@@ -39,7 +39,7 @@ def with_own_rules(covered: Coverage, problem: Problem, settings: Settings) -> C
     rules = assemble(settings, lambda _: None).understood
     if rules is None:
         return None
-    applied = rules.restriction_of(problem, settings.begun, range(len(problem.network)))
+    applied = rules.restriction_of(problem, settings.effective_deadline, range(len(problem.network)))
     if applied is None:
         return None
     claims: list[list[list[int]]] = []

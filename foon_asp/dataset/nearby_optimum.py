@@ -77,7 +77,7 @@ def solve_nearby(
     reporter = reporter or Reporter()
     if settings.constraints:
         program_of(nearby.problem, settings, reporter.warning)  # warns of names that the rules alone have
-    deadline = settings.begun
+    deadline = settings.effective_deadline
     with_rules = settings._replace(deadline=deadline)
     without_rules = with_rules._replace(constraints=(), constants=())
     first_objective = levels(tuple(objectives))[0]
@@ -184,10 +184,10 @@ def _read_smallest_tree(nearby: "Nearby", settings: Settings, units_of_rules: se
         if not open_nodes:
             return [*map(nearby.problem.network.unit_number, outcome.units)]
         try:
-            with settings.begun.watched("reading"):
+            with settings.effective_deadline.watched("reading"):
                 nearby.grow(open_nodes, REFINEMENT.wide_step)
         except KeyboardInterrupt:
-            settings.begun.interrupt()
+            settings.effective_deadline.interrupt()
             return []
 
 

@@ -66,8 +66,8 @@ def solve_nearby_under(
     try:
         outcome = search.result()
     except KeyboardInterrupt:  # a limit, too
-        settings.begun.interrupt()
-        return search.best._replace(stopped=settings.begun.stopped)
+        settings.effective_deadline.interrupt()
+        return search.best._replace(stopped=settings.effective_deadline.stopped)
     if outcome is None or (outcome.units is None and not outcome.stopped and outcome.proof is None):
         return None
     return outcome
@@ -95,7 +95,7 @@ class _Search:
         rules = rules_for_varying_kitchens(settings)
         if rules is None or not rules.local:
             return None
-        with settings.begun.watched("reading"):
+        with settings.effective_deadline.watched("reading"):
             first_objective = self._order[0]
             distances = nearby.unit_distances(
                 first_objective if first_objective is Objective.SUCCESS else Objective.UNITS
@@ -141,7 +141,7 @@ class _Search:
         """
         tree = _whole_unit_ids(self._unconstrained)
         for max_units, max_steps in NEARBY.widths:
-            with self._settings.begun.watched("reading"):
+            with self._settings.effective_deadline.watched("reading"):
                 units, least_distances = distances.nearest_units(kinds, tree, max_units, max_steps)
                 problem = self._nearby.problem_of_units({*tree, *units})
             outcome = self._solve_part(problem)
@@ -165,7 +165,7 @@ class _Search:
         if tree.costs is None or tree.units is None:
             return None
         max_cost = self._max_far_cost(tree.costs)
-        with self._settings.begun.watched("reading"):
+        with self._settings.effective_deadline.watched("reading"):
             near_units = self._read_near_units(tree.costs)
             far_units = [] if near_units is None else distances.relevant_units(kinds, near_units, max_cost)
             if near_units is None or len(far_units) > NEARBY.max_units:
@@ -177,7 +177,7 @@ class _Search:
 
         Return their ids in the whole network, maybe with a few more units; ``None`` if they are too many.
         """
-        nearby, deadline = self._nearby, self._settings.begun
+        nearby, deadline = self._nearby, self._settings.effective_deadline
         while nearby.unit_count <= NEARBY.max_units:
             relaxed = nearby.relaxation
             relaxed_bound = reduce_under_rules(

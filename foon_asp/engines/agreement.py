@@ -84,7 +84,7 @@ def cross_check(
     engine is wrong, and its claim is in :attr:`Check.refuted`.
     """
     if seconds is None:
-        remaining = claim.settings.begun.remaining_seconds
+        remaining = claim.settings.effective_deadline.remaining_seconds
         seconds = 60.0 if remaining is None else remaining / (1 + len(engines))  # one more: bare clingo
     checks: list[Check] = []
     interrupted = False

@@ -57,7 +57,7 @@ def check_with_bare_clingo(claim: ClaimedAnswer, seconds: float) -> None:
     """
     outcome = claim.outcome
     program = bare_program(outcome.problem, outcome.objectives, claim.settings, claim.soft)
-    _Comparison(claim, program, Clingo(program, seconds, claim.settings.begun.memory)).check()
+    _Comparison(claim, program, Clingo(program, seconds, claim.settings.effective_deadline.memory)).check()
 
 
 class ClingoAnswer(NamedTuple):

@@ -40,7 +40,7 @@ def check_plan_with_bare_clingo(claim: ClaimedAnswer, seconds: float) -> tuple[O
     program, caps = bare_plan_program(outcome, whole, claim.settings)
     if program is None:
         raise NotCheckedError("nothing says how often units can be executed by a plan that is as good")
-    clingo = Clingo(program, seconds, claim.settings.begun.memory)
+    clingo = Clingo(program, seconds, claim.settings.effective_deadline.memory)
     ours = tuple(int(outcome.costs.measure(objective)) for objective in whole)
     counts = {number: outcome.units.count(unit) for unit, (number, _) in caps.items()}
     our_plan = clingo.best_answer(write_times({number: (n, n) for number, n in counts.items()}), False)

@@ -13,7 +13,7 @@ from foon_asp.problem import ITEMS, Objective, UsedUp
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.plain_values import fraction_text
 from foon_asp.results.values import Copies, Mention, Node, Value
-from foon_asp.results.values_of import copies_of, head_of, mention_of, named_node, node_of
+from foon_asp.results.values_of import copies_of, mention_of, named_node, node_of, question_fields
 from foon_asp.text.foon_json_layout import check_json
 from foon_asp.text.json_node import read_node_json
 from foon_asp.text.json_text import read_json, schema_name
@@ -143,7 +143,7 @@ class MapFile(AboutGoals, frozen=True, kw_only=True, tag=schema_name(KIND)):
             )
         items = problem.items
         return cls(
-            **head_of(problem, task.objectives),
+            **question_fields(problem, task.objectives),
             scales=tuple(
                 Scale(scale.objective, fraction_text(scale.factor), scale.rounded)
                 for scale in task.costs.scales

@@ -322,7 +322,7 @@ class Counting:
         Raises :class:`Stopped` if clingo does not decide it.
         """
         program, problem = self._question.program, self._problem
-        if program.own:
+        if program.is_built_in:
             return True
         from foon_asp.encoding import clingo_run, fact_writer  # noqa: PLC0415 (takes clingo along)
         from foon_asp.encoding.cost_scales import Scales  # noqa: PLC0415
@@ -372,7 +372,7 @@ class Counting:
         number = problem.network.unit_number
         # if counts are fixed, only the number of initial copies can be minimized
         wanted = question.levels if best else [o for o in question.levels if o is Objective.KITCHEN]
-        looked_at = None if question.program.own else question.program.looked_at
+        looked_at = None if question.program.is_built_in else question.program.looked_at
         scales = Scales(problem, units, wanted) if best or looked_at is not None else None
         text = fact_writer.write_facts(problem, units, scales, looked_at)
         text += fact_writer.write_times({number(self.units[a]): bounds for a, bounds in times.items()})

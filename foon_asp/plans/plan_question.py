@@ -62,7 +62,7 @@ class PlanQuestion:
         by_levels = levels(objectives)
         problem.require_known_for(by_levels)
         self.problem, self.objectives, self.levels = problem, objectives, by_levels
-        self.settings, self.deadline, self.reporter = settings, settings.begun, reporter
+        self.settings, self.deadline, self.reporter = settings, settings.effective_deadline, reporter
         self.program = assemble(settings, reporter.warning, used_up=True, problem=problem)
         self.program.require_facts(problem, by_levels)
         require_rules_of_plans(self.program)

@@ -70,7 +70,7 @@ def _search(question: PlanQuestion, units: list[int]) -> Outcome:
     """
     counting = Counting(question, units)
     if not units:  # every goal is available: only the empty plan is irredundant
-        needs_check = not question.program.own or question.problem.counts_amounts
+        needs_check = not question.program.is_built_in or question.problem.counts_amounts
         if needs_check and counting.find_order({}) is None:
             return question.outcome(Status.INFEASIBLE, Proof.SOLVER)
         return question.outcome(

@@ -29,7 +29,7 @@ class RankedPlans:
     ) -> None:
         """Start the time limit of ``settings``: all plans share one deadline."""
         self._problem, self._objectives = problem, tuple(objectives)
-        self._settings, self._reporter = settings._replace(deadline=settings.begun), reporter
+        self._settings, self._reporter = settings._replace(deadline=settings.effective_deadline), reporter
         self.complete = False
         self.pending: list[tuple[Plan, Costs]] = []
 

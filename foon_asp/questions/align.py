@@ -191,7 +191,7 @@ def align(
         )
         for unit in recipe
     )
-    return aligned.knowing(aligned_units=tuple(aligned_units))
+    return aligned.set_unserialized(aligned_units=tuple(aligned_units))
 
 
 def _node_one_edit_away(

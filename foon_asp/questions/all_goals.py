@@ -20,7 +20,7 @@ from foon_asp.questions.result import Ending, Result
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.figure_text import figure_text
 from foon_asp.results.table import Block, Cell, Table
-from foon_asp.results.values_of import head_of
+from foon_asp.results.values_of import question_fields
 from foon_asp.text.json_text import schema_name
 
 _ALWAYS = (Objective.UNITS, Objective.INPUTS, Objective.SUCCESS)  # columns; others where they are asked for
@@ -169,7 +169,8 @@ def solve_all_goals(
     outcomes = [outcome for index in range(len(outcomes_of)) for outcome in outcomes_of[index]]
     objectives_of_all = dict.fromkeys(objective for outcome in outcomes for objective in outcome.objectives)
     return Optima(
-        **head_of(without_reading_more(problem), objectives_of_all), answers=tuple(map(Answer.of, outcomes))
+        **question_fields(without_reading_more(problem), objectives_of_all),
+        answers=tuple(map(Answer.of, outcomes)),
     )
 
 

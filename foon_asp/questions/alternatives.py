@@ -34,7 +34,7 @@ from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.figure_text import costs_text
 from foon_asp.results.table import Block
 from foon_asp.results.values import CostedTree, Mention, Node, Value, step_lines, steps_not_in
-from foon_asp.results.values_of import costed_tree, head_of, mention_of, node_of
+from foon_asp.results.values_of import costed_tree, mention_of, node_of, question_fields
 from foon_asp.text.json_text import schema_name
 
 
@@ -321,7 +321,7 @@ def alternatives(
     else:
         pool = _rank_trees(problem, chosen, settings, limit, Fraction(0))
     result = _alternatives_of(problem, chosen, pool)
-    return result.knowing(problem=problem, wanted=best or different, different=different is not None)
+    return result.set_unserialized(problem=problem, wanted=best or different, different=different is not None)
 
 
 def _alternatives_of(problem: Problem, objectives: tuple[Objective, ...], pool: _Pool) -> Alternatives:
@@ -332,7 +332,7 @@ def _alternatives_of(problem: Problem, objectives: tuple[Objective, ...], pool: 
         frozenset(tree.units) for tree in proved if tree.costs.key(order) == proved[0].costs.key(order)
     ]
     return Alternatives(
-        **head_of(problem, objectives),
+        **question_fields(problem, objectives),
         complete=pool.complete,
         unproved=pool.unproved,
         optimal=len(optimal),
@@ -398,7 +398,7 @@ def _most_different(pool: _Pool, count: int, settings: Settings) -> _Pool:
         (question_encoding("most_different.lp"),),
         write_distances(list(map(_executions, pool.trees)), count),
         CLINGO_OPTIONS,
-        settings.begun,
+        settings.effective_deadline,
         predicates=[("_chosen", 1)],
     )
     if clingo_run.exhausted and not clingo_run.atoms:

@@ -26,7 +26,7 @@ from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.figure_text import bound_text, costs_text, figure_text
 from foon_asp.results.table import Block
 from foon_asp.results.values import CostedTree, Figure, ListedConstraint, Node, Step, UsedUpRun, Value
-from foon_asp.results.values_of import head_of, steps_of, used_up_of
+from foon_asp.results.values_of import question_fields, steps_of, used_up_of
 from foon_asp.text.json_text import schema_name
 from foon_asp.text.tables import Duration
 from foon_asp.text.writer import write_units
@@ -264,7 +264,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
             for objective in levels(outcome.objectives):
                 proofs[objective] = Proof.CERTIFICATE if objective in outcome.certified else proof
         answer = cls(
-            **head_of(problem, outcome.objectives),
+            **question_fields(problem, outcome.objectives),
             encodings=outcome.encodings,
             status=outcome.status,
             stopped=outcome.stopped,
@@ -278,7 +278,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
             stand_ins=UNSET if problem.stand_ins is None else stand_ins_in(problem, units or ()),
             **fields,
         )
-        return answer.knowing(outcome=outcome)
+        return answer.set_unserialized(outcome=outcome)
 
     outcome = Unserialized[Outcome]()
     """The outcome of the solver, with ids."""
@@ -307,7 +307,7 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
         answer = replace(self, **fields)
         certificate = certificate or self.certificate
         attributes = {**self.__dict__, "notes": (*self.notes, *notes), "certificate": certificate}
-        return answer.knowing(**attributes)
+        return answer.set_unserialized(**attributes)
 
     @property
     def ids(self) -> tuple[int, ...] | None:
@@ -529,7 +529,7 @@ def answer_under_rules(
     if nearby is not None:
         return answer_from_store(nearby, objectives, settings)
     reporter = reporter or caller().reporter
-    settings = settings._replace(deadline=settings.begun)
+    settings = settings._replace(deadline=settings.effective_deadline)
     outcome = None
     if hasattr(problem, "nearby"):  # of a large store
         from foon_asp.dataset.nearby_under_rules import solve_nearby_under  # noqa: PLC0415
@@ -542,8 +542,8 @@ def answer_under_rules(
     except KeyboardInterrupt:
         if outcome is None:
             raise
-        settings.begun.interrupt()
-        return _answer_of(outcome._replace(stopped=settings.begun.stopped))
+        settings.effective_deadline.interrupt()
+        return _answer_of(outcome._replace(stopped=settings.effective_deadline.stopped))
     if outcome is not None and answer.status is Status.UNKNOWN:  # there is a tree already
         return _answer_of(outcome._replace(stopped=answer.stopped))
     return answer
@@ -574,14 +574,18 @@ def _answer_with_reading(
             if partial.status is Status.OPTIMAL and partial.costs and partial.costs.key(order) <= least:
                 return _answer_of(partial)
             try:
-                with settings.begun.watched("reading"):  # and not late, since there may be a tree already
+                with settings.effective_deadline.watched(
+                    "reading"
+                ):  # and not late, since there may be a tree already
                     problem = problem_for_rules(problem, settings, objectives)
             except KeyboardInterrupt:
                 if partial.units is None:
                     raise
-                settings.begun.interrupt()
+                settings.effective_deadline.interrupt()
                 bounds = {order[0]: unconstrained.costs.measure(order[0])}
-                partial = partial._replace(status=Status.FEASIBLE, proof=None, stopped=settings.begun.stopped)
+                partial = partial._replace(
+                    status=Status.FEASIBLE, proof=None, stopped=settings.effective_deadline.stopped
+                )
                 return _answer_of(partial._replace(bounds=bounds))
     return answer_problem(problem_for_rules(problem, settings, objectives), objectives, settings, reporter)
 

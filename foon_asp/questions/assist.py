@@ -23,7 +23,7 @@ from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.figure_text import costs_text, success_text
 from foon_asp.results.table import Block, Table
 from foon_asp.results.values import Step, UsedUpRun, Value
-from foon_asp.results.values_of import head_of, steps_of, used_up_of
+from foon_asp.results.values_of import question_fields, steps_of, used_up_of
 from foon_asp.text.json_text import schema_name
 from foon_asp.text.tables import RATES
 
@@ -245,7 +245,7 @@ def assist(
     rows = tuple(_assisted_tree(problem, max_helped, row) for max_helped, row in enumerate(trees.rows))
     last = rows[-1].success
     answer = Assistance(
-        **head_of(problem, [Objective.SUCCESS]),
+        **question_fields(problem, [Objective.SUCCESS]),
         person=person_rates,
         complete=trees.complete,
         greatest_success=trees.greatest,
@@ -254,7 +254,7 @@ def assist(
         smallest=rows[-1].most if wanted is not None and last is not None and last >= wanted else None,
         rows=rows,
     )
-    return answer.knowing(problem=problem, most=limit)
+    return answer.set_unserialized(problem=problem, most=limit)
 
 
 def _read_person_rates(

@@ -37,7 +37,7 @@ def solve_with_certificate(
     written into it, and notes of the answer say what is proved. The whole network is read, except for
     problems that a part of a large store or their stand-ins suffice for.
     """
-    deadline = settings.begun
+    deadline = settings.effective_deadline
     settings = settings._replace(deadline=deadline)
     has_rules = settings.constraints or settings.constants or settings.encodings
     is_plain = not has_rules and problem.items is None and Objective.PRICE not in objectives
@@ -114,7 +114,12 @@ def _prove_best(tree: Tree, objectives: tuple[Objective, ...], settings: Setting
     Return ``None`` if no certificate is found, also at a limit. Raises :class:`NotBestError` if a better tree
     is found.
     """
-    problem, deadline, covered, units = tree.problem, settings.begun, coverage(settings), tree.ids
+    problem, deadline, covered, units = (
+        tree.problem,
+        settings.effective_deadline,
+        coverage(settings),
+        tree.ids,
+    )
     with contextlib.suppress(KeyboardInterrupt), deadline.watched("looking for a certificate"):
         if problem.items is not None:
             covered = covered_for_plans(covered)

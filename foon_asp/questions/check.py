@@ -26,7 +26,7 @@ from foon_asp.questions.verdict import Stop, simulation_fields, verdict_lines
 from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block
 from foon_asp.results.values import ListedConstraint, UsedUpRun
-from foon_asp.results.values_of import head_of
+from foon_asp.results.values_of import question_fields
 from foon_asp.text.json_text import schema_name
 
 if TYPE_CHECKING:  # clingo and linear programs, which only rules and certificates need
@@ -78,13 +78,13 @@ class Checked(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ch
         problem, simulation = tree.problem, _simulate(tree)
         foreign = tuple(n for n, unit in enumerate(map(problem.network.unit_id, tree), 1) if unit is None)
         checked = cls(
-            **head_of(problem, objectives),
+            **question_fields(problem, objectives),
             **simulation_fields(tree, simulation),
             costs=None if foreign else problem.costs(tree.ids),
             not_in_network=foreign,
             **fields,
         )
-        return checked.knowing(tree=tree, simulation=simulation)
+        return checked.set_unserialized(tree=tree, simulation=simulation)
 
     tree = Unserialized[Tree]()
     """The tree as it was given."""
@@ -303,13 +303,13 @@ def check(
         broken = None
         if checked.executes and not checked.not_in_network:
             broken = tuple(rule.listed for rule in rule_check.broken_rules(task_tree.problem, task_tree.ids))
-        checked = structs.replace(checked, breaks=broken).knowing(**checked.__dict__)
+        checked = structs.replace(checked, breaks=broken).set_unserialized(**checked.__dict__)
     in_order = checked.in_order
     if certificate is not None and in_order is not None and checked.ending is Ending.DONE:
         from foon_asp.questions.certifying import certify_tree  # noqa: PLC0415
 
         proof, proof_ending, note = certify_tree(in_order, chosen, rules, certificate)
-        checked.knowing(certificate=proof, proof_ending=proof_ending, notes=(note,))
+        checked.set_unserialized(certificate=proof, proof_ending=proof_ending, notes=(note,))
     return checked
 
 

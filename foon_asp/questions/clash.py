@@ -145,7 +145,7 @@ def find_clash(problem: Problem, settings: Settings, own_weights: Mapping[Constr
     takes a smallest set that hits all known correction sets. If no tree keeps to this set, it is the clash;
     else a correction set is added.
     """
-    deadline = settings.begun
+    deadline = settings.effective_deadline
     settings = settings._replace(deadline=deadline)
     constraints, relaxed = relax(settings.constraints, settings.constants, soft=False, deadline=deadline)
     weight_of = {find_constraint(c): weight for c, weight in own_weights.items()}

@@ -41,7 +41,7 @@ from foon_asp.questions.search_options import (
 from foon_asp.resources import published_table as published_file
 from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block
-from foon_asp.results.values_of import head_of
+from foon_asp.results.values_of import question_fields
 from foon_asp.searches import Search, SearchSettings, search_names
 from foon_asp.text.json_text import Json, schema_name
 
@@ -279,10 +279,12 @@ def compare(
             for row in comparisons
         ]
     return Compared(
-        **head_of(problem, dict.fromkeys(objective for row in comparisons for objective in row.optimum)),
+        **question_fields(
+            problem, dict.fromkeys(objective for row in comparisons for objective in row.optimum)
+        ),
         comparisons=tuple(comparisons),
         published=table or UNSET,
-    ).knowing(retrieved=tuple(retrieved), summed_up=all_makeable)
+    ).set_unserialized(retrieved=tuple(retrieved), summed_up=all_makeable)
 
 
 def _compare_each_goal(

@@ -62,7 +62,7 @@ class Envelope:
         try:
             self._free_to_rise = self._motions_free_to_rise()
         except KeyboardInterrupt:
-            settings.begun.interrupt()
+            settings.effective_deadline.interrupt()
             self._free_to_rise = set()
 
     def unit_count(self, motion: str) -> int:
@@ -94,7 +94,7 @@ class Envelope:
                 end = self._end_from(motion, 0, Fraction(1, 2))
             return end
         except KeyboardInterrupt:
-            self._settings.begun.interrupt()
+            self._settings.effective_deadline.interrupt()
             return IntervalEnd(None, None, proved=False)
 
     def _end_from(self, motion: str, degree: int, raised_rate: Fraction) -> IntervalEnd:

@@ -22,7 +22,7 @@ from foon_asp.questions.question import Kind, Option, Role, python_question, que
 from foon_asp.questions.result import Result
 from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block
-from foon_asp.results.values_of import head_of
+from foon_asp.results.values_of import question_fields
 from foon_asp.text.json_text import schema_name
 from foon_asp.whole_file import write_whole
 
@@ -110,7 +110,7 @@ def _export_and_write(
     exported = export(problem, *arguments, **options)
     if folder_written is not None:
         exported.write(folder_written)
-        exported.knowing(written=folder_written)
+        exported.set_unserialized(written=folder_written)
     return exported
 
 
@@ -218,12 +218,12 @@ def export(
     with start_deadline(options).watched("writing"):
         task = planning_task(problem, chosen, every_unit, _has_merged_copies(problem, items))
         exported = Exported(
-            **head_of(task.problem, task.objectives),
+            **question_fields(task.problem, task.objectives),
             domain_file=domain_text(task),
             problem_file=problem_text(task),
             name_map=MapFile.of(task),
         )
-    return exported.knowing(task=task)
+    return exported.set_unserialized(task=task)
 
 
 @python_question

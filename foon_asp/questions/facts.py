@@ -6,7 +6,7 @@ from foon_asp.asp import Settings
 from foon_asp.asp.bare_program import printable_program
 from foon_asp.problem import Objective, Problem
 from foon_asp.results.document import AboutGoals
-from foon_asp.results.values_of import head_of
+from foon_asp.results.values_of import question_fields
 from foon_asp.rules.passed_constraint import Constraint
 from foon_asp.text.json_text import schema_name
 
@@ -36,4 +36,4 @@ def facts_of(
     """
     program = printable_program(problem, objectives, settings, soft).text
     lines = program.rstrip("\n").split("\n")  # a name may hold what other letters end a line
-    return Facts(**head_of(problem, objectives), facts=tuple(lines))
+    return Facts(**question_fields(problem, objectives), facts=tuple(lines))

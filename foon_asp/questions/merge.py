@@ -177,7 +177,7 @@ def merge_files(data_files: DataFiles, store: Path | None, lenient: bool) -> Mer
             objects=imported.objects,
             left_out=imported.left_out,
         )
-        return merged.knowing(warnings=warnings, store=store)
+        return merged.set_unserialized(warnings=warnings, store=store)
     reader = FoonReader(lenient)
     builder = NetworkBuilder()
     copies = 0
@@ -204,4 +204,4 @@ def merge_files(data_files: DataFiles, store: Path | None, lenient: bool) -> Mer
         left_out=reader.left_out,
     )
     warnings = tuple(summarize(reader.diagnostics))
-    return merged.knowing(warnings=warnings, network=network, amounts=amounts.units)
+    return merged.set_unserialized(warnings=warnings, network=network, amounts=amounts.units)

@@ -41,7 +41,7 @@ from foon_asp.results.values import (
     step_lines,
     steps_not_in,
 )
-from foon_asp.results.values_of import costed_tree, head_of
+from foon_asp.results.values_of import costed_tree, question_fields
 from foon_asp.text.json_text import schema_name
 
 _MIN_OBJECTIVES, _MAX_OBJECTIVES = 2, 3
@@ -317,13 +317,13 @@ def pareto(
     points.sort(key=lambda point: point.costs.key(chosen))
     seconds = round(time.monotonic() - began, 6)
     front = Front(
-        **head_of(problem, chosen),
+        **question_fields(problem, chosen),
         encodings=settings.replaced,
         complete=complete,
         points=tuple(_front_points(problem, chosen, points)),
         seconds=seconds,
     )
-    return front.knowing(problem=problem, lists_trees=trees)
+    return front.set_unserialized(problem=problem, lists_trees=trees)
 
 
 def _front_points(

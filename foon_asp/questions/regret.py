@@ -31,7 +31,7 @@ from foon_asp.questions.result import Ending
 from foon_asp.results.figure_text import costs_text, success_text
 from foon_asp.results.table import Block
 from foon_asp.results.values import Measures, Mention, Node, Value
-from foon_asp.results.values_of import head_of, mention_of, node_of
+from foon_asp.results.values_of import mention_of, node_of, question_fields
 from foon_asp.text.json_text import schema_name
 
 
@@ -206,7 +206,7 @@ def regret(
         raise UserError(f"there is no unit {numbers[asked_units.index(None)]} in the network")
     units_by_motion = {motion: _units_of_motion(problem, motion) for motion in motion_names}
     best = solve(problem, chosen, settings, caller().reporter)
-    head, answer = head_of(problem, chosen), Answer.of(best)
+    head, answer = question_fields(problem, chosen), Answer.of(best)
     if best.units is None or best.status is not Status.OPTIMAL:
         return Regrets(**head, answer=answer, regrets=())
     regrets: list[Regret] = []
@@ -222,7 +222,9 @@ def regret(
         without an item.
         """
         try:
-            with settings.begun.watched("leaving out a part"):  # which takes a while in a large network
+            with settings.effective_deadline.watched(
+                "leaving out a part"
+            ):  # which takes a while in a large network
                 smaller_problem = leave_out()
         except KeyboardInterrupt:
             remaining = None

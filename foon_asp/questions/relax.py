@@ -113,7 +113,7 @@ class Relaxed(Result, frozen=True, kw_only=True, tag=schema_name("relax")):
             if answer
             else None,
             seconds=answer.seconds,
-        ).knowing(answer=answer, strips=task)
+        ).set_unserialized(answer=answer, strips=task)
 
     answer = Unserialized[Answer]()
     """The answer, in which facts are object nodes and actions are units."""
@@ -231,7 +231,7 @@ def relax(
         caller().reporter.warning("no certificate was found, and nothing is written")
         return relaxed
     write_whole(Path(certificate_file), certificate.text().encode())
-    return structs.replace(relaxed, certificate=str(certificate_file)).knowing(**relaxed.__dict__)
+    return structs.replace(relaxed, certificate=str(certificate_file)).set_unserialized(**relaxed.__dict__)
 
 
 def solve_relaxation(task: StripsTask, deadline: Deadline) -> Relaxed:

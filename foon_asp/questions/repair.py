@@ -29,7 +29,7 @@ from foon_asp.questions.tree import Tree, as_tree
 from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block
 from foon_asp.results.values import Node, Step
-from foon_asp.results.values_of import head_of, nodes_of, steps_of
+from foon_asp.results.values_of import nodes_of, question_fields, steps_of
 from foon_asp.standins.repair import Repair
 from foon_asp.text.json_text import schema_name
 from foon_asp.text.writer import write_units
@@ -195,7 +195,7 @@ def repair(
         lacking = ()
     positions = {unit: number for number, unit in enumerate(units or (), 1)}
     repaired = Repaired(
-        **head_of(shown_problem, _OBJECTIVES),
+        **question_fields(shown_problem, _OBJECTIVES),
         verdict=verdict,
         status=outcome.status,
         proof=outcome.proof,
@@ -206,7 +206,7 @@ def repair(
         lacking=lacking,
         units=None if units is None else steps_of(shown_problem, units),
     )
-    return repaired.knowing(
+    return repaired.set_unserialized(
         tree=None if units is None else Tree.of(shown_problem, units),
         outcome=outcome,
         certificate=found_certificate,
@@ -223,7 +223,7 @@ def _certify_repair(
     the repair is not proved, or if none is found in time. Raises :class:`BugError` if a better tree exists.
     """
     covered = Coverage(({"rule": ALL_STEPS, "units": sorted(needed.steps)},))
-    deadline, problem, certificate = settings.begun, needed.shown, None
+    deadline, problem, certificate = settings.effective_deadline, needed.shown, None
     with contextlib.suppress(KeyboardInterrupt), deadline.watched("looking for a certificate"):
         if outcome.status is Status.INFEASIBLE:
             certificate = certify_infeasible(problem, covered, lambda: deadline.passed)

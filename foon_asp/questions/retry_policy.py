@@ -32,7 +32,7 @@ def with_policy(answer: Answer, retries: int, settings: Settings, **options: Unp
         return answer.having(policy=None)
     for limit in ("time_limit", "memory_limit"):  # hold for the whole question
         options.pop(limit, None)  # type: ignore[misc]
-    with asked_by(caller()._replace(deadline=settings.begun)):
+    with asked_by(caller()._replace(deadline=settings.effective_deadline)):
         best_trees = alternatives(problem, Objective.SUCCESS, best=max_trees, **options)
     trees = [answer.ids]
     for tree in best_trees.trees:
@@ -40,11 +40,13 @@ def with_policy(answer: Answer, retries: int, settings: Settings, **options: Unp
         if len(trees) < max_trees and set(units) not in map(set, trees):
             trees.append(units)
     try:
-        with settings.begun.watched("comparing policies"):
+        with settings.effective_deadline.watched("comparing policies"):
             policy = best_policy(problem, trees, retries)
     except KeyboardInterrupt:
-        settings.begun.interrupt()
-        return answer.having([f"no policy for retries: stopped at {settings.begun.stopped}"], policy=None)
+        settings.effective_deadline.interrupt()
+        return answer.having(
+            [f"no policy for retries: stopped at {settings.effective_deadline.stopped}"], policy=None
+        )
     return answer.having(
         policy=RetryPolicy(
             retries=retries,

@@ -11,7 +11,7 @@ from foon_asp.planning.robot_step import RobotStep, robot_steps
 from foon_asp.problem import Objective, Problem
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.values import UsedUpRun
-from foon_asp.results.values_of import head_of, used_up_of
+from foon_asp.results.values_of import question_fields, used_up_of
 from foon_asp.text.clip_times import ListedClips, listed_clips
 from foon_asp.text.json_text import schema_name
 from foon_asp.text.tables import Duration
@@ -60,7 +60,7 @@ class RobotPlan(AboutGoals, frozen=True, kw_only=True, tag=schema_name("steps"))
             return tuple(robot_steps(problem, units, durations, clips))
 
         return cls(
-            **head_of(problem, objectives),
+            **question_fields(problem, objectives),
             used_up=used_up_of(problem, problem.tree(plan)),
             tools_inferred=not problem.utensils,
             robot_steps=steps(plan),

@@ -36,7 +36,7 @@ from foon_asp.results.document import AboutGoals
 from foon_asp.results.table import Block, Table
 from foon_asp.results.timed_step import TimedStep, Tool
 from foon_asp.results.values import Value
-from foon_asp.results.values_of import head_of, lack_of
+from foon_asp.results.values_of import lack_of, question_fields
 from foon_asp.text.clip_times import median_clips
 from foon_asp.text.json_text import schema_name
 from foon_asp.text.line import LineError
@@ -331,7 +331,7 @@ def schedule(
         tuple(earlier + 1 for earlier in sorted(earlier_steps)) for earlier_steps in predecessors(replay)
     ]
     return Schedule(
-        **head_of(tree.problem),
+        **question_fields(tree.problem),
         status=_status_of(solution),
         stopped=None if solution.proved else deadline.stopped,
         makespan=None if solution.starts is None else max((step.end for step in timed), default=Fraction(0)),

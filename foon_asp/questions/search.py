@@ -21,7 +21,7 @@ from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.figure_text import costs_text
 from foon_asp.results.table import Block
 from foon_asp.results.values import Node, Step, UsedUpRun
-from foon_asp.results.values_of import head_of, node_of, steps_of
+from foon_asp.results.values_of import node_of, question_fields, steps_of
 from foon_asp.searches import Ending as Searched
 from foon_asp.searches import Search
 from foon_asp.text.json_text import schema_name
@@ -85,7 +85,7 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
         tree = Tree.of(problem, ids) if ended is Searched.TREE else None
         simulation = None if tree is None else simulate_retrieval(problem, ids, tree)
         retrieved = cls(
-            **head_of(problem),
+            **question_fields(problem),
             search=search.name,
             package=search.package,
             ended=ended,
@@ -94,7 +94,7 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
             costs=None if tree is None else problem.costs(ids),
             units=None if tree is None else steps_of(problem, ids),
         )
-        return retrieved.knowing(
+        return retrieved.set_unserialized(
             problem=problem, ids=ids, promise=search.promise, tree=tree, simulation=simulation
         )
 

@@ -22,7 +22,7 @@ from foon_asp.results.figure_text import success_text
 from foon_asp.results.plain_values import fraction_text
 from foon_asp.results.table import Block, Table
 from foon_asp.results.values import CostedTree, Value, changed_motions, steps_not_in
-from foon_asp.results.values_of import costed_tree, head_of
+from foon_asp.results.values_of import costed_tree, question_fields
 from foon_asp.text.json_text import schema_name
 
 _SUCCESS = (Objective.SUCCESS,)
@@ -244,7 +244,7 @@ def sensitivity(problem: Problem, **options: Unpack[CommonOptions]) -> Sensitivi
         )
     problem = problem_for_rules(problem, settings)
     outcome = solve(problem, _SUCCESS, settings, caller().reporter)
-    answer, head = Answer.of(outcome), head_of(problem, _SUCCESS)
+    answer, head = Answer.of(outcome), question_fields(problem, _SUCCESS)
     if outcome.units is None or outcome.status is not Status.OPTIMAL:
         return Sensitivity(**head, answer=answer, intervals=(), others=(), first=None)
     envelope = Envelope(problem, outcome.units, settings)

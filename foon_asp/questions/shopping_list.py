@@ -45,7 +45,7 @@ from foon_asp.questions.result import Ending
 from foon_asp.results.figure_text import costs_text
 from foon_asp.results.table import Block
 from foon_asp.results.values import Node, Value
-from foon_asp.results.values_of import head_of, node_as
+from foon_asp.results.values_of import node_as, question_fields
 from foon_asp.text.json_text import schema_name
 from foon_asp.text.line import LineError
 from foon_asp.text.line_parser import parse_name
@@ -264,7 +264,7 @@ def shopping_list(
     priced = None if prices is None else _prices_of_nodes(problem, _price_rows(prices))
     if problem.items is not None:
         return _shopping_with_copies(problem, chosen, settings, priced, max_lists)
-    deadline, reporter = settings.begun, caller().reporter
+    deadline, reporter = settings.effective_deadline, caller().reporter
     program = assemble(settings, reporter.warning, problem=problem)
     cheapest = _Lists([], complete=True)
     made_of = (Offer.FOR_SALE, dict[int, Fraction]()) if priced is None else (Offer.PRICED, priced)
@@ -294,7 +294,7 @@ def shopping_list(
     if all(outcome.status is Status.OPTIMAL for _, outcome in outcomes):
         outcomes.sort(key=lambda pair: _list_key(pair[0], pair[1], shop))
     return Shopping(
-        **head_of(problem, chosen),
+        **question_fields(problem, chosen),
         offer=offer,
         lists=tuple(
             candidate.value(problem, wares, outcome.costs) for candidate, outcome in outcomes[:max_lists]
@@ -339,7 +339,7 @@ def _shopping_with_copies(
             break
     outcomes = [(listed, listed.outcome) for listed in cheapest.lists if listed.outcome is not None]
     return Shopping(
-        **head_of(problem, objectives),
+        **question_fields(problem, objectives),
         offer=made_of[0],
         lists=tuple(listed.value(problem, made_of[1], outcome.costs) for listed, outcome in outcomes),
         complete=cheapest.complete,
@@ -507,7 +507,7 @@ def _lists_without_copies(
     needed_objects = {*problem.goals, *(o for unit in prepared.units for o in problem.needs[unit])}
     sold = {o: price for o, price in wares.items() if o in needed_objects}
     second_choices = frozenset(filter(shop.is_second_choice, sold))
-    if prepared.program.own:
+    if prepared.program.is_built_in:
         without = Purchases(problem, sold, second_choices, objectives).without
         return _Shopper(problem, prepared.settings, without, objectives, wares).lists(max_lists)
     return _lists_under_rules(prepared, sold, second_choices, max_lists, objectives != (Objective.UNITS,))

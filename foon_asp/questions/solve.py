@@ -231,4 +231,4 @@ def solve(
         from foon_asp.questions.retry_policy import with_policy  # noqa: PLC0415
 
         answer = with_policy(answer, require_at_least(retries, 0, "retries"), settings, **options)
-    return answer.knowing(durations=seconds)
+    return answer.set_unserialized(durations=seconds)

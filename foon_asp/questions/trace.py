@@ -25,7 +25,7 @@ from foon_asp.questions.tree import OTHER_READING, Tree, as_tree
 from foon_asp.results.document import AboutGoals, Unserialized
 from foon_asp.results.table import Block
 from foon_asp.results.values import Copies, Copy, Unit, Value, changed_motions
-from foon_asp.results.values_of import copies_of, copy_of, head_of, lack_of
+from foon_asp.results.values_of import copies_of, copy_of, lack_of, question_fields
 from foon_asp.text.json_text import schema_name
 from foon_asp.text.writer import write_counted_node, write_node
 from foon_asp.whole_file import utf_8, write_whole
@@ -339,13 +339,13 @@ def trace(
         unit = tree.step_unit(number)
         executed.append(TracedStep(number, unit, gone, stayed, came, copies_of(network, states[number])))
     traced = Traced(
-        **head_of(tree.problem),
+        **question_fields(tree.problem),
         executed=tuple(executed),
         stopped=None if lack is None else tree.lack_text(lack_of(network, lack)),
         failed=failed,
         answer=answer,
     )
-    return traced.knowing(plan=tree, states=states)
+    return traced.set_unserialized(plan=tree, states=states)
 
 
 def _problem_from_state(problem: Problem, copies: dict[ObjectNode, int]) -> Problem:

@@ -21,7 +21,7 @@ from foon_asp.questions.question import not_for_used_up_items, python_question
 from foon_asp.questions.result import Ending
 from foon_asp.results.table import Block
 from foon_asp.results.values import Mention
-from foon_asp.results.values_of import head_of, mention_of
+from foon_asp.results.values_of import mention_of, question_fields
 from foon_asp.text.json_text import schema_name
 
 
@@ -143,7 +143,7 @@ def unit_union(
     )
     mentions = [(mention_of(network, unit), membership(unit)) for unit in listed]
     return UnitUnion(
-        **head_of(problem, chosen),
+        **question_fields(problem, chosen),
         within=within,
         complete=not union.undecided and union.best.proof is not None,
         units=tuple(

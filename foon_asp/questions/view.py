@@ -466,7 +466,7 @@ def pages(
       left out if there is no plan only because items run out.
     - The searches, the alternatives and the front, as far as they are wanted.
     """
-    deadline = settings.begun
+    deadline = settings.effective_deadline
     settings = settings._replace(deadline=deadline)
     has_rules = bool(settings.constraints) or settings.encodings is not None
     is_of_plan, lasting_problem = problem.items is not None, replace(problem, items=None)

@@ -19,7 +19,7 @@ from foon_asp.questions.result import Ending
 from foon_asp.questions.shopping_list import shopping_list
 from foon_asp.results.table import Block
 from foon_asp.results.values import Node, Unit
-from foon_asp.results.values_of import head_of, node_of, nodes_of, unit_as
+from foon_asp.results.values_of import node_of, nodes_of, question_fields, unit_as
 from foon_asp.text.json_text import schema_name
 from foon_asp.text.line_parser import parse_node
 
@@ -131,13 +131,13 @@ def ways_on(
     answer: Answer | None = answer_problem(problem, chosen, limits)
     lacks: tuple[Node, ...] | None = ()
     if answer is not None and answer.status is Status.INFEASIBLE:
-        with asked_by(caller()._replace(deadline=limits.begun)):
+        with asked_by(caller()._replace(deadline=limits.effective_deadline)):
             shopping = shopping_list(problem, chosen, lists=1)
         lacks = shopping.lists[0].items if shopping.lists else None
         answer = shopping.answer
     added = {o for node in lacks or () if (o := problem.network.object_id(parse_node(node.node))) is not None}
     return WaysOn(
-        **head_of(problem, chosen),
+        **question_fields(problem, chosen),
         reached=problem.kitchen.issuperset(problem.goals),
         lacks=lacks if lacks is None else tuple(node_of(problem.network, o) for o in sorted(added)),
         units=tuple(_units_to_goals(problem, replace(problem, kitchen=problem.kitchen | added), answer)),

@@ -23,7 +23,7 @@ from foon_asp.questions.stand_in import StandIn, stand_ins_in
 from foon_asp.results.document import AboutGoals
 from foon_asp.results.table import Block
 from foon_asp.results.values import Mention, Node, Unit, Value
-from foon_asp.results.values_of import head_of, mention_of, node_as, node_of, nodes_of, unit_as
+from foon_asp.results.values_of import mention_of, node_as, node_of, nodes_of, question_fields, unit_as
 from foon_asp.standins import with_stand_ins
 from foon_asp.text.json_text import schema_name
 
@@ -333,7 +333,7 @@ def why_not(
         (2, 1)
     """
     settings, prices = settings_of(options), constraint_weights(weights) if weights else {}
-    problem, deadline = over_whole_network(problem), settings.begun
+    problem, deadline = over_whole_network(problem), settings.effective_deadline
     network = problem.network
     with deadline.watched("looking for the reason", late=True):
         analysis = dead_ends(problem)
@@ -360,7 +360,7 @@ def why_not(
             fix = nodes_of(network, Shop(problem).short_list(analysis))
             stand_ins = _cheapest_stand_ins(problem, settings)
     return Explanation(
-        **head_of(problem),
+        **question_fields(problem),
         tree_exists=not analysis.goals,
         unreachable_goals=nodes_of(network, analysis.goals),
         roots=roots,

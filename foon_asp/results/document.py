@@ -19,8 +19,8 @@ T = TypeVar("T")
 class Unserialized(Generic[T]):
     """Descriptor of a property of a document that is not in its JSON.
 
-    :meth:`Document.knowing` sets the property. Before that, it has the ``default`` or, without one, raises
-    :class:`AttributeError`.
+    :meth:`Document.set_unserialized` sets the property. Before that, it has the ``default``; without a
+    default, it raises :class:`AttributeError`.
     """
 
     def __init__(self, *default: T) -> None:
@@ -44,7 +44,7 @@ class Document(Struct, frozen=True, kw_only=True, dict=True, tag_field="schema")
 
     ROWS: ClassVar[str] = ""
 
-    def knowing(self, **attributes: object) -> Self:
+    def set_unserialized(self, **attributes: object) -> Self:
         """Set properties (:class:`Unserialized`) of this document in place, and return the document."""
         self.__dict__.update(attributes)
         return self

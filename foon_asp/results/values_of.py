@@ -53,7 +53,7 @@ class Head(TypedDict):
     starting_kitchen: tuple[Node, ...] | None
 
 
-def head_of(problem: Problem, objectives: Iterable[Objective] = ()) -> Head:
+def question_fields(problem: Problem, objectives: Iterable[Objective] = ()) -> Head:
     """Return the first fields of a document about goals: the goals, the conditions and the objectives.
 
     The starting kitchen is ``None`` where a kitchen was given.

@@ -243,10 +243,10 @@ def test_what_is_left_out_at_a_limit_is_unknown(monkeypatch: pytest.MonkeyPatch)
         problem: Problem, objectives: Sequence[Objective], how: Settings, reporter: Reporter
     ) -> Outcome:
         outcome = solve(problem, objectives, how, reporter)
-        how.begun.interrupt()
+        how.effective_deadline.interrupt()
         return outcome
 
-    monkeypatch.setattr("foon_asp.questions.regret.find", struck)
+    monkeypatch.setattr("foon_asp.questions.regret.solve", struck)
     found = foon_asp.regret(foon_asp.load().problem("ice"))
     assert found.answer.status is Status.OPTIMAL
     assert {(each.part.value, each.status) for each in found.regrets} == {

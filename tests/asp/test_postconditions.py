@@ -234,7 +234,7 @@ def test_a_tree_for_less_than_its_parts_is_a_bug(monkeypatch: pytest.MonkeyPatch
     assert solve_goals(both).goals_alone
     assert regret(problem).regrets
     monkeypatch.setattr("foon_asp.questions.several_goals.solve", worse)
-    monkeypatch.setattr("foon_asp.questions.regret.find", better)
+    monkeypatch.setattr("foon_asp.questions.regret.solve", better)
     with pytest.raises(BugError, match="for goal"):
         solve_goals(both)
     with pytest.raises(BugError, match="without "):

@@ -15,7 +15,7 @@ from foon_asp.results.document import Unserialized
 from foon_asp.results.figure_text import costs_text
 from foon_asp.results.table import Block
 from foon_asp.results.values import Node, Unit, UsedUpRun, Value
-from foon_asp.results.values_of import head_of, listed_unit, named_node, used_up_of
+from foon_asp.results.values_of import listed_unit, named_node, question_fields, used_up_of
 from foon_asp.text.json_text import schema_name
 
 
@@ -145,7 +145,7 @@ def compare_trees(names: Sequence[str], trees: tuple[Tree, Tree]) -> TreeDiffere
         ),
         **difference_fields(units_a, units_b),
     )
-    return difference.knowing(trees=trees)
+    return difference.set_unserialized(trees=trees)
 
 
 def _side_of(name: str, tree: Tree) -> Side:
@@ -153,7 +153,7 @@ def _side_of(name: str, tree: Tree) -> Side:
     problem = tree.problem
     ids = [number for unit in tree if (number := problem.network.unit_id(unit)) is not None]
     costs = problem.costs(ids) if len(ids) == len(tree) else None
-    return Side(name=name, **head_of(problem), costs=costs, used_up=used_up_of(problem, tree))
+    return Side(name=name, **question_fields(problem), costs=costs, used_up=used_up_of(problem, tree))
 
 
 def _unit_values(tree: Tree) -> dict[FunctionalUnit, Unit]:
