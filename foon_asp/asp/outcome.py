@@ -36,7 +36,7 @@ class Proof(StrEnum):
     ``solver``: an exhausted search.
     ``cuts``: landmark cuts that leave nothing to search, at once or case by case; see docs/dev/reductions.md.
     ``counts``: where items are used up, no integer numbers of executions cost less; see docs/plans.md.
-    ``certificate``: a certificate that was verified without any of these.
+    ``certificate``: a verified certificate that takes no claim on trust.
     """
 
     SOLVER = "solver"

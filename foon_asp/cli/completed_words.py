@@ -41,7 +41,7 @@ def _read_dataset(context: click.Context) -> Dataset:
 def _complete_goal(context: click.Context, prefix: str) -> Iterable[str]:
     """Return the names in the goals file that begin with ``prefix``, then nodes in one-line notation.
 
-    The label or the notation of these nodes begins with ``prefix``.
+    A node is returned if its label or its notation begins with ``prefix``.
     """
     dataset = _read_dataset(context)
     names = dataset.names

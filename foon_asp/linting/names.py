@@ -39,7 +39,7 @@ class Names:
     """Every name in the files, by its kind.
 
     ``mentions``: by kind and name, the lines with the name, in order.
-    ``counts``: by kind and name, the number of these lines.
+    ``counts``: by kind and name, the number of lines with the name; equal lines all count.
     """
 
     def __init__(self, files: LintedFiles) -> None:
