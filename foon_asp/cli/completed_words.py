@@ -81,7 +81,7 @@ def _constants_of(constraint: str, context: click.Context, prefix: str) -> Itera
     """Return completions of ``CONSTANT=VALUE`` for a ready-made constraint.
 
     Up to the ``=``, they are the constants of the constraint. After it, they are motions or labels of the
-    data, as the ending of the constant's name says; for a constant with another ending, there are none.
+    data, as the ending of the constant's name says. A constant with another ending has no completions.
     """
     name, equals, value = prefix.partition("=")
     if not equals:

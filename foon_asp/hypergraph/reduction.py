@@ -116,7 +116,7 @@ def reduce(
     """Reduce a problem to the units that a search for the best tree still has to look at.
 
     ``objectives``: the list as it is optimized, with ``units`` in it, so that every unit costs something.
-    ``reductions``: the reductions to make. If there are none, all relevant units that can be executed remain.
+    ``reductions``: the reductions to make. If empty, all relevant units that can be executed remain.
     ``expired``: returns whether time is up.
     ``listener``: receives trees and bounds.
     ``guard``: returns a context in which computations are interrupted when time is up, as by ctrl-C.

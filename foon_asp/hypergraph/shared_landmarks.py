@@ -111,9 +111,9 @@ class SharedLandmarks:
     def _relax(self, task: Task, excluded: frozenset[int], tree: frozenset[int]) -> _Relaxation | None:
         """Solve the relaxation for a question, until its value proves the best tree found optimal.
 
-        Known landmarks that the LP solution violates are added. If there are none, new ones are found, added
-        and recorded. Also ends when no violated cut is found, the value hardly grows, or time is up. Returns
-        ``None`` if HiGHS fails. The arguments are those of :meth:`tighten`.
+        Known landmarks that the LP solution violates are added. If the solution violates no known landmark,
+        new landmarks are found, added and recorded. Also ends when no violated cut is found, the value hardly
+        grows, or time is up. Returns ``None`` if HiGHS fails. The arguments are those of :meth:`tighten`.
         """
         np, relaxation, targets = self._np, self._relaxation, self._targets(task)
         landmarks = [

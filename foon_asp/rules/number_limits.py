@@ -340,7 +340,7 @@ def _binds(condition: AST) -> bool:
 
 
 def _body_text(conditions: Sequence[AST | str]) -> str:
-    """Return conditions as the body of a rule; ``#true`` if there are none."""
+    """Return conditions as the body of a rule; ``#true`` without conditions."""
     return "; ".join(map(str, conditions)) or "#true"
 
 
