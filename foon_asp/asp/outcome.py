@@ -36,7 +36,7 @@ class Proof(StrEnum):
     ``solver``: an exhausted search.
     ``cuts``: landmark cuts that leave nothing to search, at once or case by case; see docs/dev/reductions.md.
     ``counts``: where items are used up, no integer numbers of executions cost less; see docs/plans.md.
-    ``certificate``: a certificate that was verified without any of these.
+    ``certificate``: a verified certificate that takes no claim on trust.
     """
 
     SOLVER = "solver"
@@ -60,7 +60,7 @@ class Outcome(NamedTuple):
     ``certified``: the objectives, from the first on, by which a certificate proves the tree the best.
     ``left``: the number of units that were left for the search; 0 if no search was needed.
     ``cuts``: sets of object nodes, by id, whose landmarks the reductions used for bounds; see
-    :mod:`foon_asp.hypergraph`. There are none for goals that were solved by shared landmarks.
+    :mod:`foon_asp.hypergraph`. Empty for goals that were solved by shared landmarks.
     ``stopped``: the limit that stopped an unproved answer, and what was being done; ``None`` without one.
     ``cases``: the case split of a proof by cuts: a unit, then the cases without it and with it; ``None`` if
     the proof has no cases.

@@ -39,7 +39,7 @@ class Prepared:
 
     ``levels``: the objectives as optimized.
     ``units``: the units of the network that remain after the reductions, by id.
-    ``tree``: a tree of these units; ``None`` if they do not make the goals.
+    ``tree``: a tree of ``units``; ``None`` if they do not make the goals.
     ``reduced``: the result of the reductions; ``None`` if none ran.
     ``stopped``: whether a limit or ctrl-C interrupted the preparation, so that nothing is known.
     ``restricted_problem``: the problem restricted by user rules, if rules were applied before the search.

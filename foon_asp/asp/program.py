@@ -30,7 +30,7 @@ class Program(NamedTuple):
     ``endless``: whether grounding may not terminate.
     ``encodings``: the folder that replaces the built-in encodings; ``None`` without one.
     ``ours``: the files without those that the user added.
-    ``understood``: the user rules, analysed. ``None`` if there are none, if encodings are replaced, or if
+    ``understood``: the user rules, analysed. ``None`` without user rules, if encodings are replaced, or if
     rules may be broken or dropped.
     ``named``: the names of the constants that encodings and user rules define.
     ``reads``: the predicates that user rules read and that have facts only in some questions. Each is a pair

@@ -235,8 +235,8 @@ class _Solver:
     def _solve_violated(self, subproblem: Subproblem, tree_without_rules: Units) -> Outcome:
         """Find the best tree under the rules if the best tree without them breaks some of them.
 
-        ``tree_without_rules`` is that tree. These searches are made in turn, until one finds the best tree or
-        proves that there is none:
+        ``tree_without_rules`` is the best tree without rules. These searches are made in turn, until one
+        finds the best tree under the rules or proves that no tree keeps them:
 
         - by a price on a limited sum, unless a similar question explored units;
         - for trees with open preconditions;
@@ -451,7 +451,7 @@ class _Solver:
     def _search(self, incumbent: Units) -> Outcome:
         """Search for a tree better than the incumbent, and return the outcome.
 
-        If there is none, the incumbent is optimal.
+        If no better tree exists, the incumbent is optimal.
         """
         opt_mode, strict = self._opt_mode(incumbent)
         run = self._run(self.levels, opt_mode=opt_mode, bounds=True)
@@ -534,7 +534,7 @@ class _Solver:
         run is empty.
 
         ``products``: totals by the rounded objective, such as products of success rates, each as the vector
-        of :meth:`Scales.vector`. Trees with one of these totals are excluded.
+        of :meth:`Scales.vector`. Trees with a total in ``products`` are excluded.
         ``wanted``: the index, in ``products``, of a total that is required instead; ``None`` to exclude all
         of them.
         ``fewer``: numbers of units by index of a total. Trees with this total are allowed if they have fewer

@@ -23,7 +23,7 @@ _JUST_ABOVE = Fraction(1, 10**30)  # a cost that is this much above a limit is a
 
 
 class TreeUnion(NamedTuple):
-    """The ids of the units that some tree has, and of those that every tree has.
+    """The ids of the units that some tree has, and of the units that every tree has.
 
     ``best``: the outcome with the best tree.
     ``in_some``, ``in_every``: the units that some tree has, and that every tree has, as far as it is known.
@@ -192,7 +192,7 @@ class _UnionSearch:
     def _is_above_limit(self, tree: Sequence[int]) -> bool:
         """Whether a tree costs too much to count, by rounded costs.
 
-        clingo finds trees in order of these costs, so the trees not found yet cost too much as well.
+        clingo finds trees in order of rounded costs, so the trees not found yet cost too much as well.
         """
         prepared, costs = self._prepared, self._prepared.problem.costs(tree)
         scales = prepared.scales

@@ -36,7 +36,7 @@ def find_question(verb: str) -> Question:
 
 
 def values_with_role(question: Question, values: Mapping[str, Any], roles: Role) -> dict[str, Any]:
-    """Return the ``values``, by name, of those options of a question whose role is one of ``roles``.
+    """Return the ``values``, by name, of the options of a question whose role is one of ``roles``.
 
     An option without a value is left out.
     """

@@ -41,7 +41,7 @@ def _read_dataset(context: click.Context) -> Dataset:
 def _complete_goal(context: click.Context, prefix: str) -> Iterable[str]:
     """Return the names in the goals file that begin with ``prefix``, then nodes in one-line notation.
 
-    The label or the notation of these nodes begins with ``prefix``.
+    A node is returned if its label or its notation begins with ``prefix``.
     """
     dataset = _read_dataset(context)
     names = dataset.names
@@ -81,7 +81,7 @@ def _constants_of(constraint: str, context: click.Context, prefix: str) -> Itera
     """Return completions of ``CONSTANT=VALUE`` for a ready-made constraint.
 
     Up to the ``=``, they are the constants of the constraint. After it, they are motions or labels of the
-    data, as the ending of the constant's name says; for a constant with another ending, there are none.
+    data, as the ending of the constant's name says. A constant with another ending has no completions.
     """
     name, equals, value = prefix.partition("=")
     if not equals:

@@ -37,8 +37,8 @@ class _Shell(ShellComplete):
     def get_completions(self, args: list[str], incomplete: str) -> list[CompletionItem[str]]:
         """Return the distinct completions of the word ``incomplete``, at most ``MAX_COMPLETIONS``.
 
-        Completions of ``--option=word`` begin with ``--option=``. There are none where the data cannot be
-        read.
+        Completions of ``--option=word`` begin with ``--option=``. If the data cannot be read, the list is
+        empty.
         """
         from foon_asp.cli.completed_words import MAX_COMPLETIONS
 

@@ -100,8 +100,8 @@ def _files_read_for(path: Path) -> Iterator[Path]:
     """Yield the files read for a path that a parameter names.
 
     They are the encodings and networks of a folder, a file with the files that it includes, or the file of a
-    ready-made constraint. The domains in the folder of a problem in PDDL are among them. For a path that
-    cannot be read, there are none.
+    ready-made constraint. The domains in the folder of a problem in PDDL are among them. Nothing is yielded
+    for a path that cannot be read.
     """
     with contextlib.suppress(UserError, OSError):  # reported when it is read
         if path.is_dir():

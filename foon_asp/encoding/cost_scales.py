@@ -84,7 +84,7 @@ class Scales:
         rates: The scale of success rates; ``None`` if no rates are known.
         costs: The scales of objectives whose costs are fractions and add up.
         facts: The objectives whose costs clingo reads from facts ``cost/3``.
-        rounded: The only objective that is rounded; ``None`` if there is none.
+        rounded: The only objective that is rounded; ``None`` if no cost has to be rounded.
     """
 
     def __init__(self, problem: Problem, units: Iterable[int], objectives: Iterable[Objective] = ()) -> None:

@@ -614,9 +614,9 @@ def program_fault(
     """Return clingo's messages about a program as one error for the user.
 
     It is :class:`InputError`, with places and source lines, if a message has a place. Otherwise it is
-    :class:`UserError` with the text of the messages, or with ``otherwise``, the text of clingo's exception,
-    if there are none. ``files`` are the files and texts of the program; the source lines of a text are looked
-    up in it.
+    :class:`UserError` with the text of the messages. Without messages, its text is ``otherwise``, the text of
+    clingo's exception. ``files`` are the files and texts of the program; the source lines of a text are
+    looked up in it.
     """
     errors: dict[Source, Diagnostic] = {}
     for message in messages:

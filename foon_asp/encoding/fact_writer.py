@@ -524,12 +524,12 @@ def write_avoided(number: int, units: Iterable[int]) -> str:
 
 
 def write_unseen(units: Iterable[int]) -> str:
-    """Return facts ``_unseen(U)``: a tree has to have at least one of these units, by number."""
+    """Return a fact ``_unseen(U)`` for each unit number: a tree has to have at least one unit U."""
     return "".join(f"_unseen({_check_int32(unit)}).\n" for unit in units)
 
 
 def write_in_all(units: Iterable[int]) -> str:
-    """Return facts ``_in_all(U)``: a tree has to lack at least one of these units, by number."""
+    """Return a fact ``_in_all(U)`` for each unit number: a tree has to lack at least one unit U."""
     return "".join(f"_in_all({_check_int32(unit)}).\n" for unit in units)
 
 
@@ -553,7 +553,7 @@ def write_given(numbers: Collection[int]) -> str:
 def write_same_rates(classes: Sequence[Iterable[int]]) -> str:
     """Return facts ``_same_rate(R,U)``: the units of each success rate number R.
 
-    ``classes`` have the numbers of these units; R is the index of a class.
+    ``classes`` has the numbers of the units with each rate; R is the index in ``classes``.
     """
     return "".join(
         f"_same_rate({rate},{number}).\n" for rate, numbers in enumerate(classes) for number in numbers

@@ -12,7 +12,7 @@ from clingo.symbol import Number, Symbol, SymbolType
 
 from foon_asp.encoding.exact import LARGEST, is_beyond
 
-CHECKS_FILE: Final = "_numbers"  # the name of these rules in place of a file
+CHECKS_FILE: Final = "_numbers"  # the name of the overflow checks, in place of a file name
 BEYOND: Final = "_beyond", 4
 
 

@@ -50,12 +50,13 @@ class Check(NamedTuple):
 
     Attributes:
         engine: The name of the engine.
-        objectives: The objectives by which the engine finds our tree optimal, the most important first.
-            There are none if both say that there is no tree, or the engine does not agree.
+        objectives: The objectives by which the engine finds our tree optimal, the most important first. Empty
+            if both say that no tree exists, or if the engine does not agree.
         reason: Why the engine has checked nothing; ``None`` if it agrees or is refuted.
         seconds: The time that the engine took.
         package: The distribution that offers the engine; ``None`` for a built-in engine.
-        refuted: The claim of an engine of another package that was found wrong; ``None`` if there is none.
+        refuted: The claim of an engine of another package that was found wrong; ``None`` unless the engine is
+            refuted.
     """
 
     engine: str

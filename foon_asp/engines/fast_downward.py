@@ -83,7 +83,7 @@ def _task_text(problem: Problem, objective: Objective, forbidden: frozenset[int]
 
     Each node that has to be made is a binary variable, which is 0 once the node is available. If the
     objective counts kitchen items, each item that units need is a variable, and an operator of cost 1 takes
-    it. Every other operator is a unit; units that make none of these nodes are left out.
+    it. Every other operator is a unit; a unit is left out if it makes no node that has to be made.
 
     Raises :class:`NotCheckedError` if the costs add up to more than 32 bits hold.
     """

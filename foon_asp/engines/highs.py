@@ -121,7 +121,7 @@ class _Program:
     def _variable_costs(self, objective: Objective) -> list[tuple[Any, float]]:
         """Return pairs of a variable and its cost by an objective.
 
-        The variables are those that take items if the objective counts these, else those that use units.
+        The variables are those that take items if the objective counts items, else those that use units.
         """
         if objective.row.item:
             return [(variable, 1.0) for variable in self._take.values()]

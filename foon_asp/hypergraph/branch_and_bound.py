@@ -37,7 +37,7 @@ class _Node:
 
     Actions are given as columns of the relaxation.
 
-    ``bound``: a lower bound on the cost of these derivations, in parts: :data:`PARTS` is a cost of 1.
+    ``bound``: a lower bound on the cost of the node's derivations, in parts: :data:`PARTS` is a cost of 1.
     ``weights``: pairs of a row and its weight. Their cuts prove the bound.
     ``hopeless``: a cut with an empty landmark if the node has no derivation, else ``None``.
     ``above_cutoff``: actions whose derivations are no better than the incumbent. Both children forbid them.
@@ -148,8 +148,8 @@ class Branching:
     def cases(self) -> Cases:
         """Return the case split of the whole search: the actions branched on, as nested cases.
 
-        Each split is a triple: an action, the split of the derivations without it, and that of those with it.
-        A closed node is ``None``. Actions fixed by reduced cost are not listed.
+        Each split is a triple: an action, the split of the derivations without it, and the split of the
+        derivations with it. A closed node is ``None``. Actions fixed by reduced cost are not listed.
         """
         return self._cases_below(self._root)
 
@@ -390,7 +390,7 @@ def prove_by_branching(
     total: int,
     expired: Callable[[], bool],
 ) -> Proof | None:
-    """Return a proof that no derivation costs less than ``total``. Return ``None`` if there is none in time.
+    """Return a proof that no derivation costs less than ``total``; ``None`` if no proof is found in time.
 
     Arguments are those of :class:`Branching`; ``expired`` returns whether time is up. Costs are whole
     numbers, so it suffices that bounds of the proof exceed ``total - 1``.

@@ -39,7 +39,7 @@ class BasicSolution(NamedTuple):
     """A basic optimal solution: its cost ``value``, the values ``x`` of the columns, and its basis.
 
     ``columns`` are the numbers of the basic columns. ``rows`` are the numbers of equally many tight rows. The
-    square matrix of these rows and columns determines the solution and the duals.
+    square matrix of ``rows`` and ``columns`` determines the solution and the duals.
     """
 
     value: float
@@ -79,7 +79,7 @@ class Covering:
         self._highs.changeColsCost(count, np.arange(count, dtype=np.int32), np.array(costs, dtype=float))
 
     def add_row(self, row: Sequence[int]) -> None:
-        """Add a covering row: the values of these columns add up to at least 1."""
+        """Add a covering row: the values of the columns in ``row`` add up to at least 1."""
         np_row = self._array(row, dtype="int32")
         ones = self._array([1.0] * len(row))
         self._highs.addRow(1.0, self._library.kHighsInf, len(row), np_row, ones)

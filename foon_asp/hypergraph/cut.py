@@ -116,7 +116,7 @@ class Cutter:
     def without_forbidden(self, actions: Iterable[int]) -> tuple[int, ...] | None:
         """Return the given actions without forbidden ones, in the same order.
 
-        Return ``None`` if one of those that remain is not in :attr:`actions`.
+        Return ``None`` if a remaining action is not in :attr:`actions`.
         """
         remaining = tuple(a for a in actions if a not in self._forbidden)
         return remaining if self._positions.keys() >= set(remaining) else None

@@ -91,7 +91,7 @@ class ExactCosts:
         return math.lcm(*{cost.denominator for cost in self._unit_costs(objective, actions)})
 
     def _upper_bound(self, objective: Objective, actions: Collection[int]) -> int:
-        """Return an upper bound on the scaled cost, by one objective, of any subset of these actions."""
+        """Return an upper bound on the scaled cost, by one objective, of any subset of ``actions``."""
         if objective is Objective.UNITS:
             return len(actions)
         if objective in self._multiplied:
@@ -104,7 +104,7 @@ class ExactCosts:
         )
 
     def _unit_costs(self, objective: Objective, actions: Collection[int]) -> Iterable[int | Fraction]:
-        """Return the costs by an objective of those actions that are units."""
+        """Return the costs, by an objective, of the units among ``actions``."""
         return self._problem.figures(objective, (a for a in actions if a < self._units))
 
     def __call__(self, action: int) -> int:

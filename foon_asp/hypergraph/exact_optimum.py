@@ -110,8 +110,9 @@ class _Basis:
     def entering_variable(self, order: Lexicographic) -> tuple[int, bool] | None:
         """Return the number of the entering column or row by Bland's rule, and whether it is a row.
 
-        The first column of negative reduced cost enters. If there is none, the slack of the first row of
-        negative dual enters. Return ``None`` if there is no such row either: the basis is optimal.
+        The first column of negative reduced cost enters. If no reduced cost is negative, the slack of the
+        first row of negative dual enters. Return ``None`` if no dual is negative either: the basis is
+        optimal.
         """
         loads: dict[int, list[Vector]] = {}
         for row, weight in self.duals.items():

@@ -82,11 +82,11 @@ class Subproblem:
         return closed
 
     def tree_cost(self, units: Iterable[int]) -> int:
-        """Return the cost of the tree of these units, which is that of its :meth:`tree_actions`."""
+        """Return the cost of the tree with ``units``: the sum of the costs of its :meth:`tree_actions`."""
         return sum(map(self.costs, self.tree_actions(units)))
 
     def tree_actions(self, units: Iterable[int]) -> set[int]:
-        """Return the actions of the tree of these units.
+        """Return the actions of the tree with ``units``.
 
         They are the units themselves and, if an objective counts kitchen items, the actions that take the
         items that the units need.

@@ -117,7 +117,7 @@ class _Target:
     def add_level(self, needed: Sequence[int]) -> None:
         """Put a level on the stack with the objects ``needed``, the common preconditions of a landmark.
 
-        Does nothing if there are none.
+        Does nothing if ``needed`` is empty.
         """
         if needed:
             self.outer_zones |= self.levels[-1].zone

@@ -79,7 +79,7 @@ class Prover:
     """Searches for optimality proofs over one hypergraph, its targets and the cost of each action.
 
     ``costs``: the cost of each action as a vector.
-    ``order``: the order of these vectors.
+    ``order``: the order of cost vectors.
     ``forbidden``: the actions that derivations must not have.
     ``expired``: returns whether to give up. It is called between steps that take milliseconds on thousands of
     actions.
@@ -122,7 +122,7 @@ class Prover:
         return sum(map(mul, self._order.approximate(vector), self._scales), 0.0)
 
     def prove(self, derivation: Iterable[int], cases: Cases = None) -> Proof | None:
-        """Return a proof that no derivation costs less than this one; ``None`` if there is none in time.
+        """Return a proof that no derivation costs less than this one; ``None`` if no proof is found in time.
 
         Known cuts are tried first. If they do not suffice, the proof branches on ``cases``, the nested cases
         of an earlier search. Raises :class:`CheaperError` if a cheaper derivation is found.

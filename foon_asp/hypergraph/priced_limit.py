@@ -18,7 +18,8 @@ Units = frozenset[int]
 class WithinLimit(NamedTuple):
     """The result of a search for trees within a limit.
 
-    ``tree``: the units of a tree within the limit; ``None`` if it is proved that there is none.
+    ``tree``: the units of a tree within the limit; ``None`` if it is proved that every tree exceeds the
+    limit.
     ``units``: all units that this tree and better trees within the limit can have; ``None`` if no unit is
     excluded.
     """
@@ -44,7 +45,7 @@ def search_within_limit(
     within the limit by at most the price times the limit, so lower bounds carry over. If many units remain at
     this price, lower prices that rise up to it are tried.
 
-    Returns ``None`` if no tree within the limit is found and it is not proved that there is none.
+    Returns ``None`` if it stays open whether a tree within the limit exists.
     """
     first_result = any_within_limit(subproblem, row, expired)
     if first_result is None or first_result.tree is None:

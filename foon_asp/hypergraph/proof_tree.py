@@ -46,8 +46,8 @@ class Branch(NamedTuple):
 class CostFixing(NamedTuple):
     """Reduced-cost fixing: a proof for derivations with one of the ``actions``, and one for all others.
 
-    ``packing`` proves the lower bound for derivations with one of these actions: its bound plus the reduced
-    cost of the action. ``others`` is the proof for derivations without these actions.
+    ``packing`` proves a lower bound for derivations with an action in ``actions``: its bound plus the
+    action's reduced cost. ``others`` is the proof for derivations without any action in ``actions``.
     """
 
     actions: tuple[int, ...]

@@ -60,12 +60,12 @@ class Reduced(NamedTuple):
     ``costs``: the exact costs; ``None`` if rates are too fine.
     ``bound``: a lower bound on the cost of every tree; 0 if rates are too fine.
     ``cuts``: the greedy cost partition with the greatest bound, over the units that remained when it was
-    found; ``None`` if there is none.
+    found; ``None`` if no greedy partition was found.
     ``interrupted``: whether ctrl-C ended the reduction, or time was up before any reduction. Then ``units``
     must not be used.
     ``subproblem``: the gap-bounded subproblem, which is valid under any rules on trees; ``None`` if no cuts
     were found.
-    ``partition``: the last optimal cost partition that raised the bound; ``None`` if there is none.
+    ``partition``: the last optimal cost partition that raised the bound; ``None`` if none raised it.
     ``cases``: the actions branched on, as nested cases; ``None`` without branching.
     ``tight``: the tight cuts of the LP solutions by which units were excluded, over the units that remained.
     """
@@ -116,7 +116,7 @@ def reduce(
     """Reduce a problem to the units that a search for the best tree still has to look at.
 
     ``objectives``: the list as it is optimized, with ``units`` in it, so that every unit costs something.
-    ``reductions``: the reductions to make. If there are none, all relevant units that can be executed remain.
+    ``reductions``: the reductions to make. If empty, all relevant units that can be executed remain.
     ``expired``: returns whether time is up.
     ``listener``: receives trees and bounds.
     ``guard``: returns a context in which computations are interrupted when time is up, as by ctrl-C.
@@ -243,7 +243,7 @@ def _task_of(
 
 
 def _with_costs(task: Task, actions: Collection[int]) -> Task:
-    """Return the task with exact costs of these actions.
+    """Return the task with exact costs of ``actions``.
 
     If it has exact costs already, or rates are too fine for them, it is returned unchanged.
     """

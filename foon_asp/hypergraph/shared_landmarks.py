@@ -55,8 +55,8 @@ class SharedLandmarks:
     """Landmarks of all objects that a network can make from a kitchen, for costs without rounding.
 
     ``actions`` are all actions that can run, and ``objects`` the objects that they make. A question has some
-    of these objects as goals, and may exclude actions. Its linear relaxation begins with the known landmarks
-    of its goals. Landmarks that it adds are kept for later questions.
+    ``objects`` as goals, and may exclude actions. Its linear relaxation begins with the known landmarks of
+    its goals. Landmarks that it adds are kept for later questions.
     """
 
     def __init__(self, task: Task, costs: ExactCosts, actions: Iterable[int], objects: Sequence[int]) -> None:
@@ -111,9 +111,9 @@ class SharedLandmarks:
     def _relax(self, task: Task, excluded: frozenset[int], tree: frozenset[int]) -> _Relaxation | None:
         """Solve the relaxation for a question, until its value proves the best tree found optimal.
 
-        Known landmarks that the LP solution violates are added. If there are none, new ones are found, added
-        and recorded. Also ends when no violated cut is found, the value hardly grows, or time is up. Returns
-        ``None`` if HiGHS fails. The arguments are those of :meth:`tighten`.
+        Known landmarks that the LP solution violates are added. If the solution violates no known landmark,
+        new landmarks are found, added and recorded. Also ends when no violated cut is found, the value hardly
+        grows, or time is up. Returns ``None`` if HiGHS fails. The arguments are those of :meth:`tighten`.
         """
         np, relaxation, targets = self._np, self._relaxation, self._targets(task)
         landmarks = [
@@ -175,7 +175,7 @@ class SharedLandmarks:
         return values
 
     def _row_sums(self, rows: Sequence[int], values: Any) -> list[float]:
-        """Return for each of these landmarks the sum of the ``values`` of its actions."""
+        """Return, for each landmark numbered in ``rows``, the sum of the ``values`` of its actions."""
         if not rows:
             return []
         arrays = [self._relaxation.rows[row] for row in rows]

@@ -86,7 +86,7 @@ class SolvedGoals:
         return frozenset(min(smallest, key=lambda tree: sum(map(costs, tree))))
 
     def _tree_without(self, task: Task, removed: frozenset[int]) -> frozenset[int] | None:
-        """Return a tree without the removed actions; ``None`` if there is none.
+        """Return a tree without the removed actions; ``None`` if no such tree exists.
 
         It is the better of two irredundant trees. One follows h_add. The other is a subset of the union of
         the first and the solved tree of the same goals, if there is one.

@@ -11,7 +11,7 @@ from foon_asp.text.diagnostics import Diagnostic
 
 @rule("dead-cycle", NOTE, "objects that are made only by units that need them")
 def find_dead_cycles(context: Context) -> Iterator[Diagnostic]:
-    """No task tree can make any of these objects unless one is available, as each needs another of them.
+    """No task tree can make the objects of a cycle unless one is available, as each needs another of them.
 
     This may be intended, as with a bottle that is opened and closed again. Then put one of the objects into
     the kitchen; if the kitchen is linted together with the network, the cycle is not reported. Or a state is

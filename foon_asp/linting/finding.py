@@ -22,7 +22,8 @@ class Finding(Value, frozen=True):
         column: From 1.
         severity: error: the file certainly does not say what is meant; warning: it probably does not; note:
             it may be intended.
-        text: The line; null where there is none, or in JSON where it is longer than a thousand letters.
+        text: The line; null where no line can be shown, or in JSON where it is longer than a thousand
+            letters.
         fix: The line as it should be, where it can be mended.
         mendable: Whether --fix mends it.
         unsafe: Whether only --fix --unsafe-fixes mends it, which changes what is read.

@@ -44,7 +44,7 @@ def mentioned_names(nodes: Collection[ObjectNode]) -> set[str]:
 class Habit(NamedTuple):
     """How often units with one motion change something.
 
-    ``units``: all of these units.
+    ``units``: all units with the motion.
     ``keep``: units with a container that keeps some of its contents.
     ``lose``, ``gain``: units in which such a container also loses or gains contents.
     ``make``: units with outputs that come from no input.

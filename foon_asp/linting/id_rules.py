@@ -16,8 +16,8 @@ _KINDS = {"O": "object", "S": "state", "M": "motion"}
 class _Use(NamedTuple):
     """A name under an id, or an id under a name.
 
-    ``occurrences`` is the number of lines that have both. ``first_index`` is the index of the first of these
-    lines.
+    ``occurrences`` is the number of lines that have both the name and the id. ``first_index`` is the index of
+    the first such line.
     """
 
     text: str

@@ -39,7 +39,7 @@ class Names:
     """Every name in the files, by its kind.
 
     ``mentions``: by kind and name, the lines with the name, in order.
-    ``counts``: by kind and name, the number of these lines.
+    ``counts``: by kind and name, the number of lines with the name; equal lines all count.
     """
 
     def __init__(self, files: LintedFiles) -> None:
@@ -80,8 +80,8 @@ class Names:
     def similar_labels(self, name: str) -> list[str]:
         """Return labels of object lines that a name may stand for, the most frequent first.
 
-        These are the name in the singular or plural. If there are none, up to three labels that end with the
-        words of the name.
+        These are the name in the singular or plural. If no label is either, up to three
+        labels that end with the words of the name.
         """
         singular = _singular(name)
         alike = self._labels_by_ending.get(singular, [])

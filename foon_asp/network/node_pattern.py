@@ -6,7 +6,7 @@ from foon_asp.network.object_node import Contents, ObjectNode, Relation
 from foon_asp.network.quoted_name import FIRST, LISTED, quoted
 
 LookupKey = tuple[str, frozenset[str], tuple[str, ...], str | None]
-"""Label, states, ingredients and a related object, ``None`` where there is none.
+"""Label, states, ingredients and a related object, which is ``None`` for a node without relations.
 
 A label without states may stand in thousands of containers, so the container is part of the key.
 """

@@ -33,8 +33,8 @@ def in_quotes(name: str) -> str:
 def unquoted(written: str) -> str:
     """Return the name that a text of the notation stands for.
 
-    Blanks around the text are removed. A text in quotes is read as a JSON string, and raises ``ValueError``
-    if it is none.
+    Blanks around the text are removed. A text in quotes is read as a JSON string. Raises ``ValueError`` if
+    it is not valid JSON.
     """
     written = written.strip(" ")
     return str(json.loads(written, strict=False)) if written.startswith('"') else written

@@ -109,7 +109,7 @@ def network_statistics(network: Network, at_hand: Iterable[int] | None = None) -
 
 
 def most_connected_labels(network: Network, max_labels: int) -> list[tuple[str, int]]:
-    """Return up to ``max_labels`` labels that the most units have, each with the number of these units.
+    """Return up to ``max_labels`` labels that the most units have, each with its number of units.
 
     A unit has the labels of its inputs and outputs. Labels with equal numbers are in alphabetical order.
     """

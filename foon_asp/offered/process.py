@@ -18,10 +18,10 @@ from foon_asp.processes.worker import DiedError, Worker, give_back_worker, take_
 def ask_offered(offer: Offer, deadline: Deadline, *arguments: object) -> Any:
     """Call the function of an offer in the process of its package, and return the reply as values of JSON.
 
-    The process is started if there is none, and kept for later calls. Returns :class:`Raised` if the function
-    raised an exception. Raises :class:`~foon_asp.deadline.LimitError` at a limit and at ctrl-C, which end the
-    process. Raises :class:`UserError` if the function cannot be imported, ends its process, or returns
-    anything but values of JSON.
+    The process is started unless it runs already, and kept for later calls. Returns :class:`Raised` if the
+    function raised an exception. Raises :class:`~foon_asp.deadline.LimitError` at a limit and at ctrl-C,
+    which end the process. Raises :class:`UserError` if the function cannot be imported, ends its process, or
+    returns anything but values of JSON.
     """
     key = (offer.package, *sys.path)  # with the path, another version of the package may be found
     worker = take_worker(key, _start_worker)

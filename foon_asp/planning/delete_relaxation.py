@@ -45,8 +45,7 @@ class _Relaxation:
     def strips(self) -> StripsTask:
         """Return the compiled task, with its facts numbered in order.
 
-        Its facts are those of the goal and of preconditions. Actions that add none of these facts are left
-        out.
+        Its facts are those of the goal and of preconditions. An action that adds no such fact is left out.
         """
         task = self._task
         relevant = self._relevant_facts()
@@ -58,7 +57,7 @@ class _Relaxation:
         numbers = {fact: number for number, fact in enumerate(sorted(needed))}
 
         def numbered(facts: Iterable[int]) -> list[int]:
-            """Return the new numbers of those facts that the compiled task has."""
+            """Return the new numbers of the given facts; facts that the compiled task lacks are left out."""
             return [numbers[fact] for fact in facts if fact in numbers]
 
         return StripsTask(

@@ -44,7 +44,7 @@ class PddlOutline:
 
     @property
     def name(self) -> str:
-        """The name of the domain or problem that the file defines; empty if there is none."""
+        """The name of the domain or problem that the file defines; empty if the file ends before a name."""
         return self.tokens[4].text if len(self.tokens) > 4 else ""
 
     @cached_property

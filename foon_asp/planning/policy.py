@@ -22,8 +22,8 @@ from foon_asp.problem import Problem
 class PolicyLimits(NamedTuple):
     """Limits of the search for the best policy.
 
-    ``states``: the greatest number of states of the dynamic program; so many take some seconds. Thirteen
-    bundled goals need fewer than 3,000.
+    ``states``: the greatest number of states of the dynamic program; the default takes some seconds.
+    Thirteen bundled goals need fewer than 3,000.
     ``units``: the greatest number of units in the trees. The dynamic program recurses once for each, and
     Python limits the recursion.
     ``policies``: the greatest number of policies that are compared; each is evaluated exactly.

@@ -19,11 +19,12 @@ _WORKER_KEY = "foon_asp.planning.cp_sat"
 
 
 class BestSchedule(NamedTuple):
-    """The best schedule, or the result that there is none.
+    """The best schedule, or the result that no schedule was found.
 
     ``starts``: the starts of the steps in ticks; ``None`` without a schedule.
     ``bound``: a lower bound on the makespan, in ticks.
-    ``proved``: whether it is proved that no schedule is shorter or, without ``starts``, that there is none.
+    ``proved``: whether it is proved that no schedule is shorter or, without ``starts``, that no schedule
+    exists.
     ``lacking``: without ``starts``, maps each tool of which there are too few copies to the number that a
     schedule needs; else empty. In total, these are the fewest additional copies, unless a limit stopped the
     search for them.
@@ -91,7 +92,8 @@ def shortest_schedule(task: ScheduleTask, deadline: Deadline) -> BestSchedule:
 def _sequential_schedule(task: ScheduleTask) -> tuple[tuple[int, ...] | None, dict[ToolName, int]]:
     """Return the starts of the steps as listed, one after the other, and an empty mapping.
 
-    If that needs more copies of tools than there are, return ``None`` and the numbers needed of these tools.
+    If a tool has too few copies for that, return ``None``, and map each such tool to the number of copies
+    needed.
     """
     spans = [(use.name, min(use.steps), max(use.steps)) for use in task.uses]
     needed = {

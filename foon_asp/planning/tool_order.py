@@ -34,7 +34,7 @@ class ToolOrder(NamedTuple):
 
 
 def tool_order(task: ScheduleTask, deadline: Deadline) -> ToolOrder:
-    """Search for an order of the steps; if there is none, search for the fewest lacking copies of tools.
+    """Search for an order of the steps; if no order exists, search for the fewest lacking copies of tools.
 
     Raises ``KeyboardInterrupt`` at ctrl-C. Also raises it at a limit, if it is not known yet whether an order
     exists.

@@ -98,10 +98,10 @@ class FoonAspPlanner(Engine, OneshotPlannerMixin):  # type: ignore[misc]
     ) -> Any:
         """Return a cheapest plan of the delete relaxation, if it is a plan of the problem as well.
 
-        A result with a plan says whether it is proved optimal. If there is none, return a result without a
-        plan, whose status says why: unsupported, unsolvable or stopped by ``timeout``, which is in seconds.
-        If the cheapest plan of the delete relaxation is no plan of the problem, the status is unsupported.
-        The other parameters have no effect.
+        A result with a plan says whether it is proved optimal. Without a plan, the status of the result says
+        why: unsupported, unsolvable or stopped by ``timeout``, which is in seconds. If the cheapest plan of
+        the delete relaxation is no plan of the problem, the status is unsupported. The other parameters have
+        no effect.
         """
         if not self.supports(problem.kind):
             return self._result_without_plan(

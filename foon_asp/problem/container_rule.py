@@ -60,7 +60,7 @@ def needed_inputs(
 
     ``utensils`` are the labels of utensils. Without a ``network``, and at level 3, only the unit itself is
     looked at. A unit of a network below level 3 stands for several level-3 units, whose nodes include their
-    contents. It needs an input if all of these level-3 units need it. A unit that such a network lacks needs
+    contents. It needs an input if each of its level-3 units needs it. A unit that such a network lacks needs
     all its inputs.
     """
     return _preconditions_and_add_effects(unit, rule, utensils, network)[0]
@@ -73,7 +73,7 @@ def given_outputs(
 
     These are all outputs except inputs that the rule skips. Without a ``network``, and at level 3, only the
     unit itself is looked at. A unit of a network below level 3 stands for several level-3 units. It makes an
-    output if at least one of these level-3 units makes it. A unit that such a network lacks makes all its
+    output if at least one of its level-3 units makes it. A unit that such a network lacks makes all its
     outputs.
     """
     return _preconditions_and_add_effects(unit, rule, utensils, network)[1]

@@ -118,7 +118,7 @@ def _unreachable_achievers(
 
 
 def _consumers(achievers: Mapping[int, Sequence[Blocked]]) -> dict[int, list[int]]:
-    """Return a mapping from the id of each node that some blocked unit lacks to the ids of these units."""
+    """Return the ids of the blocked units that lack a node, by the id of the node."""
     consumers: dict[int, list[int]] = {}
     for blocked in {unit.unit: unit for units in achievers.values() for unit in units}.values():
         for lack in blocked.lacks:

@@ -14,7 +14,7 @@ class Offer(StrEnum):
     """A set of object nodes that shopping lists may contain.
 
     With a price list, the set is ``priced``: the nodes on the price list. Without a price list, it is the
-    first of these sets from which the goals can be made:
+    first set in this list from which the goals can be made:
 
     ``for sale``: the nodes that :class:`Shop` sells, except the dish.
     ``cycle``: in addition, nodes that can only be made from each other.
@@ -149,7 +149,7 @@ class Shop:
 def _is_clean_vessel(node: ObjectNode) -> bool:
     """Whether a node is a vessel or tool by its states: it has states, and only empty or clean.
 
-    A node with contents or relations is none.
+    A node with contents or relations is neither.
     """
     return bool(node.states) and node.states <= _FRESH_STATES and not node.contents and not node.relations
 

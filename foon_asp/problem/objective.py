@@ -97,7 +97,7 @@ class Objective(str, metaclass=_IterableOverBuiltIns):
     ``DISSIMILARITY``: least sum of the dissimilarities of stand-ins.
 
     Iteration over the class yields these built-in objectives. :meth:`of_measure` returns the objective of a
-    user measure. Each of these objectives is a single object, so they can be compared by ``is``.
+    user measure. There is only one object for each objective, so objectives can be compared by ``is``.
 
     Example:
         >>> [str(objective) for objective in foon_asp.Objective][:3]

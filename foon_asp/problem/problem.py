@@ -385,8 +385,8 @@ class Problem:
     def copies_taken(self, plan: Iterable[int]) -> dict[int, int]:
         """Return the fewest copies of each consumable kitchen item with which a plan can be executed.
 
-        The numbers are by object node id; there are none if items last. If the item is a goal, the copies
-        that are wanted in the end count, too.
+        The numbers are by object node id; the mapping is empty if items last. If the item is a goal, the
+        copies that are wanted in the end count, too.
 
         Parameters:
             plan: The ids of the units, in the order of execution.

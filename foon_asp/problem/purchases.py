@@ -86,7 +86,7 @@ class Purchases:
         """Return a copy in which some wares, given by object node id, cannot be bought.
 
         If none of them is a ware of the question, the question itself is returned. The problem of the copy
-        has a restriction that removes the purchases of these wares. It replaces any other restriction.
+        has a restriction that removes the purchases of ``wares``. It replaces any other restriction.
         """
         removed = {unit for unit in self._purchases if self._wares[unit - self._first_purchase] in wares}
         if not removed:

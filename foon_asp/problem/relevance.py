@@ -165,7 +165,7 @@ def kitchen_needed(problem: Problem) -> list[int]:
 
 
 def first_tree(problem: Problem, reached: Reached) -> tuple[int, ...] | None:
-    """Return a feasible tree, in an executable order; ``None`` if there is none.
+    """Return a feasible tree, in an executable order; ``None`` if no tree exists.
 
     It has the first achiever (``reached.makers``) of each node that it needs. Its costs may be far from
     optimal: it is the first incumbent of a search.

@@ -199,8 +199,8 @@ def _node_one_edit_away(
 ) -> int | None:
     """Return the id of the node of a network that may stand in for ``node`` by a single edit of the table.
 
-    Of several such nodes, the one with the lowest price is returned. Return ``None`` if there is none, or if
-    the network has ``node`` itself.
+    Of several such nodes, the one with the lowest price is returned. Return ``None`` if no node is one edit
+    away, or if the network has ``node`` itself.
     """
     if network.object_id(node) is not None:
         return None
@@ -213,8 +213,8 @@ def _aligned_node(
 ) -> AlignedNode:
     """Return a node of a ``recipe`` as a value that says how the ``network`` has it.
 
-    ``nearest`` is the id of the node of the network one edit away; ``None`` if there is none, or if the
-    network has ``node`` itself.
+    ``nearest`` is the id of the node of the network one edit away; ``None`` if no node is, or if the network
+    has ``node`` itself.
     """
     value = named_node(recipe, node)
     if nearest is None:

@@ -152,8 +152,8 @@ class RetryPolicy(Value, frozen=True):
         retries: How many executions may fail in a run that succeeds.
         chance: The chance that the goals are made, by this policy.
         bound: No policy over the units of the trees considered has a greater chance.
-        is_exact: Whether the best of these policies has the chance ``bound``. If not, ``bound`` is the chance
-            that the units which every policy needs fail ``retries`` times at most.
+        is_exact: Whether some policy, perhaps another one, has exactly the chance ``bound``. If not,
+            ``bound`` is the chance that the units which every policy needs fail ``retries`` times at most.
         considered: The number of trees considered: the best one, and the best by success.
     """
 
@@ -316,7 +316,10 @@ class Answer(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("ans
 
     @property
     def claim(self) -> str:
-        """A line with the status, objectives and costs of the tree; without a tree, why there is none."""
+        """A line with the status, objectives and costs of the tree.
+
+        Without a tree, the line says that no tree exists, or what stopped the search.
+        """
         noun = "task tree" if self.items == "lasting" else "plan"
         conditions = self.conditions
         if self.encodings is not None:

@@ -49,7 +49,7 @@ def trusted_text(user_rules: Rule, of_tree: bool) -> str:
 
 
 def _limit_text(units: list[int], bound: int, alike: bool) -> str:
-    """Return in words that the weights of those units that a tree has add up to at most ``bound``.
+    """Return in words a limit on trees: their units in ``units`` have a total weight of at most ``bound``.
 
     ``alike`` says that all weights are 1. More than 20 units are only counted.
     """

@@ -15,7 +15,7 @@ _ENTRY = re.compile(r"^    (\w+): (.*(?:\n        .*)*)", re.MULTILINE)
 def docstring_entries(ask: Callable[..., object]) -> dict[str, str]:
     """Return the descriptions in the ``Parameters`` section of a function's docstring, each in one line.
 
-    The keys are the names of the parameters. Without a docstring, there are none.
+    The keys are the names of the parameters. Without a docstring, the mapping is empty.
     """
     if ask.__doc__ is None:  # python -OO
         return {}

@@ -175,7 +175,7 @@ class Envelope:
         return Counter(network.motions[unit] for unit in units if unit not in own_rates)
 
     def _as_function(self, motion: str, units: tuple[int, ...]) -> _Tree:
-        """Return the tree of these units with its success as a function of the rate of a motion."""
+        """Return ``units`` as a tree with its success as a function of the rate of a motion."""
         network, own_rates = self._problem.network, self._problem.own_rates
         fixed = [unit for unit in units if network.motions[unit] != motion or unit in own_rates]
         factor = math.prod(map(self._problem.rate, fixed), start=Fraction(1))

@@ -107,7 +107,7 @@ class PricedHelp:
         return best._replace(bounds={Objective.SUCCESS: min(bounds)} if bounds else {})
 
     def _with_help(self, max_helped: int, units: tuple[int, ...]) -> Outcome:
-        """Return the tree of these units as a feasible outcome, with help for :meth:`helped_units`."""
+        """Return the feasible outcome whose tree has ``units``, with help for :meth:`helped_units`."""
         motions = self._problem.network.motions
         own_rates = {unit: self._better[motions[unit]] for unit in self.helped_units(max_helped, units)}
         problem = replace(self._problem, own_rates=own_rates)

@@ -141,7 +141,7 @@ LIMITS = (
     ),
 )
 EACH_LIMITS = tuple(limit._replace(role=Role.QUESTION) for limit in LIMITS)
-"""The limits for each of many answers; there is none for the whole command."""
+"""The limits for each of many answers; the whole command has no limit."""
 CHART = Option(
     "charts",
     "A file for a chart (.svg or .png).",

@@ -77,7 +77,7 @@ class Point(Value, frozen=True):
 
 
 class Front(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("pareto")):
-    """The Pareto front: its points are the costs that no tree dominates, each with one tree of these costs.
+    """The Pareto front: its points are the costs that no tree dominates, each with one tree that has them.
 
     Attributes:
         encodings: The folder that replaced the built-in encodings, if any.

@@ -133,7 +133,7 @@ class Relaxed(Result, frozen=True, kw_only=True, tag=schema_name("relax")):
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if the plan is proved the cheapest, ``NEGATIVE`` if it is proved that there is none."""
+        """``DONE`` if the plan is proved the cheapest, ``NEGATIVE`` if it is proved that no plan exists."""
         return ending_of_status(self.status)
 
     @property

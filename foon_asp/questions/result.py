@@ -31,7 +31,7 @@ class Ending(StrEnum):
     DONE = "done"
     """What was asked for was found, and proved where there is something to prove."""
     NEGATIVE = "negative"
-    """It is proved that there is none, or a check failed."""
+    """It is proved that no answer exists, or a check failed."""
     LIMIT = "limit"
     """It was stopped at a limit, with what was known by then."""
 

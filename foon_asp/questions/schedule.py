@@ -114,7 +114,7 @@ class Schedule(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("s
 
     @property
     def ending(self) -> Ending:
-        """``DONE`` if the schedule is proved shortest, ``NEGATIVE`` if it is proved that there is none."""
+        """``DONE`` if the schedule is proved shortest, ``NEGATIVE`` if it is proved that none exists."""
         return ending_of_status(self.status)
 
     @property

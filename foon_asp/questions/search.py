@@ -128,7 +128,7 @@ class Retrieved(Result, AboutGoals, frozen=True, kw_only=True, tag=schema_name("
     def show(self) -> Iterator[Block]:
         """Return the promise of the search, whether its tree executes, and the steps in the order listed.
 
-        Without a tree, a line says why there is none.
+        Without a tree, a line says why no tree was found.
         """
         yield from (*self.goal_lines(), f"{self.search} promises {self.promise}")
         if self.tree is None or self.simulation is None or self.units is None:

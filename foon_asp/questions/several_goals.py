@@ -25,7 +25,7 @@ class GoalsApartTuning(NamedTuple):
 def with_goals_apart(answer: Answer, settings: Settings, posed: Problem) -> Answer:
     """Return an answer with the goals that each unit of its tree is needed for.
 
-    For up to eight goals, the answer also has the optimum for each goal by itself, and the sum of these
+    For up to eight goals, the answer also has the optimum for each goal by itself, and the sum of the optimal
     costs. ``posed`` is the problem that was asked about. If it is over a large store and not all of its units
     were read, the units for each goal are read separately.
     """

@@ -98,7 +98,7 @@ class Shopping(WithAnswer, frozen=True, kw_only=True, tag=schema_name("shopping-
 
     Attributes:
         offer: The nodes that could be bought. With a price list: those with a price (priced). Without one,
-            the first of these sets that is enough: those for sale (for sale), also nodes of a cycle that
+            the first set in this list that is enough: those for sale (for sale), also nodes of a cycle that
             feeds only itself (cycle), all but the dish (processed), all but the goals (dish), or all (goal).
         lists: The lists, the cheapest first. Of lists with one price and number of items, those with the
             fewest mixtures and made things come first, then that with the best tree. Empty if no list helps.
@@ -559,9 +559,9 @@ class _Shopper:
     def _search_without(self, left_out: frozenset[int], reporter: Reporter) -> bool:
         """Add the best list without the wares ``left_out`` to the queue; return false at a limit.
 
-        Nothing is done if the set was searched before. An earlier list that has none of these wares may be
-        the best one again. In that case, the search is done for each item of the earlier list, which is left
-        out as well. At a limit without any list yet, the best list found is kept, unproved.
+        Nothing is done if the set was searched before. An earlier list without any ware in ``left_out`` may
+        be the best one again. In that case, the search is done for each item of the earlier list, which is
+        left out as well. At a limit without any list yet, the best list found is kept, unproved.
         """
         if left_out in self._seen:
             return True

@@ -48,7 +48,8 @@ class StandIn(Value, frozen=True):
         stands_in_for: The node in whose place it is used.
         dissimilarity: What it costs by the table of stand-ins: the sum of the prices of ``edits``.
         edits: The differences between the two nodes.
-        next_best: The cheapest other node in the kitchen or made by the tree; null if there is none.
+        next_best: The cheapest other node in the kitchen or made by the tree; null if no other node may stand
+            in.
     """
 
     unit: int

@@ -98,7 +98,7 @@ _SUFFIXES = {
 class View(Result, frozen=True):
     """A page about an ``answer``, and the picture of its tree; :meth:`write` writes either into a file.
 
-    The page shows each of these fields that is not empty:
+    The page shows the following fields, unless they are empty:
 
     ``answer``: the best tree. A page about a network alone has no answer.
     ``searches``: the results of searches for the same goals.

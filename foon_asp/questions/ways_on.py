@@ -107,7 +107,7 @@ def ways_on(
 
     Parameters:
         problem: The problem: the data, and the goals. Its kitchen is not used.
-        state: What is there: a file, as of a kitchen, or object nodes.
+        state: The object nodes that are available, or a file that lists them as a kitchen file does.
         objectives: What the best tree is best by, the most important first.
 
     Returns:

@@ -66,7 +66,7 @@ def _four_digits(value: Fraction) -> str:
 
 
 def success_texts(values: Sequence[Fraction]) -> list[str]:
-    """Return success rates as texts, in so many digits that different rates have different texts.
+    """Return success rates as texts, with enough digits that different rates have different texts.
 
     All have the same number of significant digits: the least from 4 to 40 that is enough. ``≈`` stands before
     a rounded rate.

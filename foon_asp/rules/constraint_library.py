@@ -14,7 +14,7 @@ class Parameter(NamedTuple):
     """A parameter of a constraint, which is a ``#const`` of its file.
 
     ``own_value`` is its default as written; ``""``, ``#sup`` and ``#inf`` stand for "not set". ``example`` is
-    the value in the example call of the file, empty if there is none.
+    the value in the example call of the file, empty if no example call sets it.
     """
 
     name: str

@@ -88,7 +88,7 @@ _TEXTS: Final[Mapping[str, Callable[[_NetworkPart], Iterable[Names]]]] = {
 
 
 def position_of_wrong_type(columns: Columns, values: Mapping[int, Value]) -> int | None:
-    """Return the first position whose value has the wrong type; ``None`` if there is none.
+    """Return the first position whose value has the wrong type; ``None`` if all types are right.
 
     ``values`` has values by position. A text has the wrong type where a number is expected, a number where a
     text is expected. A value ``None`` always has the wrong type.

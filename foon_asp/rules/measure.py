@@ -56,7 +56,7 @@ class Measure:
         evaluation in another process notices.
 
         Raises :class:`InputError` if rules give a unit two costs, or a cost other than a number from 0.
-        Raises :class:`UserError` if they read success rates and there are none.
+        Raises :class:`UserError` if they read success rates and the problem has no rates.
         """
         from foon_asp.rules.measure_rules import read_rules  # noqa: PLC0415 (takes clingo along)
 

@@ -320,8 +320,8 @@ class _MeasureReader:
     def _has_small_grounding(self, atoms: "_Atoms", dependent: frozenset[Signature]) -> bool:
         """Whether a rule, given by its atoms, can have only few ground instances for each unit.
 
-        Such a rule has no interval, no division and few atoms. At most one of these is over a table, a
-        predicate that depends on no facts.
+        Such a rule has no interval, no division and few atoms. At most one atom is over a table, a predicate
+        that depends on no facts.
         """
         tables = [atom for atom in atoms.used if _signature(atom) not in dependent]
         return (

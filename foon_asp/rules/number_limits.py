@@ -126,7 +126,8 @@ def _postfix(term: AST, leaves: dict[str, AST]) -> Iterator[str]:
 def _safe_magnitude(term: AST) -> int:
     """Return a bound: if no value in a term exceeds it in absolute value, the term cannot overflow.
 
-    It is the greatest such number among ``LARGEST``, its half, its quarter and so on; -1 if there is none.
+    It is the greatest such number among ``LARGEST``, its half, its quarter and so on; -1 if even 0 is no such
+    bound.
     """
     return next(
         (limit for limit in (LARGEST >> n for n in range(32)) if _max_magnitude(term, limit) <= LARGEST), -1
@@ -339,7 +340,7 @@ def _binds(condition: AST) -> bool:
 
 
 def _body_text(conditions: Sequence[AST | str]) -> str:
-    """Return conditions as the body of a rule; ``#true`` if there are none."""
+    """Return conditions as the body of a rule; ``#true`` without conditions."""
     return "; ".join(map(str, conditions)) or "#true"
 
 

@@ -223,8 +223,8 @@ class Analysis:
     def _classify_statement(self, statement: AST, live_clauses: Sequence[Clause]) -> Rule:
         """Return a statement as a rule with its kind and locality.
 
-        ``live_clauses`` are its clauses that can have an effect. If there are none, the rule is a ``FACT`` or
-        a ``HELPER`` with the reason. A statement other than a rule is ``OTHER``, and not local.
+        ``live_clauses`` are its clauses that can have an effect. Without any such clause, the rule is a
+        ``FACT`` or a ``HELPER`` with the reason. A statement other than a rule is ``OTHER``, and not local.
         """
         source = source_of(statement)
         if statement.ast_type != ASTType.Rule:

@@ -281,8 +281,8 @@ def _unlisted_warnings(
 ) -> list[tuple[Clause, str]]:
     """Return warnings for user facts such as ``allergen("milk").`` with a name that is not in the network.
 
-    Each warning comes with the clause of the fact. There is none for a predicate of which some fact has a
-    name in the network.
+    Each warning comes with the clause of the fact. A predicate gets no warning if some fact of it has a name
+    in the network.
     """
     listed: defaultdict[Signature, list[tuple[Clause, str]]] = defaultdict(list)
     for clause in program:

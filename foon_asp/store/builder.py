@@ -36,7 +36,7 @@ class StoreBuilder:
     """A builder that writes units into a new database; it merges copies of a unit and keeps all sources.
 
     ``kitchen``: the entries of the kitchen file; ``None`` without such a file.
-    ``matched``: for each of these entries, whether a node added so far matches it.
+    ``matched``: for each entry of ``kitchen``, whether a node added so far matches it.
     ``copy_count``: the number of copies of units added so far.
 
     Nodes and units get the ids that :class:`~foon_asp.network.NetworkBuilder` would give them. The ids of all

@@ -40,8 +40,8 @@ def content_digests(
 
     They are equal to those of :meth:`foon_asp.proof.certificate_subject.Subject.digests`.
 
-    ``motions``: the
-    prices by motion, ``priced``: the prices of single units by id; ``None`` if there are none.
+    ``motions``: the prices by motion, ``priced``: the prices of single units by id; ``None`` for prices that
+    do not exist.
     """
 
     def column(statement: str) -> Iterable[str]:

@@ -118,7 +118,7 @@ def _assumed_goals(
 ) -> tuple[list[ListedObject], str]:
     """Return the goals that are assumed without a goals file, and the name of their origin.
 
-    They are the marked goals, or if there are none, the final outputs of ``last_units``.
+    They are the marked goals. If no goal is marked, they are the final outputs of ``last_units``.
     """
     if reader.marked:
         return [goal_entry(node, source) for node, source in reader.marked.items()], MARKED

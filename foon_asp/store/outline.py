@@ -22,8 +22,8 @@ _LABELLED = "label = (SELECT id FROM label WHERE name = ?)"
 class Outline:
     """The units of a store: their motions, inputs and outputs as arrays. Ids are those in the whole network.
 
-    A mask is an array of booleans, one for each unit, node or list; it stands for the set of those that are
-    true.
+    A mask is an array of booleans, one for each unit, node or list. It stands for the set of all units, nodes
+    or lists whose value is true.
     """
 
     def __init__(
@@ -169,8 +169,8 @@ class Outline:
     def units_leading_to(self, units: Mask, available: Mask, candidates: Mask) -> Mask:
         """Return the mask of ``units`` and of the candidates through which their inputs can be made.
 
-        These candidates produce an input of ``units`` that is not ``available``, or such an input of another
-        of these candidates, and so on.
+        A candidate is in the mask if it produces a node that is not ``available`` and that is an input of
+        another unit in the mask.
         """
         mask = units.copy()
         new = np.flatnonzero(mask)
@@ -234,7 +234,7 @@ class _Lists:
     def positions_of(self, lists: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Return the positions in ``entries`` of all entries of some lists, and for each position its list.
 
-        ``lists`` are the numbers of these lists.
+        ``lists`` are the numbers of the lists.
         """
         lengths = self._lengths[lists].astype(np.int64)
         owners = np.repeat(lists, lengths)

@@ -416,7 +416,7 @@ class Store:
     def producers_of(self, objects: Sequence[int]) -> list[list[int]]:
         """Return, for each of the nodes, the ids of the units that have it as an output, ascending.
 
-        All are read in one query, and the rows of these units are kept.
+        All producers are read in one query, and their rows are kept.
         """
         rows = self.file.rows(
             "SELECT node, id, motion, inputs, outputs FROM producer JOIN unit ON id = unit WHERE node IN ids "

@@ -34,7 +34,7 @@ SCHEMA = (
 ``about``: counts, and what stands beside the network, by name. ``label``: labels, in UTF-8. ``node``: object
 nodes, and whether each is in the kitchen that was imported and in the starting kitchen. ``producer``: the
 units that have a node among their outputs. ``origin``: a file with its videos; ``source``: where each copy of
-a unit was read. ``granted``: the files by which a node is in the starting kitchen though a unit of theirs
+a unit was read. ``granted``: the files by which a node is in the starting kitchen though a unit of the file
 makes it. ``price``: what the networks state for a unit, and what the imported file of prices does.
 ``outline``: motions, inputs and outputs of all units once more, as 32-bit numbers, least byte first.
 """

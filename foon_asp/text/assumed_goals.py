@@ -13,7 +13,7 @@ def final_outputs(inputs: Sequence[int], outputs: Sequence[int], needed: Iterabl
 
     All arguments are ids of nodes: the ``inputs`` and ``outputs`` of the last unit, and as ``needed`` the
     inputs of all units. If every output is needed, the outputs that are not among ``inputs`` are returned. If
-    there are none of these, all ``outputs`` are.
+    every output is among ``inputs``, too, all ``outputs`` are returned.
     """
     needed = set(needed)
     return [o for o in outputs if o not in needed] or [o for o in outputs if o not in inputs] or [*outputs]
@@ -28,7 +28,7 @@ def last_goals(network: Network, last_units: Mapping[int, Source]) -> list[Liste
     """Return the final outputs of the last unit of each file, each once, as entries of a goals file.
 
     ``last_units`` maps the id of the last unit of each file to its source. An entry gets the source of the
-    first of these units that makes its node.
+    first unit in ``last_units`` that has its node as a final output.
     """
     outputs = {o for unit in last_units for o in network.outputs[unit]}
     needed = {o for inputs in network.inputs for o in inputs if o in outputs}

@@ -270,7 +270,7 @@ def amounts_of_items(names: NodeNames, items: Iterable[ListedObject]) -> dict[Ob
 
 
 def unit_prices(stated: StatedPrices, price_list: UnitPriceList | None) -> UnitPrices | None:
-    """Return the prices of units, or ``None`` if there are none.
+    """Return the prices of units; ``None`` if no file is given and no network states a price.
 
     ``price_list`` has the prices of a file. They take precedence over those ``stated`` in networks. Raises
     :class:`InputError` if copies of a unit state different prices and the list has none for the unit.

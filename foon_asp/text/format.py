@@ -138,7 +138,7 @@ class Writer(Protocol):
         """Return the text of a file from the texts of its units and from its source videos."""
 
     def objects(self, parts: Sequence[str]) -> str:
-        """Return the text of a list of objects from the texts of these objects."""
+        """Return the text of a list of objects; ``parts`` are the texts of its objects."""
 
     def held_videos(self, videos: tuple[str, ...], comments: Sequence[str]) -> tuple[str, ...]:
         """Return those of ``videos``, the videos of all units, that the written file can name.

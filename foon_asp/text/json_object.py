@@ -269,7 +269,7 @@ def _state_line(value: object) -> StateLine:
 def _add_contents(states: list[StateLine], ingredients: tuple[str, ...]) -> list[StateLine]:
     """Return the states with contents of the word ``contains``.
 
-    The contents take the place of the first state ``contains``, or come last if there is none.
+    The contents take the place of the first state ``contains``, or come last if no state is ``contains``.
     """
     contents = Contents(LISTED_UNDER, tuple(sorted(ingredients)))
     for index, state in enumerate(states):

@@ -193,7 +193,8 @@ def _checked_flag_and_tag(
 ) -> tuple[str, ...]:
     """Return the fields after a label: a motion flag, then the category or the ``!`` of a goal.
 
-    The slips ``00`` and ``01`` of a flag are mended. Adds a remark for each field that is none of these.
+    The slips ``00`` and ``01`` of a flag are mended. Adds a remark for each slip, and for each field that is
+    neither a flag, a category nor ``!``.
     """
     field_tokens = [token for token in tokens[2:] if token.strip("\t ")]
     flag = fields[0]

@@ -122,7 +122,7 @@ def node_of_entry(entry: ListedObject, names: NodeNames) -> int:
 def nodes_of_entry(entry: ListedObject, names: NodeNames) -> Sequence[int]:
     """Return the ids of the nodes that match an entry of a goals file.
 
-    Raises :class:`GoalError` with similar candidates if there are none.
+    Raises :class:`GoalError` with similar candidates if no node matches.
     """
     nodes = names.find(entry.pattern)
     if not nodes:

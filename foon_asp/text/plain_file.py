@@ -97,7 +97,7 @@ def map_lines(text: str, write: Callable[[str], str]) -> str:
 
 
 def usual_line_end(text: str) -> str:
-    """Return the line end that most lines of a text have; a line feed if there is none."""
+    """Return the line end that most lines of a text have; a line feed if the text has no line end."""
     ends = _LINE_END.findall(text)
     return max(("\n", "\r\n", "\r"), key=ends.count)
 

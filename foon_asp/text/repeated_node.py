@@ -14,7 +14,7 @@ class RepeatedNode(NamedTuple):
 
 
 def repeated_node(inputs: Sequence[ObjectNode], outputs: Sequence[ObjectNode]) -> ObjectNode | None:
-    """Return the first node that is listed twice on one side of a unit, ``None`` if there is none."""
+    """Return the first node that one side of a unit lists twice; ``None`` if no side repeats a node."""
     for nodes in (inputs, outputs):
         labels = {node.label for node in nodes}  # mostly enough, and strings keep their hashes
         if len(labels) < len(nodes) and len(set(nodes)) < len(nodes):
@@ -23,7 +23,7 @@ def repeated_node(inputs: Sequence[ObjectNode], outputs: Sequence[ObjectNode]) -
 
 
 def repeated_note(repeated: Sequence[RepeatedNode]) -> list[str]:
-    """Return a note about all repeated nodes, one line in a list; an empty list if there are none."""
+    """Return a note about all repeated nodes, one line in a list; an empty list without repeated nodes."""
     if not repeated:
         return []
     first = repeated[0]

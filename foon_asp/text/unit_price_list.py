@@ -15,7 +15,7 @@ _ARROWS = ("→", "->")
 
 
 class UnitPriceList(NamedTuple):
-    """The prices of a file by motion and by single unit, and the ``sources`` of those of single units."""
+    """The prices in a file: of ``motions``, and of single ``units`` with the ``sources`` of their prices."""
 
     motions: dict[str, Fraction]
     units: dict[FunctionalUnit, Fraction]

@@ -29,7 +29,8 @@ class Table(NamedTuple, Generic[K, V]):
     ``expected``: the noun for the value after the tab; empty for a table of one column.
     ``row``: a function that reads a row. Its parameters are the name, the text after the tab, and the column
     of this text. It returns name and value as read, or raises :class:`LineError`.
-    ``second``: the message about a name with two values, with ``{name}`` and ``{value}`` in place of these.
+    ``second``: the message about a name with two values; ``{name}`` stands for the name, ``{value}`` for the
+    later value.
     """
 
     code: str
