@@ -37,7 +37,7 @@ class ItemClaims(NamedTuple):
 
 
 class Verified(NamedTuple):
-    """What a certificate proves about the data it was checked with.
+    """The claim that a certificate proves about the data that it was checked with.
 
     ``claim`` is one of three. ``optimal``: no tree is better than ``tree`` by the ``objectives``, most
     important first. ``bound``: no tree costs less than the certificate's bound. ``infeasible``: there is no

@@ -381,8 +381,8 @@ PARTS = {
         at_least("1", {"balance": [[SALT, "1"]]}, **goals(PLAIN, SALT)),
     ),
     "what costs less than two is executed once, at most": Part(
-        "math.ceil(max_cost / per_execution) - 1 if exact",
-        "math.ceil(max_cost / per_execution) - 2 if exact",
+        "math.ceil(max_cost / per_execution) - 1 if is_strict",
+        "math.ceil(max_cost / per_execution) - 2 if is_strict",
         at_least("2", {"balance": [[DOUGH, "2"]]}, **goals(PLAIN, DOUGH)),
     ),
     "what never runs out can be taken": Part(
@@ -421,7 +421,7 @@ PARTS = {
         plain(items=items([[SALT, 0]])),
     ),
     "a goal in stock is taken of it": Part(
-        "least[goal] = max(least[goal], wanted + self.stock[goal] - copies[goal])",
+        "initial_needed[goal] = max(initial_needed[goal], wanted + self.stock[goal] - copies[goal])",
         "pass",
         plain(objective=["kitchen"], **goals(PLAIN, SALT), tree=[], costs=[0], proof=[{}]),
     ),
