@@ -91,7 +91,9 @@ def coverage(settings: Settings) -> Coverage:
         for name in values_by_predicate.keys() & LIBRARY[stem].values.keys():
             values_by_predicate[name] |= {string_constant(constants_given.get(LISTED[name], ""))} - {""}
     if "heats" in values_by_predicate:  # which begins with motions of the ready-made constraint
-        values_by_predicate["heats"] |= _facts_of_rules(find_constraint(Path("never_heated")), among_others=True)["heats"]
+        values_by_predicate["heats"] |= _facts_of_rules(
+            find_constraint(Path("never_heated")), among_others=True
+        )["heats"]
     uncovered: list[str] = []
     for constraint in others:
         listed_facts = _facts_of_rules(constraint) if values_by_predicate else {}
@@ -104,7 +106,9 @@ def coverage(settings: Settings) -> Coverage:
     for stem, constants_given in uses:
         types_by_name = LIBRARY[stem].values.items()
         values = {
-            name: sorted(values_by_predicate[name]) if value_type is list else _parsed_value(constants_given.get(name, ""), value_type)
+            name: sorted(values_by_predicate[name])
+            if value_type is list
+            else _parsed_value(constants_given.get(name, ""), value_type)
             for name, value_type in types_by_name
         }
         if all(value not in (None, "", []) for value in values.values()):
@@ -188,7 +192,7 @@ def without_unused_claims(
 
 
 def _limit_json(amounts: Mapping[int, Fraction], max_sum: Fraction) -> list[Any]:
-    """Return the JSON of a limit: units by their amount, and the greatest sum, such as ``[{"1": [3, 8]}, 1]``."""
+    """Return the JSON of a limit: units by their amount, and the greatest sum: ``[{"1": [3, 8]}, 1]``."""
     units: dict[str, list[int]] = {}
     for unit in sorted(amounts):
         units.setdefault(str(amounts[unit]), []).append(unit)
