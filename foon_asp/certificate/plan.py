@@ -214,13 +214,13 @@ class _PlanQuestion:
 
     def _claim(self, objective: Objective) -> Claim:
         """Return the claim that no plan costs less than the plan in hand by an objective."""
-        problem, figures = self._problem, self._unit_costs(objective)
+        problem, unit_costs = self._problem, self._unit_costs(objective)
         if multiplies(objective):
-            rates = sorted({rate for rate in figures if rate != 1}) or [_HALF]
+            rates = sorted({rate for rate in unit_costs if rate != 1}) or [_HALF]
             order = Lexicographic([rates])
             counts = Counter(problem.rate(unit) for unit in self._plan)
             least = tuple(Fraction(counts[rate]) for rate in rates)
-            costs = [tuple(Fraction(rate == own_rate) for own_rate in rates) for rate in figures]
+            costs = [tuple(Fraction(rate == own_rate) for own_rate in rates) for rate in unit_costs]
             plan_cost = order.approximate(least)[0]
             float_costs = (order.approximate(cost)[0] for cost in costs)
             caps = [math.floor(plan_cost / cost + 1e-6) if cost else None for cost in float_costs]
@@ -229,10 +229,10 @@ class _PlanQuestion:
         parts = None
         if objective not in problem.measures:
             all_unit_costs = problem.figures(objective, range(len(problem.network)))
-            parts = math.lcm(*(Fraction(figure).denominator for figure in all_unit_costs))
-        caps = [math.ceil(cost / figure) - 1 if figure else None for figure in figures]
+            parts = math.lcm(*(Fraction(unit_cost).denominator for unit_cost in all_unit_costs))
+        caps = [math.ceil(cost / unit_cost) - 1 if unit_cost else None for unit_cost in unit_costs]
         order = Lexicographic([None])
-        return Claim(order, [(f,) for f in figures], (Fraction(objective.row.item),), (cost,), parts, caps)
+        return Claim(order, [(f,) for f in unit_costs], (Fraction(objective.row.item),), (cost,), parts, caps)
 
     def _level(self, objective: Objective) -> tuple[Level, int] | None:
         """Return the level of an objective in integers, and the scale of the integers.
@@ -240,16 +240,16 @@ class _PlanQuestion:
         The level is the condition that a plan costs no more than the plan in hand. Return ``None`` if the
         integers would be too long.
         """
-        figures = self._unit_costs(objective)
+        unit_costs = self._unit_costs(objective)
         if multiplies(objective):
-            costs = [_scaled_minus_log(rate, up=False) for rate in figures]
+            costs = [_scaled_minus_log(rate, up=False) for rate in unit_costs]
             max_cost = sum(_minus_log_bound(self._problem.rate(unit), up=True) for unit in self._plan)
             return Level(Measure(costs), Fraction(0), math.ceil(LOGARITHM_SCALE * max_cost)), LOGARITHM_SCALE
         cost = Fraction(self._problem.costs(self._plan).measure(objective))
-        scale = math.lcm(cost.denominator, *(figure.denominator for figure in figures))
-        if scale * max(figures, default=0) > 10**9:  # conditions would be written with longer numbers
+        scale = math.lcm(cost.denominator, *(unit_cost.denominator for unit_cost in unit_costs))
+        if scale * max(unit_costs, default=0) > 10**9:  # conditions would be written with longer numbers
             return None
-        measure = Measure([int(scale * figure) for figure in figures], scale * objective.row.item)
+        measure = Measure([int(scale * unit_cost) for unit_cost in unit_costs], scale * objective.row.item)
         return Level(measure, scale * cost, int(scale * cost)), scale
 
     # --- writing

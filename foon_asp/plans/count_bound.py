@@ -197,7 +197,7 @@ class CountBound:
             x = model.program.solve(objective).x
             if x is None or not self._separate(x, model, at_root=True):
                 break
-        columns = {*range(model.program.columns)}
+        columns = {*range(model.program.column_count)}
         if not self._excluded_counts:
             columns.difference_update(range(self._action_count, 2 * self._action_count))
         if x is None or any(abs(x[column] - round(x[column])) > INTEGRALITY for column in columns):
