@@ -61,8 +61,12 @@ class Certificate(NamedTuple):
                 value_text = "[\n" + ",\n".join("  " + json_line(cut) for cut in value) + "\n ]"
             elif key == "proof" and isinstance(value, dict) and value.get("weights"):
                 pairs = ",\n".join("  " + json_line(pair) for pair in value["weights"])
-                other_parts = {name: part for name, part in value.items() if name != "weights"}
-                suffix = "".join(f', "{name}": {json_line(part)}' for name, part in other_parts.items())
+                other_entries = {
+                    name: proof_entry for name, proof_entry in value.items() if name != "weights"
+                }
+                suffix = "".join(
+                    f', "{name}": {json_line(proof_entry)}' for name, proof_entry in other_entries.items()
+                )
                 value_text = f'{{"weights": [\n{pairs}\n ]{suffix}}}'
             else:
                 value_text = json_line(value)

@@ -160,11 +160,11 @@ def _cost_contradiction(
 def _read_vector(arrays: Arrays, stated: Sequence[Any]) -> Vector:
     """Return a bound as a cost vector, from its JSON."""
     vector: list[Fraction] = []
-    for objective, part in zip(arrays.objectives, stated, strict=True):
+    for objective, stated_value in zip(arrays.objectives, stated, strict=True):
         if multiplies(objective):
-            vector += [Fraction(part.get(str(rate), 0)) for rate in arrays.rates]
+            vector += [Fraction(stated_value.get(str(rate), 0)) for rate in arrays.rates]
         else:
-            vector.append(Fraction(part))
+            vector.append(Fraction(stated_value))
     return tuple(vector)
 
 

@@ -268,7 +268,9 @@ class _PlanQuestion:
 
         A new condition is added, after the rounded conditions that it is a sum of.
         """
-        number = next((i for i, known in enumerate(self._rounded) if known is condition), None)
+        number = next(
+            (i for i, earlier_condition in enumerate(self._rounded) if earlier_condition is condition), None
+        )
         if number is not None:
             return number
         by_kind: dict[str, dict[int, Fraction]] = {}

@@ -78,7 +78,8 @@ def _read_row(name: str, value: str, column: int) -> tuple[Entry, Fraction | Non
 def _read_edit(name: str) -> Edit | tuple[Edit, str]:
     """Return the edit of a name such as ``word`` or ``more state: dirty``; in the latter case, a pair.
 
-    The pair has the edit, and the state or ingredient after the colon. Raises :class:`LineError` for other names.
+    The pair has the edit, and the state or ingredient after the colon. Raises :class:`LineError` for other
+    names.
     """
     kind, colon, word = (text.strip() for text in name.partition(":"))
     if kind not in (_NAMED if colon else _KINDS) or (colon and not word):

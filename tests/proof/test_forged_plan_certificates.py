@@ -391,7 +391,7 @@ PARTS = {
         at_least("2", floured("2"), **FLOURED),
     ),
     "what is asked for is taken of the kitchen": Part(
-        "yield from [len(network) + o] * counted",
+        "yield from [len(network) + o] * items_count",
         "yield from ()",
         at_least("2", floured("2"), **FLOURED),
     ),
