@@ -530,10 +530,11 @@ class PlanCheck(Check):
     def _cost_denominator(self, level: int) -> int | None:
         """Return the least common denominator of the costs of units by an objective.
 
-        Return ``None`` if the objective is ``success`` or a measure.
+        Return ``None`` if the objective is ``success``, ``dissimilarity`` or a measure: bounds by these are
+        not rounded.
         """
         objective = self.objectives[level]
-        if objective == "success" or objective in self.unit_costs.measures:
+        if objective in {"success", "dissimilarity"} or objective in self.unit_costs.measures:
             return None
         if objective == "price":
             costs = self.unit_costs.prices
