@@ -77,9 +77,9 @@ class Subject(NamedTuple):
 
 
 def _network_data(network: Network) -> list[Any]:
-    """Return all that a claim about a network can depend on, as lists that JSON can write.
+    """Return all that a claim about a network can depend on, except sources, as lists that JSON can write.
 
-    Below level 3, this includes the network of level 3.
+    Below level 3, the network of level 3 is included.
     """
     nodes = [
         (label, sorted(states), sorted(relations), contents)

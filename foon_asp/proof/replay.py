@@ -55,7 +55,8 @@ class Replay(NamedTuple):
     ``steps``: the steps that ran, in order.
     ``shortage``: the shortage that stopped the replay; ``None`` if the plan runs and makes the goals.
     ``left``: the consumable copies that exist after the last step, from the stock or made by steps.
-    ``stock``: for each node with a finite stock, the number of initial copies that the plan needs.
+    ``stock``: for each node with a finite stock, the number of initial copies that the plan needs. The step
+    that lacks copies is included.
     """
 
     steps: tuple[Step, ...]
@@ -88,8 +89,8 @@ def replayable_problem(problem: Problem, plan: Iterable[FunctionalUnit]) -> Prob
 def predecessors(replay: Replay) -> Iterator[set[int]]:
     """Yield for each step, in order, the positions of the earlier steps that have to be done before it.
 
-    Such an earlier step made a copy that the step needs, or it needed, and did not use up, a copy that the
-    step uses up. Endless nodes cause no order, since another copy always exists.
+    To *read* a copy is to need it and not to use it up. Such an earlier step made a copy that the step needs,
+    or it read a copy that the step uses up. Endless nodes cause no order, since another copy always exists.
     """
     readers: dict[tuple[Copy, int], set[int]] = {}
     spent: Counter[Copy] = Counter()  # how often an equal copy was used up
@@ -105,10 +106,10 @@ def predecessors(replay: Replay) -> Iterator[set[int]]:
 
 
 def shared_readers(replay: Replay, is_free: Callable[[str], bool]) -> list[tuple[int, ...]]:
-    """Return the positions of the steps that need one and the same copy and do not use it up.
+    """Return, for each copy that two or more steps read, the positions of these steps, ascending.
 
-    There is a tuple for each copy that two or more steps need so. Copies of endless nodes are omitted, which
-    the kitchen has and the stock does not count. Copies with a label that ``is_free`` accepts are omitted.
+    To *read* a copy is to need it and not to use it up. Copies of endless nodes are omitted: the kitchen has
+    them, and the stock does not count them. Copies with a label that ``is_free`` accepts are omitted as well.
     """
     readers: dict[tuple[Copy, int], list[int]] = {}
     spent: Counter[Copy] = Counter()  # as in predecessors
@@ -149,7 +150,7 @@ class _Kitchen:
     def run(self, plan: Sequence[FunctionalUnit]) -> Replay:
         """Execute the units in order, up to the first that lacks a copy, and return the replay.
 
-        If all units run, a goal that lacks copies is the shortage.
+        If all units run, the shortage is that of the first goal that lacks copies.
         """
         steps: list[Step] = []
         shortage: Shortage | None = None
@@ -218,5 +219,5 @@ class _Kitchen:
         return [self._copies[node].popleft() for _ in range(amount)]
 
     def _shortage(self, step: int | None, node: ObjectNode, amount: int) -> Shortage:
-        """Return a shortage at a step of a node with ``amount`` needed copies; consumers are those so far."""
+        """Return the shortage of a node of which a step needs ``amount`` copies, with its consumers so far."""
         return Shortage(step, node, tuple(self._consumers_of.get(node, ())), amount)

@@ -125,7 +125,7 @@ def meaning_of_rule(rule: Rule, question: Question) -> Meaning:
 def sources_read(rule: Rule, network: Network) -> list[list[str]] | None:
     """Return for each unit, by id, what a rule reads of the unit's sources, sorted.
 
-    ``None`` if the rule reads no sources.
+    Return ``None`` if the rule reads no sources.
     """
     read_sources = None if rule["rule"] in {OWN, ALL_STEPS} else LIBRARY[rule["rule"]].read_sources
     if read_sources is None:

@@ -30,7 +30,8 @@ class Actions(NamedTuple):
 class StandInClaim(NamedTuple):
     """The part of a certificate's claim that concerns stand-ins.
 
-    ``by_dissimilarity``: whether dissimilarity is the first objective.
+    ``by_dissimilarity``: whether dissimilarity is the first objective, or there are no objectives, and there
+    are no rules.
     ``bound``: the claimed lower bound on the dissimilarity of trees. ``None`` if nothing is claimed of it, or
     if the claim is that there is no tree.
     """

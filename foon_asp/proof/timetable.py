@@ -62,8 +62,8 @@ class ScheduleResources(NamedTuple):
     def is_limited(self, problem: Problem, label: str) -> bool:
         """Return whether objects of a label are tools in limited number, so that steps may wait for them.
 
-        They are if ``tools`` has a number for the label, or lists a node with it. A utensil is limited unless
-        ``tools`` says that its number is unlimited.
+        If ``tools`` lists the label, they are unless it says that their number is unlimited. Otherwise, they
+        are if ``tools`` lists a node with the label, or if the label is a utensil.
         """
         if label in self.tools:
             return self.tools[label] is not None

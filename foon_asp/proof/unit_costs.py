@@ -46,7 +46,8 @@ class UnitCosts:
     ``fractional_rates``: these rates, without 0 and 1.
     ``prices``: the price of each unit, by id; empty unless ``price`` is an objective.
     ``trusted_costs``: the stated costs that were used so far, by measure and unit id.
-    ``are_multiples``: a cached function; see ``_are_multiples``.
+    ``are_multiples``: a cached function from the index of an objective and a number. It returns whether all
+    costs by the objective are multiples of the number.
     """
 
     def __init__(self, certificate: Mapping[str, Any], subject: Subject, budget: StepBudget) -> None:

@@ -66,8 +66,9 @@ class UnitFlows:
         """Return how many of the ``amount`` copies of an input remain after a unit has run.
 
         The certificate may state that all or none remain. Otherwise, an output with the label of the input
-        decides: the ``made`` copies of the same node remain, at most ``amount``. Without such an output, the
-        rule for utensils and places decides (:meth:`_stays_by_rule`).
+        decides: if the input is an output itself, ``made`` copies of it remain, but at most ``amount``; if
+        not, none remain. Without such an output, the rule for utensils and places decides
+        (:meth:`_stays_by_rule`).
         """
         objects, network = self.network.objects, self.network
         node = objects[o]

@@ -104,10 +104,10 @@ def _shortage_as_listed(
 def _total_shortage(
     steps: Sequence[Execution], stock: Mapping[ObjectNode, int], goals: Mapping[ObjectNode, int]
 ) -> Shortage | None:
-    """Return a shortage that every order has: more copies of a node are used up than exist in total.
+    """Return a shortage that every order of the steps has; ``None`` without one.
 
-    The total is the stock and the copies that all steps add. The other such shortage is of a goal: steps use
-    up copies of it, and all steps together leave fewer than are wanted. Return ``None`` without a shortage.
+    A node has such a shortage if more copies of it are used up than exist in total: in stock and added by any
+    step. A goal has one if steps use up copies of it, and all steps together leave fewer than are wanted.
     """
     copies = dict(stock)
     for step in steps:

@@ -456,34 +456,34 @@ class Check:
         return first + read_number(number, steps, "the number of a step")
 
     def read_weights(
-        self, key: str, stated: Any, read: Callable[[Any], Amount], numbers: int = 1
+        self, key: str, stated: Any, read: Callable[[Any], Amount], name_length: int = 1
     ) -> Iterator[tuple[list[int], Amount]]:
         """Yield the weighted conditions under a key of a proof; refuse weights that are not above 0.
 
-        A row names its condition by its first ``numbers`` entries, which are yielded as a list, and has the
-        weight last. ``read`` turns the stated weight into an amount.
+        A row names its condition by its first ``name_length`` entries, which are yielded as a list, and has
+        the weight last. ``read`` turns the stated weight into an amount.
         """
-        for name, value in self.read_rows(key, stated, numbers):
+        for name, value in self.read_rows(key, stated, name_length):
             weight = read(value)
             require(self.arithmetic.sign(weight) > 0, f"{key}: a weight is not above zero")
             yield name, weight
 
-    def read_rows(self, key: str, stated: Any, numbers: int = 1) -> Iterator[tuple[list[int], Any]]:
-        """Yield rows under a key: their first ``numbers`` entries as a list, and the last entry.
+    def read_rows(self, key: str, stated: Any, name_length: int = 1) -> Iterator[tuple[list[int], Any]]:
+        """Yield rows under a key: their first ``name_length`` entries as a list, and the last entry.
 
         Refuse rows of another length, and first entries that are no whole numbers or do not ascend from row
         to row. ``key`` names the rows in errors.
         """
         rows = [read_list(row) for row in read_list(stated)]
-        names = [row[:numbers] for row in rows]
+        names = [row[:name_length] for row in rows]
         require(
-            all(len(row) == numbers + 1 for row in rows)
+            all(len(row) == name_length + 1 for row in rows)
             and all(type(number) is int for name in names for number in name),
             f"{key}: expected what has a weight by its number, and the weight",
         )
         in_order = names == sorted(map(list, {*map(tuple, names)}))
         require(in_order, f"{key}: expected weights in order, each once")
-        yield from ((name, row[numbers]) for name, row in zip(names, rows, strict=True))
+        yield from ((name, row[name_length]) for name, row in zip(names, rows, strict=True))
 
     def limit_at(self, number: int) -> Limit:
         """Return the limit with this number (:class:`CompiledRules`); refuse a number without a limit."""

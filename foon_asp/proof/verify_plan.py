@@ -596,13 +596,13 @@ class _FarkasCombination:
             self._add_to_constant(weight, -check.claimed_cost(number))
             self.levels.append((number, weight))
 
-    def _weighted_rows(self, key: str, numbers: int = 1) -> Iterator[tuple[list[int], Amount]]:
+    def _weighted_rows(self, key: str, name_length: int = 1) -> Iterator[tuple[list[int], Amount]]:
         """Yield the weighted conditions under a key: the numbers that name each, and its weight.
 
-        ``numbers`` says how many numbers name a condition.
+        ``name_length`` is how many numbers name a condition.
         """
         read = partial(self.check.read_weight, level=self.level)
-        return self.check.read_weights(key, self.proof.get(key, []), read, numbers)
+        return self.check.read_weights(key, self.proof.get(key, []), read, name_length)
 
     def _add_cut(self, cut: int, weight: Amount, holds: bool) -> None:
         """Add the condition of a cut: a member is executed, or a copy of an item in it is taken.
@@ -629,6 +629,7 @@ class _FarkasCombination:
         """Add the condition that the unit ``supplied`` gets the copies of a node that it needs.
 
         These copies are initial or added by other units, since the unit adds none before its first execution.
+        Refuse an endless node.
         """
         check, network = self.check, self.check.network
         read_number(o, range(len(network.objects)), "the id of a node in a supply")
@@ -669,7 +670,7 @@ class _FarkasCombination:
 
 
 def _round_row(coefficients: Mapping[int, Fraction], least: Fraction) -> Row:
-    """Return a row that all whole counts from 0 satisfy that satisfy the given row (mixed-integer rounding).
+    """Return a row that follows from the given one for whole counts from 0 (mixed-integer rounding).
 
     The given row has coefficients by unit, and the lower bound ``least`` on the weighted sum. A whole
     ``least`` is refused.
