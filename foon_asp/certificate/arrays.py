@@ -36,7 +36,7 @@ class Arrays:
         self.problem, self.objectives = problem, tuple(objectives)
         self.rates = sorted({r for r in self._rates() if r != 1}) if Objective.SUCCESS in objectives else []
         self.order = Lexicographic([self.rates if multiplies(o) else None for o in objectives] or [None])
-        self.ruled = covered.ruled(problem)
+        self.ruled = covered.compile_rules(problem)
         self._own_limits = covered.limits
         self._first_own_limit = len(covered.rules)  # the number of the first limit beyond those of the rules
         for limit in covered.limits.found_limits if covered.limits else ():
@@ -94,7 +94,7 @@ class Arrays:
         return multiples
 
     def multiple_json(self, coordinate: int) -> dict[str, str]:
-        """Return the JSON of ``multiples`` at a coordinate, by objective: ``{"units": "1"}``."""
+        """Return the JSON of the common divisor of costs at a coordinate: ``{"units": "1"}``."""
         coordinates = [
             str(objective) for objective in self.objectives for _ in range(self.coordinate_count(objective))
         ]
@@ -189,8 +189,7 @@ class Arrays:
         """Return the JSON of a cost or weight, with one part for each objective.
 
         A part is a fraction as text or, for ``success``, the exponents other than 0, by rate. Without
-        objectives, it has one fraction. Raises :class:`LimitError` as
-        :func:`fraction_text` does.
+        objectives, it has one fraction. Raises :class:`LimitError` as :func:`fraction_text` does.
         """
         if not self.objectives:
             return [fraction_text(vector[0])]

@@ -90,7 +90,7 @@ def certify(
         problem: The problem; its network may be a part of a larger one (see ``subject``).
         objectives: The objectives, the most important first.
         units: The tree, by unit ids in an executable order.
-        covered: The user rules that the certificate states, and what they claim.
+        covered: The constraints that the certificate covers, and the names of the others.
         expired: Returns whether time is up.
         cuts: Sets of object nodes with a goal in each, tried first (:attr:`foon_asp.asp.Outcome.cuts`).
         cases: The case split to begin with (``Outcome.cases``); ``None`` for none.

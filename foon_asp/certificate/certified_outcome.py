@@ -91,10 +91,10 @@ def _find_certificate(
         return certify_infeasible(outcome.problem, covered, expired, subject)
     if outcome.status is not Status.OPTIMAL or outcome.units is None:
         return None
-    wanted = levels(outcome.objectives)
+    objectives = levels(outcome.objectives)
     try:
         return certify(
-            outcome.problem, wanted, outcome.units, covered, expired, outcome.cuts, subject, outcome.cases
+            outcome.problem, objectives, outcome.units, covered, expired, outcome.cuts, subject, outcome.cases
         )
     except NotBestError as better:
         why = f"there is a better tree, {_tree_text(outcome, better.units)}"

@@ -43,11 +43,14 @@ class Coverage(NamedTuple):
 
     @property
     def partial(self) -> bool:
-        """Whether some constraints are not covered, so that trees may have to keep to more than ``rules``."""
+        """Whether trees may have to keep to more than ``rules`` says.
+
+        They may if some constraints are not covered, or if user rules are covered by claims.
+        """
         return bool(self.not_covered) or any(rule["rule"] == OWN for rule in self.rules)
 
-    def ruled(self, problem: Problem) -> CompiledRules:
-        """Return the rules compiled into the network of a problem."""
+    def compile_rules(self, problem: Problem) -> CompiledRules:
+        """Return the covered rules, compiled for the network of a problem."""
         question, nodes = question_of(problem), len(problem.network.objects)
         return CompiledRules(
             [meaning_of_rule(rule, question) for rule in self.rules], nodes, len(problem.network) + nodes
@@ -55,7 +58,7 @@ class Coverage(NamedTuple):
 
     def forbidden_units(self, problem: Problem) -> frozenset[int]:
         """Return the units of a problem, by id, that covered rules remove."""
-        return self.ruled(problem).removed
+        return self.compile_rules(problem).removed
 
     def rules_beyond_removal(self) -> list[str]:
         """Return the names of covered ready-made rules that may do more than remove units."""
@@ -69,7 +72,7 @@ def coverage(settings: Settings) -> Coverage:
     """Return the constraints of a question, divided into those that a certificate covers and the others.
 
     Ready-made constraints are covered, with the values that were set. They are omitted if a value is missing,
-    since they then exclude nothing. Rules that only list values of them as facts are counted as their values.
+    since they then exclude nothing. Rules that only list such values, as facts, add them to the values.
 
     Other rules only exclude trees, so a bound without them still holds. Constants that nothing covered reads
     are named as not covered. A replaced encoding may do anything, and is named as not covered. Under a
@@ -155,7 +158,7 @@ def _facts_of_rules(constraint: Constraint, among_others: bool = False) -> dict[
 
 
 def _name_with_digest(constraint: Constraint) -> str:
-    """Return the name of rules and their digest in one line; rules given as text are added to it."""
+    """Return the name of rules and their digest, and their text if they were given as text, as one text."""
     if isinstance(constraint, RuleText):
         return (
             f"{constraint.name} {_sha256(constraint.text.encode('utf-8', 'surrogatepass'))} {constraint.text}"

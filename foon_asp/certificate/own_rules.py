@@ -47,7 +47,7 @@ def with_own_rules(covered: Coverage, problem: Problem, settings: Settings) -> C
     if isinstance(restriction, Contradiction):
         claims.append([[], []])
     else:
-        compiled = covered.ruled(problem)
+        compiled = covered.compile_rules(problem)
         required = {frozenset(makers) for makers in compiled.makers.values()}
         removed = (
             u for u in range(len(problem.network)) if u not in compiled.removed and restriction.removed(u)
@@ -70,7 +70,9 @@ def with_own_rules(covered: Coverage, problem: Problem, settings: Settings) -> C
         ),
     }
     user_constraints = frozenset(constraint for constraint in constraints if not _is_library(constraint))
-    covered_limits = [(limit.amounts, limit.max_sum) for limit in covered.ruled(problem).limits.values()]
+    covered_limits = [
+        (limit.amounts, limit.max_sum) for limit in covered.compile_rules(problem).limits.values()
+    ]
     limits = OwnLimits(problem, settings, rules, user_constraints, covered_limits)
     return Coverage(tuple(sorted((*covered.rules, own_rule), key=canonical_json)), limits=limits)
 

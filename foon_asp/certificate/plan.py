@@ -120,7 +120,7 @@ class _PlanQuestion:
     ) -> None:
         """Compute the reachable nodes, the relevant units, and the limits of rules in integers."""
         self._problem, self._covered, self._plan, self._expired = problem, covered, plan, expired
-        self._ruled = ruled = covered.ruled(problem)
+        self._ruled = ruled = covered.compile_rules(problem)
         self.proofs: list[Any] = []
         self._cuts: dict[tuple[int, ...], int] = {}
         self._balanced: set[int] = set()
@@ -152,7 +152,7 @@ class _PlanQuestion:
         proof. For the first objective, a smaller bound may be proved instead; the second value is then this
         bound. If the plan in hand costs nothing, the proof is empty. Return ``None`` if nothing is proved.
         """
-        earlier_levels = [self._level(earlier) for earlier in earlier_objectives]
+        earlier_levels = [self._level(earlier_objective) for earlier_objective in earlier_objectives]
         if any(level is None for level in earlier_levels):
             return None
         levels = [level for level, _ in filter(None, earlier_levels)]
@@ -205,7 +205,7 @@ class _PlanQuestion:
             goal: tuple(actions_by_unit[u] for u in ruled.makers[goal] if u in actions_by_unit)
             for goal in ruled.goals
         }
-        prover.require([Landmark(members, objects=(goal,)) for goal, members in makers.items()])
+        prover.add_known_landmarks([Landmark(members, objects=(goal,)) for goal, members in makers.items()])
         return prover
 
     def _unit_costs(self, objective: Objective) -> list[Fraction]:
@@ -328,9 +328,9 @@ class _PlanQuestion:
         while waiting:
             preconditions = flows[waiting.pop()].asks
             if unreached.isdisjoint(preconditions):
-                lacking = next(o for o in preconditions if not self._reached.available[o])
-                unreached.add(lacking)
-                waiting += (unit for unit in self._achievers(lacking) if unit not in removed)
+                unreachable_node = next(o for o in preconditions if not self._reached.available[o])
+                unreached.add(unreachable_node)
+                waiting += (unit for unit in self._achievers(unreachable_node) if unit not in removed)
         return sorted(unreached)
 
     def _achievers(self, o: int) -> list[int]:

@@ -157,8 +157,11 @@ class CountBound:
         times, each time with a further landmark that the last counts violate.
         """
         counts = None
-        wanted = max(self._flows.targets.values(), default=1)
-        for assumed_cap in (PLANS.first_executions * wanted, PLANS.last_executions * wanted):
+        most_copies_wanted = max(self._flows.targets.values(), default=1)
+        for assumed_cap in (
+            PLANS.first_executions * most_copies_wanted,
+            PLANS.last_executions * most_copies_wanted,
+        ):
             counts = self._cheapest_counts_up_to(measures, rounds, assumed_cap)
             if counts is not None and max(counts.values(), default=0) < assumed_cap:
                 break
@@ -216,13 +219,13 @@ class CountBound:
             self._stop_if_expired()
 
     def max_executions(self) -> int | None:
-        """Return an upper bound on the number of executions in a plan; ``None`` if there is none."""
+        """Return an upper bound on the number of executions in a plan; ``None`` if no bound is proved."""
         program = self._new_model(()).program
         bound = program.solve(dict.fromkeys(range(self._action_count), -1)).bound
         return None if abs(bound) == math.inf else math.floor(-bound)
 
     def max_counts(self, level: Level) -> list[int | None]:
-        """Return an upper bound on the count of each action in plans that satisfy a level.
+        """Return an upper bound on the count of each action in all plans that satisfy a level.
 
         The entry of an action without a bound is ``None``.
         """
@@ -244,11 +247,15 @@ class CountBound:
         them is a better plan. Raises :class:`BetterError` if so, and :class:`Stopped` if time is up.
         """
         for i, level in enumerate(levels):
-            earlier, is_rounded = levels[:i], level.measure.exact is not None
+            earlier_levels, is_rounded = levels[:i], level.measure.exact is not None
             step = math.gcd(*level.measure.costs, level.measure.item) or 1
             max_cost = level.max_cost if is_rounded else (math.ceil(level.cost) - 1) // step * step
             self._search_counts(
-                level.measure, max_cost, is_better, earlier, [*earlier, level._replace(strict=True)]
+                level.measure,
+                max_cost,
+                is_better,
+                earlier_levels,
+                [*earlier_levels, level._replace(strict=True)],
             )
 
     def visit_counts(self, levels: Sequence[Level], visit: Callable[[Counts], None]) -> None:
@@ -256,8 +263,8 @@ class CountBound:
 
         Costs of the last level have to be whole. Raises :class:`Stopped` if time is up.
         """
-        *earlier, last = levels
-        self._search_counts(last.measure, last.max_cost, visit, earlier, earlier)
+        *earlier_levels, last_level = levels
+        self._search_counts(last_level.measure, last_level.max_cost, visit, earlier_levels, earlier_levels)
 
     def prove_infeasible(self, measure: Measure, is_better: Callable[[Counts], bool]) -> None:
         """Prove that there is no plan at all; counts of low cost by ``measure`` are tried first.
@@ -276,20 +283,24 @@ class CountBound:
         measure: Measure,
         max_cost: int | None,
         is_better: Callable[[Counts], bool | None],
-        earlier: Sequence[Level] = (),
+        earlier_levels: Sequence[Level] = (),
         levels: Sequence[Level] = (),
     ) -> None:
         """Call ``is_better`` with all counts of cost up to ``max_cost``, by branch and bound.
 
         If ``max_cost`` is ``None``, the cost has no limit. Only counts as good as the incumbent are
-        considered: by rounded costs for each level in ``earlier``, and by exact costs for each of ``levels``.
-        Without ``earlier``, ``proved`` is raised. Raises :class:`BetterError` if ``is_better`` returns true,
-        and :class:`Stopped` after too many nodes.
+        considered: by rounded costs for each level in ``earlier_levels``, and by exact costs for each of
+        ``levels``. Without ``earlier_levels``, ``proved`` is raised. Raises :class:`BetterError` if
+        ``is_better`` returns true, and :class:`Stopped` after too many nodes.
         """
-        if max_cost is not None and not measure.item and self._equation_exceeds(measure, max_cost, earlier):
+        if (
+            max_cost is not None
+            and not measure.item
+            and self._equation_exceeds(measure, max_cost, earlier_levels)
+        ):
             return
-        model = self._new_model([measure, *(level.measure for level in earlier)])
-        for level in earlier:
+        model = self._new_model([measure, *(level.measure for level in earlier_levels)])
+        for level in earlier_levels:
             model.add_level(level)
         objective = model.objective(measure)
         if max_cost is not None:
@@ -301,7 +312,7 @@ class CountBound:
         waiting: list[tuple[float | Fraction, int, int, Bounds]] = [(0, sum(lower), number, (lower, upper))]
         while waiting:
             bound, _, _, (model.program.lower, model.program.upper) = heappop(waiting)
-            if not earlier:
+            if not earlier_levels:
                 self.proved = max(self.proved, bound)
             solved = self._solve_node(model, objective, cutoff)
             if solved.x is None:
@@ -313,16 +324,16 @@ class CountBound:
             if number > (PLANS.uncapped_nodes if max_cost is None else PLANS.nodes):
                 raise Stopped
 
-    def _equation_exceeds(self, measure: Measure, max_cost: int, earlier: Sequence[Level]) -> bool:
+    def _equation_exceeds(self, measure: Measure, max_cost: int, earlier_levels: Sequence[Level]) -> bool:
         """Return whether the state equation proves that plans cost more than ``max_cost`` by a measure.
 
-        Only plans as good as the incumbent by the levels in ``earlier`` are considered. The search branches
-        over counts, adds violated conditions, and gives up after ``equation_nodes`` nodes. Without
-        ``earlier``, the first node raises ``proved``.
+        Only plans as good as the incumbent by the levels in ``earlier_levels`` are considered. The search
+        branches over counts, adds violated conditions, and gives up after ``equation_nodes`` nodes. Without
+        ``earlier_levels``, the first node raises ``proved``.
         """
         costs = {a: cost for a, cost in enumerate(measure.costs) if cost}
         caps = [max(max_cost, 0) // cost if cost else None for cost in measure.costs]
-        equation = self._state_equation(earlier, caps)
+        equation = self._state_equation(earlier_levels, caps)
         program = equation.program
         waiting = [(list(program.lower), list(program.upper))]
         for number in range(PLANS.equation_nodes):
@@ -330,7 +341,7 @@ class CountBound:
                 return True
             program.set_bounds(waiting.pop())
             solved = self._solve_equation_node(equation, costs, max_cost)
-            if not earlier and not number:
+            if not earlier_levels and not number:
                 self._rounded_rows = list(equation.rounded_rows)
                 self.proved = max(self.proved, min(solved.bound, max_cost + 1))
             if solved.bound > max_cost:

@@ -29,10 +29,12 @@ class CountModel:
     ``stock``, ``items``: the columns of initial copies and of endless items by object, if they have costs.
 
     Parameters:
-        flows: The preconditions and effects of actions. measures: The measures of objectives. landmarks: The
-        landmarks known so far. limits: Limits on weighted sums. excluded_counts: A plan is excluded if it
-        executes all actions at least as often as one of these counts
-            says.
+        flows: The preconditions and effects of actions.
+        measures: The measures of objectives.
+        landmarks: The landmarks known so far.
+        limits: Limits on weighted sums.
+        excluded_counts: A plan is excluded if it executes all actions at least as often as one of these
+            counts says.
         assumed_cap: An upper bound that is assumed for counts that have none. If ``None``, nothing is
             assumed, and each class of a measure with exact costs has a column.
         expired: Returns whether time is up.

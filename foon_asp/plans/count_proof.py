@@ -98,7 +98,7 @@ class PlanProver(CountBound):
             return None
         return proof, self._least, self._columns
 
-    def require(self, landmarks: Sequence[Landmark]) -> None:
+    def add_known_landmarks(self, landmarks: Sequence[Landmark]) -> None:
         """Add landmarks that all plans are known to satisfy."""
         self._landmarks += landmarks
 

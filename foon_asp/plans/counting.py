@@ -134,20 +134,23 @@ class Counting:
         return Fraction(common) if common * greatest <= PLANS.exact_cost else PLANS.cost_steps / greatest
 
     def level(self, objective: Objective, costs: Costs) -> Level:
-        """Return the level that plans satisfy that are as good as these costs by an objective."""
+        """Return the condition that a plan is as good as these costs by an objective."""
         return self._level_at(objective, Fraction(costs.measure(objective)))
 
     def _level_below(self, objective: Objective, cost: int | Fraction) -> Level:
-        """Return the level that plans satisfy that cost less than ``cost`` by an objective."""
+        """Return the condition that a plan costs less than ``cost`` by an objective.
+
+        For ``success``, ``cost`` is a rate, and the rate of the plan has to be above it.
+        """
         level = self._level_at(objective, Fraction(cost))
         if level.measure.exact is not None:
             return level._replace(strict=True)
         return level._replace(max_cost=math.ceil(level.cost) - 1)
 
     def _level_at(self, objective: Objective, cost: Fraction) -> Level:
-        """Return the level that plans satisfy that cost at most ``cost`` by an objective.
+        """Return the condition that a plan costs at most ``cost`` by an objective.
 
-        For ``success``, ``cost`` is a rate, and plans have at least this rate.
+        For ``success``, ``cost`` is a rate, and the plan has to have at least this rate.
         """
         measure = self.measure(objective)
         if multiplies(objective):

@@ -28,9 +28,9 @@ def bulk_order(
     """
     if not _may_have_order(flows, counts, start):
         return None
-    runs = _Search(flows, counts, start, expired, single=False).find_runs()
+    runs = _OrderSearch(flows, counts, start, expired, single=False).find_runs()
     if runs is None and sum(counts.values()) <= PLANS.single_executions:
-        search = _Search(flows, counts, start, expired, single=True)
+        search = _OrderSearch(flows, counts, start, expired, single=True)
         runs = search.find_runs()
         if runs is None and search.is_exhausted:
             return None
@@ -77,7 +77,7 @@ def _may_have_order(flows: Flows, counts: Counts, start: Mapping[int, int]) -> b
     return all(copies[o] >= n for o, n in flows.targets.items())
 
 
-class _Search:
+class _OrderSearch:
     """A depth-first search for an order of executions.
 
     ``single``: whether to branch over single executions, in place of runs.

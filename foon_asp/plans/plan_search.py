@@ -67,8 +67,8 @@ def _search(question: PlanQuestion, units: list[int]) -> Outcome:
     """Search for the best plan of ``units``, and prove it; return the outcome.
 
     First, counts of least cost are searched for, and then an order of them, which becomes the first
-    incumbent. If no plan is found so, it is tried to prove that there is none. With an incumbent, counts of
-    lower cost are searched until it is proved the best. Raises :class:`Stopped` if time is up.
+    incumbent. If no plan is found so, the search tries to prove that there is none. With an incumbent, counts
+    of lower cost are searched until the incumbent is proved the best. Raises :class:`Stopped` if time is up.
     """
     counting = Counting(question, units)
     if not units:  # every goal is available: only the empty plan is irredundant
@@ -91,7 +91,7 @@ def _search(question: PlanQuestion, units: list[int]) -> Outcome:
         if plan is None or not question.allows(plan):
             plan = counting.find_plan_beyond(counts)
     if plan is not None and question.try_incumbent(plan):
-        counting.bound.derivation = _positions(units, plan)
+        counting.bound.derivation = _executed_indices(units, plan)
         counting = _without_dear_units(question, counting, plan)
     elif question.has_no_lasting_tree():
         return question.outcome(Status.INFEASIBLE, Proof.SOLVER)
@@ -110,7 +110,7 @@ def _search(question: PlanQuestion, units: list[int]) -> Outcome:
             question.add_seconds("bound", start_time)
 
 
-def _positions(units: Sequence[int], plan: Plan) -> list[int]:
+def _executed_indices(units: Sequence[int], plan: Plan) -> list[int]:
     """Return the indices in ``units``, ascending, of the units that a plan executes."""
     executed = set(plan)
     return [a for a, unit in enumerate(units) if unit in executed]
@@ -143,5 +143,5 @@ def _without_dear_units(question: PlanQuestion, counting: Counting, plan: Plan) 
     if not units or len(units) == len(counting.units):
         return counting
     smaller = Counting(question, units)
-    smaller.bound.derivation = _positions(units, plan)
+    smaller.bound.derivation = _executed_indices(units, plan)
     return smaller

@@ -232,9 +232,9 @@ class WholeProgram:
         """
         highs = self._update_highs(objective)
         count = self.column_count
-        whole = self._library.HighsVarType.kInteger
+        integer_type = self._library.HighsVarType.kInteger
         highs.changeColsIntegrality(
-            count, self._np.arange(count, dtype="int32"), self._np.array([whole] * count)
+            count, self._np.arange(count, dtype="int32"), self._np.array([integer_type] * count)
         )
         highs.setOptionValue("presolve", "on")
         highs.setOptionValue("mip_rel_gap", 0.0)
@@ -242,9 +242,9 @@ class WholeProgram:
         is_solved = not self._expired() and run(highs, self._expired, has_integers=True)
         status = self._library.HighsModelStatus
         is_optimal = is_solved and highs.getModelStatus() in {status.kOptimal, status.kObjectiveTarget}
-        values = list(highs.getSolution().col_value) if is_optimal else None
+        x = list(highs.getSolution().col_value) if is_optimal else None
         self._highs = None
-        return values
+        return x
 
     def _run(self, objective: Mapping[int, int] | Mapping[int, float]) -> Any:
         """Solve the relaxation with HiGHS; return the HiGHS instance.

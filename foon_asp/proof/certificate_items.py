@@ -38,13 +38,13 @@ def read_amounts(value: Any, subject: Subject) -> dict[int, tuple[dict[int, int]
     does not have are ignored.
     """
     what = "units and the amounts of their inputs and outputs"
-    stated: dict[int, tuple[dict[int, int], dict[int, int]]] = {}
+    stated_amounts: dict[int, tuple[dict[int, int], dict[int, int]]] = {}
     for entry in read_list(value):
         fields = read_list(entry)
         require(len(fields) == 3 and type(fields[0]) is int, f"expected {what}")
-        stated[fields[0]] = read_copies(fields[1], what), read_copies(fields[2], what)
+        stated_amounts[fields[0]] = read_copies(fields[1], what), read_copies(fields[2], what)
     network = subject.network
-    of_data: dict[int, tuple[dict[int, int], dict[int, int]]] = {}
+    amounts_of_data: dict[int, tuple[dict[int, int], dict[int, int]]] = {}
     for unit, sides in subject.amounts.items():
         unit_id = network.unit_id(unit)
         if unit_id is not None and any(sides):
@@ -52,9 +52,9 @@ def read_amounts(value: Any, subject: Subject) -> dict[int, tuple[dict[int, int]
                 {o: n for node, n in side.items() if (o := network.object_id(node)) is not None}
                 for side in sides
             )
-            of_data[unit_id] = inputs, outputs
-    require(stated == of_data, "the amounts of units are not those of the data")
-    return stated
+            amounts_of_data[unit_id] = inputs, outputs
+    require(stated_amounts == amounts_of_data, "the amounts of units are not those of the data")
+    return stated_amounts
 
 
 def read_stays(value: Any, node_count: int) -> dict[str | int, bool]:

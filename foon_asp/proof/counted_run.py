@@ -44,11 +44,11 @@ def counted_run(problem: Problem, plan: Iterable[int]) -> CountedRun:
             if node in initial:
                 stock[node] = max(stock[node], needed - least + initial[node])
             copies[node] += times * change
-    for node, wanted in executions.wanted_copies().items():
+    for node, wanted_count in executions.wanted_copies().items():
         if executions.is_endless(node):
             continue
-        if copies[node] < wanted:
+        if copies[node] < wanted_count:
             return CountedRun(node, stock)
         if node in initial:
-            stock[node] = max(stock[node], wanted - copies[node] + initial[node])
+            stock[node] = max(stock[node], wanted_count - copies[node] + initial[node])
     return CountedRun(None, stock)

@@ -219,5 +219,5 @@ class _Kitchen:
         return [self._copies[node].popleft() for _ in range(amount)]
 
     def _shortage(self, step: int | None, node: ObjectNode, amount: int) -> Shortage:
-        """Return the shortage of a node of which a step needs ``amount`` copies, with its consumers so far."""
+        """Return the shortage of a node of which a step needs ``amount`` copies, with consumers so far."""
         return Shortage(step, node, tuple(self._consumers_of.get(node, ())), amount)

@@ -60,11 +60,11 @@ class Question(NamedTuple):
 
     def made_with(self, names: Collection[str]) -> list[int]:
         """Return the nodes, by id, with one of the names as label or ingredient, ascending."""
-        wanted = frozenset(names)
+        wanted_names = frozenset(names)
         return [
             o
             for o, node in enumerate(self.network.objects)
-            if node.label in wanted or not wanted.isdisjoint(node.ingredients)
+            if node.label in wanted_names or not wanted_names.isdisjoint(node.ingredients)
         ]
 
 
@@ -248,12 +248,12 @@ def _require_intermediate(question: Question, required_intermediate: str) -> Mea
     another that makes it and does not need it.
     """
     network = question.network
-    wanted = []
+    alternatives = []
     for o in question.labelled(required_intermediate):
         if o not in question.kitchen:
             consumers = frozenset(unit for unit in network.consumers[o] if o in question.needs(unit))
-            wanted.append([frozenset(network.producers[o]) - consumers, consumers])
-    return Meaning(requirements=[wanted])
+            alternatives.append([frozenset(network.producers[o]) - consumers, consumers])
+    return Meaning(requirements=[alternatives])
 
 
 def _singletons(units: Iterable[int]) -> list[tuple[Units, Fraction]]:
@@ -359,7 +359,7 @@ def meaning_of_user_rules(rule: Rule) -> Meaning:
     """
     claims = [(frozenset(used), frozenset(without)) for used, without in rule["claims"]]
     removed = [used for used, without in claims if len(used) == 1 and not without]
-    wanted = [[[without]] for used, without in claims if not used]
+    requirements = [[[without]] for used, without in claims if not used]
     barring_claims = [(used, without) for used, without in claims if used and (len(used) > 1 or without)]
 
     def barred(used: Units, without: Units) -> Units:
@@ -381,7 +381,7 @@ def meaning_of_user_rules(rule: Rule) -> Meaning:
         for amounts, max_sum in rule["limits"]
     ]
     bars = barred if barring_claims else None
-    return Meaning(frozenset().union(*removed), wanted, barred=bars, limits=limits)
+    return Meaning(frozenset().union(*removed), requirements, barred=bars, limits=limits)
 
 
 LIBRARY: Mapping[str, Constraint] = {

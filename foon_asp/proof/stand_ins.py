@@ -47,9 +47,9 @@ def stand_in_price_data(table: StandInTable) -> list[list[str]]:
     """
     edits = [[str(edit), str(price)] for edit, price in table.edits.items()]
     words = [[str(edit), word, str(price)] for (edit, word), price in table.words.items()]
-    kinds = {str: "label", ObjectNode: "node"}
+    kind_names = {str: "label", ObjectNode: "node"}
     pairs = [
-        [kinds[type(serving)], str(serving), str(served), str(price)]
+        [kind_names[type(serving)], str(serving), str(served), str(price)]
         for (serving, served), price in table.pairs.items()
     ]
     return sorted((*edits, *words, *pairs))
@@ -124,11 +124,11 @@ def stand_in_fault(
             return f"a stand-in serves {objects[served]}, which can be made"
     servers = _Servers(network, table, free, claim.by_dissimilarity)
     if claim.by_dissimilarity:
-        lacking = _nodes_needed(network, goals, free, actions)
+        unfree_nodes = _nodes_needed(network, goals, free, actions)
         least = _least_dissimilarities(network, servers, goals, actions)
     else:
-        lacking, least = set(range(len(objects))) - free, {}
-    for served in lacking:
+        unfree_nodes, least = set(range(len(objects))) - free, {}
+    for served in unfree_nodes:
         for serving, price in servers.prices_of(served).items():
             if (serving, served) in stand_ins:
                 continue

@@ -264,9 +264,9 @@ class _Run:
         preconditions = self._executions.of(unit).preconditions
         brought = Counter(tool.label for tool in tools)
         for label in tool_needs.keys() | brought.keys():
-            wanted = tool_needs[label].number if label in tool_needs else 0
-            if brought[label] != wanted:
-                yield f"has {brought[label]} of {label}, and asks for {wanted}"
+            needed_number = tool_needs[label].number if label in tool_needs else 0
+            if brought[label] != needed_number:
+                yield f"has {brought[label]} of {label}, and asks for {needed_number}"
         for tool in tools:
             if not 1 <= tool.number <= resources.number_of(problem, tool.name):
                 yield f"has {tool}, and there are {resources.number_of(problem, tool.name)}"

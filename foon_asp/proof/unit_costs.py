@@ -269,8 +269,10 @@ def prices_by_id(network: Network, unit_prices: UnitPrices | None) -> Sequence[F
     if unit_prices is None:
         return [None] * len(network)
     detailed = network.detailed or network
-    own = {detailed.unit_id(unit): price for unit, price in unit_prices.units.items()}
-    prices = [own.get(unit, unit_prices.motions.get(motion)) for unit, motion in enumerate(detailed.motions)]
+    own_prices = {detailed.unit_id(unit): price for unit, price in unit_prices.units.items()}
+    prices = [
+        own_prices.get(unit, unit_prices.motions.get(motion)) for unit, motion in enumerate(detailed.motions)
+    ]
     if network.detailed is not None:
         details_prices = [[prices[detail] for detail in details] for details in network.stands_for]
         known_prices = [

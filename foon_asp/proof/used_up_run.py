@@ -49,8 +49,10 @@ def used_up_run(problem: Problem, tree: Iterable[FunctionalUnit]) -> UsedUpRun:
     if problem.network.level < 3:
         return UsedUpRun(None, proved=False)
     executions = Executions(problem)
-    executed, wanted = [executions.of(unit) for unit in tree], executions.wanted_copies()
-    nodes = set(wanted).union(*(copies for step in executed for copies in (step.preconditions, step.adds)))
+    executed, wanted_copies = [executions.of(unit) for unit in tree], executions.wanted_copies()
+    nodes = set(wanted_copies).union(
+        *(copies for step in executed for copies in (step.preconditions, step.adds))
+    )
     endless = set(filter(executions.is_endless, nodes))
 
     def without_endless(copies: Mapping[ObjectNode, int]) -> Mapping[ObjectNode, int]:
@@ -60,7 +62,7 @@ def used_up_run(problem: Problem, tree: Iterable[FunctionalUnit]) -> UsedUpRun:
         return {node: n for node, n in copies.items() if node not in endless}
 
     steps = [Execution(*map(without_endless, step)) for step in executed]
-    stock, goals = executions.initial_copies(), without_endless(wanted)
+    stock, goals = executions.initial_copies(), without_endless(wanted_copies)
     first_shortage = _shortage_as_listed(steps, stock, goals)
     if first_shortage is None:
         return UsedUpRun(tuple(range(len(steps))))

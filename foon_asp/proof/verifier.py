@@ -124,8 +124,8 @@ class Check:
         claim = StandInClaim(by_dissimilarity, least if by_dissimilarity else None)
         actions = Actions(self.kitchen, self.needs, self.gives)
         inputs = (o for unit in required_units for o in self.needs(unit) if o is not None)
-        wanted = [*dict.fromkeys((*self.goals, *inputs))]  # made or taken by every tree
-        fault = stand_in_fault(self.network, self.stand_ins, actions, wanted, claim)
+        needed_nodes = [*dict.fromkeys((*self.goals, *inputs))]  # made or taken by every tree
+        fault = stand_in_fault(self.network, self.stand_ins, actions, needed_nodes, claim)
         require(fault is None, f"{fault}")
 
     def verify_claim(self) -> Verified:
@@ -350,27 +350,27 @@ class Check:
                 )
         return total, reduced_cost
 
-    def _round_up(self, amount: Amount, stated: Any) -> Amount:
+    def _round_up(self, amount: Amount, stated_divisors: Any) -> Amount:
         """Return a bound, rounded up to a stated common divisor of all costs by an objective.
 
-        ``stated`` is an object with divisors by objective. The bound is rounded at the first objective whose
-        part is no multiple of its divisor. The parts after this objective become 0, since no cost is below 0.
-        A divisor that does not divide all costs is refused.
+        ``stated_divisors`` is an object with divisors by objective. The bound is rounded at the first
+        objective whose part is no multiple of its divisor. The parts after this objective become 0, since no
+        cost is below 0. A divisor that does not divide all costs is refused.
         """
-        multiples = {name: read_rational(multiple) for name, multiple in read_object(stated).items()}
-        require(multiples.keys() <= set(self.objectives), "a multiple is stated for another objective")
+        divisors = {name: read_rational(divisor) for name, divisor in read_object(stated_divisors).items()}
+        require(divisors.keys() <= set(self.objectives), "a multiple is stated for another objective")
         for level, objective in enumerate(self.objectives):
-            if objective in multiples:
-                multiple = multiples[objective]
-                require(multiple > 0, "a multiple is not above zero")
+            if objective in divisors:
+                divisor = divisors[objective]
+                require(divisor > 0, "a multiple is not above zero")
                 require(
-                    self.unit_costs.are_multiples(level, multiple),
+                    self.unit_costs.are_multiples(level, divisor),
                     "a cost is not a multiple of what is stated",
                 )
-                times = amount.get((level, None), Fraction(0)) / multiple
-                if times.denominator > 1:
+                quotient = amount.get((level, None), Fraction(0)) / divisor
+                if quotient.denominator > 1:
                     kept_parts = {key: value for key, value in amount.items() if key[0] < level}
-                    return {**kept_parts, (level, None): math.ceil(times) * multiple}
+                    return {**kept_parts, (level, None): math.ceil(quotient) * divisor}
         return amount
 
     def _crossing_members(self, number: Any, used: frozenset[int], without: frozenset[int]) -> frozenset[int]:
@@ -443,17 +443,17 @@ class Check:
         A kitchen item has the key ``item`` and its id as node; a step of constraints has ``step`` and its
         number from 0.
         """
-        network, kinds = self.network, [*read_object(choice)]
-        kind = kinds[0] if kinds in (["item"], ["step"]) else "unit"
-        number = read_object(choice, (kind,))[kind]
-        if kind == "unit":
+        network, keys = self.network, [*read_object(choice)]
+        key = keys[0] if keys in (["item"], ["step"]) else "unit"
+        number = read_object(choice, (key,))[key]
+        if key == "unit":
             return read_number(number, range(len(network)), "the id of a unit")
-        if kind == "item":
+        if key == "item":
             require("kitchen" in self.objectives, "a branch on an item where items cost nothing")
             return len(network) + read_number(number, self.kitchen, "the id of a kitchen item")
         steps = range(len(self.ruled.steps))
-        first = len(network) + len(network.objects)
-        return first + read_number(number, steps, "the number of a step")
+        first_step = len(network) + len(network.objects)
+        return first_step + read_number(number, steps, "the number of a step")
 
     def read_weights(
         self, key: str, stated: Any, read: Callable[[Any], Amount], name_length: int = 1

@@ -168,8 +168,8 @@ class PlanCheck(Check):
         initial. Refuse it, too, if some unit adds such a node, needs none of them and is not removed.
         """
         network = self.network
-        stated = self.certificate["unreached"]
-        unreached = frozenset(read_numbers(stated, len(network.objects), ascending=stated != []))
+        stated_ids = self.certificate["unreached"]
+        unreached = frozenset(read_numbers(stated_ids, len(network.objects), ascending=stated_ids != []))
         removed = self.ruled.removed
         for o in unreached:
             self.budget.spend(1 + len(network.producers[o]))
@@ -235,30 +235,34 @@ class PlanCheck(Check):
         rounded (:func:`_round_row`).
         """
         rows: list[Row] = []
-        for stated in read_list(self.certificate["rounded"]):
+        for stated_sum in read_list(self.certificate["rounded"]):
             require(
-                set(read_object(stated)) <= {"balance", "limits", "rounded"}, "expected sums of conditions"
+                set(read_object(stated_sum)) <= {"balance", "limits", "rounded"},
+                "expected sums of conditions",
             )
             coefficients, least = dict[int, Fraction](), Fraction(0)
-            for key, weights in stated.items():
+            for key, weights in stated_sum.items():
                 for (number,), text in self.read_rows(key, weights):
                     weight = read_rational(text)
                     require(weight > 0, "what is rounded has a weight that is not above zero")
-                    row, wanted = self._condition_on_counts(key, number, rows)
-                    least += weight * wanted
+                    row, row_least = self._condition_on_counts(key, number, rows)
+                    least += weight * row_least
                     for unit, n in row.items():
                         coefficients[unit] = coefficients.get(unit, Fraction(0)) + weight * n
                         self.budget.spend_on_fractions(bit_length(coefficients[unit]))
             rows.append(_round_row(coefficients, least))
         return rows
 
-    def _condition_on_counts(self, key: str, number: int, earlier: Sequence[Row]) -> Row:
+    def _condition_on_counts(self, key: str, number: int, earlier_rows: Sequence[Row]) -> Row:
         """Return the condition of a certificate that ``key`` and ``number`` name, as a row.
 
-        ``key`` is ``balance``, ``limits`` or ``rounded``. ``earlier`` has the rounded sums before this one.
+        ``key`` is ``balance``, ``limits`` or ``rounded``. ``earlier_rows`` has the rounded sums before this
+        one.
         """
         if key == "rounded":
-            return earlier[read_number(number, range(len(earlier)), "the number of an earlier rounded sum")]
+            return earlier_rows[
+                read_number(number, range(len(earlier_rows)), "the number of an earlier rounded sum")
+            ]
         if key == "limits":
             limit = self.limit_at(number)
             return {unit: -amount for unit, amount in limit.amounts.items()}, -limit.max_sum
@@ -289,10 +293,12 @@ class PlanCheck(Check):
             copies.subtract({o: n for o, n in uses.items() if o not in self.endless})
             copies.update({o: n for o, n in adds.items() if o not in self.endless})
         for goal in set(self.goals) - self.endless:
-            wanted = self.copies_wanted(goal)
-            require(copies[goal] >= wanted, "a copy of a goal is not there in the end")
+            wanted_copies = self.copies_wanted(goal)
+            require(copies[goal] >= wanted_copies, "a copy of a goal is not there in the end")
             if goal in self.stock:
-                initial_needed[goal] = max(initial_needed[goal], wanted + self.stock[goal] - copies[goal])
+                initial_needed[goal] = max(
+                    initial_needed[goal], wanted_copies + self.stock[goal] - copies[goal]
+                )
         self._require_kept_rules_by_counts(Counter(units))
         item_offset = len(network)
         members = [
@@ -390,8 +396,8 @@ class PlanCheck(Check):
             [
                 per_execution,
                 *(
-                    arithmetic.times(w, self.cost_lower_bound(member, earlier))
-                    for earlier, w in conditions.levels
+                    arithmetic.times(w, self.cost_lower_bound(member, earlier_level))
+                    for earlier_level, w in conditions.levels
                 ),
             ]
         )
@@ -477,11 +483,13 @@ class PlanCheck(Check):
         By ``success``, it is ``-log`` of the product, rounded up to a multiple of ``1 / LOGARITHM_SCALE``.
         """
         assert self.least is not None
-        stated = {rate: value for (index, rate), value in self.least.items() if index == level}
+        parts_of_claim = {rate: value for (index, rate), value in self.least.items() if index == level}
         if self.objectives[level] != "success":
-            return stated.get(None, Fraction(0))
+            return parts_of_claim.get(None, Fraction(0))
         bounds = (
-            [e * bound for bound in self.arithmetic.minus_log(rate)] for rate, e in stated.items() if rate
+            [e * bound for bound in self.arithmetic.minus_log(rate)]
+            for rate, e in parts_of_claim.items()
+            if rate
         )
         return Fraction(math.ceil(LOGARITHM_SCALE * sum(map(max, bounds), Fraction(0))), LOGARITHM_SCALE)
 

@@ -37,8 +37,8 @@ def with_stand_ins(problem: Problem, table: StandInTable, everything: bool = Fal
         raise UserError(f"a unit has the motion {STAND_IN!r}, which is that of stand-ins: rename it")
     prices, available = NodePrices(network, table), reach(problem).available
     if everything:
-        lacking = (o for o in range(len(network.objects)) if not available[o])
-        pairs = [(served, serving) for served in lacking for serving in prices.servers_of(served)]
+        unavailable_nodes = (o for o in range(len(network.objects)) if not available[o])
+        pairs = [(served, serving) for served in unavailable_nodes for serving in prices.servers_of(served)]
     else:
         pairs = _NearestStandIns(problem, prices, available).pairs()
     unit_prices = problem.unit_prices
@@ -130,11 +130,11 @@ class _NearestStandIns:
         stack = list(needed)
         while stack:
             served = stack.pop()
-            lacking = {o for o in self._servers_of(served) if not self._available[o]}
-            lacking.update(o for nodes in self._unavailable_preconditions(served) for o in nodes)
-            lacking -= needed
-            needed |= lacking
-            stack.extend(lacking)
+            newly_needed = {o for o in self._servers_of(served) if not self._available[o]}
+            newly_needed.update(o for nodes in self._unavailable_preconditions(served) for o in nodes)
+            newly_needed -= needed
+            needed |= newly_needed
+            stack.extend(newly_needed)
         return needed
 
     def _cheapest_steps(

@@ -106,8 +106,8 @@ class Repair:
         available = reach(self.posed).available
         made = {o for unit in self.steps for o in self.shown.gives[unit]}
         needed = {o for unit in self.steps for o in self.shown.needs[unit]}.union(self.shown.goals)
-        lacking = [o for o in sorted(needed) if not available[o]]
-        return [o for o in lacking if o not in made] or lacking
+        unmakeable = [o for o in sorted(needed) if not available[o]]
+        return [o for o in unmakeable if o not in made] or unmakeable
 
 
 def _with_markers(network: Network, steps: Sequence[int]) -> Network:

@@ -81,11 +81,13 @@ def _read_edit(name: str) -> Edit | tuple[Edit, str]:
     The pair has the edit, and the state or ingredient after the colon. Raises :class:`LineError` for other
     names.
     """
-    kind, colon, word = (text.strip() for text in name.partition(":"))
-    if kind not in (_NAMED if colon else _KINDS) or (colon and not word):
-        kinds = ", ".join(_KINDS)
-        raise LineError(1, repr(name), (f"two names and a price between tabs, or a kind of edit ({kinds})",))
-    return (Edit(kind), word) if colon else Edit(kind)
+    edit_name, colon, word = (text.strip() for text in name.partition(":"))
+    if edit_name not in (_NAMED if colon else _KINDS) or (colon and not word):
+        known_edits = ", ".join(_KINDS)
+        raise LineError(
+            1, repr(name), (f"two names and a price between tabs, or a kind of edit ({known_edits})",)
+        )
+    return (Edit(edit_name), word) if colon else Edit(edit_name)
 
 
 def _read_price(written: str, column: int) -> Fraction | None:
