@@ -296,9 +296,8 @@ class PlanCheck(Check):
             wanted_copies = self.copies_wanted(goal)
             require(copies[goal] >= wanted_copies, "a copy of a goal is not there in the end")
             if goal in self.stock:
-                initial_needed[goal] = max(
-                    initial_needed[goal], wanted_copies + self.stock[goal] - copies[goal]
-                )
+                needed = wanted_copies + self.stock[goal] - copies[goal]
+                initial_needed[goal] = max(initial_needed[goal], needed)
         self._require_kept_rules_by_counts(Counter(units))
         item_offset = len(network)
         members = [

@@ -441,7 +441,7 @@ PARTS = {
         plain(items=items([[SALT, 0]])),
     ),
     "a goal in stock is taken of it": Part(
-        "initial_needed[goal] = max(initial_needed[goal], wanted + self.stock[goal] - copies[goal])",
+        "initial_needed[goal] = max(initial_needed[goal], needed)",
         "pass",
         plain(objective=["kitchen"], **goals(PLAIN, SALT), tree=[], costs=[0], proof=[{}]),
     ),
