@@ -98,7 +98,7 @@ def certify(
             achievers of each node that is needed and not available, and there are no constraints.
 
     Returns:
-        The certificate. If no objective is proved in time, or under constraints that are not covered, it may
+        The certificate. If no objective is proved, or under constraints that are not covered, it may
         prove only a bound on all trees. The result is ``None`` in these cases:
 
         - Time is up before a proof is found.

@@ -132,8 +132,8 @@ class PlanQuestion:
     def has_no_lasting_tree(self) -> bool:
         """Return whether it is proved that rules allow no tree if items last, and so no plan.
 
-        The solver for items that last searches for such a tree. Without rules, or if rules do more than
-        limit, return ``False`` without a search.
+        The solver for items that last searches for such a tree. Without rules, return ``False`` without a
+        search. Do so, too, if rules read numbers of executions for more than upper bounds on these numbers.
         """
         rules, problem = self.program.understood, self.problem
         if rules is None or not rules.only_limits:

@@ -92,7 +92,7 @@ def _search(question: PlanQuestion, units: list[int]) -> Outcome:
             plan = counting.find_plan_beyond(counts)
     if plan is not None and question.try_incumbent(plan):
         counting.bound.derivation = _executed_indices(units, plan)
-        counting = _without_dear_units(question, counting, plan)
+        counting = _without_expensive_units(question, counting, plan)
     elif question.has_no_lasting_tree():
         return question.outcome(Status.INFEASIBLE, Proof.SOLVER)
     elif counting.prove_infeasible():
@@ -130,7 +130,7 @@ def _plan_by_equation(question: PlanQuestion, counting: Counting, measures: Sequ
     return plan if plan is not None and question.allows(plan) else None
 
 
-def _without_dear_units(question: PlanQuestion, counting: Counting, plan: Plan) -> Counting:
+def _without_expensive_units(question: PlanQuestion, counting: Counting, plan: Plan) -> Counting:
     """Return a :class:`Counting` without the units that alone cost more than a plan by the first objective.
 
     If costs are counted exactly, or if no unit costs so much, return ``counting`` itself.

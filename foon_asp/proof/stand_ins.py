@@ -58,8 +58,8 @@ def stand_in_price_data(table: StandInTable) -> list[list[str]]:
 def price_of(table: StandInTable, serving: ObjectNode, served: ObjectNode) -> Fraction | None:
     """Return the price of using ``serving`` in place of ``served``; ``None`` if the table forbids it.
 
-    If the table has a price of this pair of nodes, it is the price. Otherwise, the prices of all differences
-    between the nodes are added up. A difference without a price makes the pair forbidden.
+    If the table lists this pair of nodes, its entry decides. Otherwise, the prices of all differences between
+    the nodes are added up. A difference without a price makes the pair forbidden.
     """
     if (serving, served) in table.pairs:
         return table.pairs[serving, served]

@@ -64,8 +64,8 @@ class NodePrices:
     def price(self, serving: ObjectNode, served: ObjectNode) -> int | None:
         """Return the price of using ``serving`` in place of ``served``; ``None`` if the table forbids it.
 
-        If the table has a price of this pair of nodes, it is the price. Otherwise, the prices of all
-        differences between the nodes are added up. The price is a whole number, in units of ``1 / scale``.
+        If the table lists this pair of nodes, its entry decides. Otherwise, the prices of all differences
+        between the nodes are added up. The price is a whole number, in units of ``1 / scale``.
         """
         if self._pairs and (serving, served) in self._pairs:
             return self._pairs[serving, served]
